@@ -1,0 +1,38 @@
+/* The atlas: built-in analytic materials of the classes that measured databases cover (metals,
+ * metallic paints, plastics, phenolics, paints, fabrics, woods, rubbers, stones), so that
+ * everything runs with nothing downloaded. All are isotropic, reciprocal, and reflect at most what
+ * they receive at every incidence. They open as materials under the name "atlas:NAME" (material.h).
+ */
+#ifndef GONIO_ATLAS_H
+#define GONIO_ATLAS_H
+
+#include <gonio/direction.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* How many materials there are (at least 100), numbered from 0. */
+GONIO_API int gonio_atlas_count(void);
+
+/* A material's name ("gold-polished") and class ("metal"); NULL for an index out of range.
+ * Names are lower-case words joined by hyphens and unique. */
+GONIO_API const char *gonio_atlas_name(int index);
+GONIO_API const char *gonio_atlas_class(int index);
+
+/* The index of a name, or -1. */
+GONIO_API int gonio_atlas_find(const char *name);
+
+/* The BRDF, 1/sr, R G B, at half/difference coordinates; 0 where a direction is at or below the
+ * horizon or the index is out of range. */
+GONIO_API void gonio_atlas_value(int index, gonio_half_difference coordinates,
+                                 double rho[GONIO_CHANNELS]);
+
+/* The values at the centres of all bins with one theta_h index: rho[channel][theta_d][phi_d]
+ * (3 x 90 x 180), -1 where the bin is not valid. Safe to call from several threads. */
+GONIO_API void gonio_atlas_slab(int index, int theta_h, double *rho);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,88 @@
+/* A basis: the mean and the principal components of a database, in log space.
+ *
+ * m = mean column; H - m = V S W' (Ali et al., section 3.6). V is rows x components, orthonormal,
+ * stored row by row: the K values of a row are next to each other, so a row is what one reading
+ * sees. Rows are numbered as in database.h: joint, row = 3 x (position of the cell) + channel;
+ * separate, row = position of the cell. The k-th component's sign makes its largest entry positive.
+ */
+#ifndef GONIO_BASIS_H
+#define GONIO_BASIS_H
+
+#include <gonio/database.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct gonio_basis gonio_basis;
+
+enum { GONIO_DEFAULT_COMPONENTS = 45 };
+
+typedef struct gonio_basis_options {
+    size_t components;    /* K; 0 for the smaller of 45 and columns - 1 */
+    const size_t *subset; /* learn from these materials of the database only; NULL for all */
+    size_t subset_count;
+} gonio_basis_options;
+
+GONIO_API void gonio_basis_options_default(gonio_basis_options *options);
+
+/* Learns a basis by the Gram matrix of the columns, accumulated over blocks of rows, followed by a
+ * re-orthonormalisation (Cholesky QR). The result does not depend on the number of threads.
+ * Errors: _ARGUMENT if K > columns - 1; _DATA if the columns span fewer than K dimensions; _MEMORY;
+ * those of gonio_database_read_rows. */
+GONIO_API gonio_status gonio_basis_learn(gonio_context *context, const gonio_database *database,
+                                         const gonio_basis_options *options, gonio_basis **basis);
+
+GONIO_API void gonio_basis_free(gonio_basis **basis);
+
+/* Writes a basis as an HDF5 file (layout: docs/basis-file.md); command is kept in it for the record
+ * and may be NULL. The file appears whole or not at all. Errors: _IO, _MEMORY. */
+GONIO_API gonio_status gonio_basis_write(gonio_context *context, const gonio_basis *basis,
+                                         const char *command, const char *path);
+
+/* Reads a basis file and checks it: shapes, finite values, orthonormality, fingerprint.
+ * Errors: _IO; _FORMAT for another kind of file, missing or mis-shaped datasets, damage; _MEMORY.
+ */
+GONIO_API gonio_status gonio_basis_read(gonio_context *context, const char *path,
+                                        gonio_basis **basis);
+
+/* What is in it; pointers belong to the basis. */
+typedef struct gonio_basis_view {
+    gonio_representation representation;
+    gonio_channel_model channels;
+    size_t materials;
+    const char *const *names;
+    const uint64_t *fingerprints; /* of the materials */
+    size_t cells;
+    const int32_t *cell; /* [cells], database.h */
+    size_t rows;
+    size_t components;
+    const double *mean;      /* [rows] */
+    const double *vectors;   /* V, [rows][components] */
+    size_t variance_count;   /* all of them, not only the first `components` */
+    const double *variances; /* lambda_k = S_k^2/(columns - 1), descending */
+    uint64_t fingerprint;    /* of cells, mean and vectors */
+    const char *program;     /* "gonio 0.1.0" that learned it */
+    const char *command;     /* "" if unknown */
+} gonio_basis_view;
+
+GONIO_API gonio_basis_view gonio_basis_describe(const gonio_basis *basis);
+
+/* sum of the first k variances over the sum of all: what Fig. 2(a) of the paper plots. */
+GONIO_API double gonio_basis_cumulative_variance(const gonio_basis *basis, size_t k);
+
+/* The cell in the basis that stands for any cell of the grid: itself, or if the database had no
+ * data there the nearest in index space (lowest index on ties). cell is theta_d + 90 theta_h, or a
+ * bin's index for a full basis. Returns its position in view.cell. */
+GONIO_API size_t gonio_basis_position(const gonio_basis *basis, int32_t cell);
+
+/* The row that a reading in one channel at any directions sees, interpolated between cell centres
+ * (bilinear in (sqrt theta_h, theta_d); for a full basis trilinear, phi_d periodic): the mean and
+ * the first `components` values into row. At a cell's centre this is the cell's own row. */
+GONIO_API void gonio_basis_row_at(const gonio_basis *basis, gonio_half_difference coordinates,
+                                  int channel, size_t components, double *mean, double *row);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,102 @@
+/* A database: many materials on one grid, in log space, as the observation matrix H.
+ *
+ * Log space: g = ln(1 + rho/s_c), s = (1, 1.15, 1.66)/1500 1/sr for R, G, B, which is ln(1 + x) of
+ * the numbers a MERL file stores.
+ *
+ * Representation: bivariate (Romeiro et al. 2008), where a cell (theta_h, theta_d) holds the mean
+ * of g over its phi_d bins with data; or full, where every bin is a cell of its own.
+ *
+ * Channel model: joint (Ali et al.), where a column is a material and the rows are (cell, channel),
+ * channel fastest; or separate, where each channel of each material is a column (R, G, B of the
+ * first material, then the next) and the rows are cells.
+ *
+ * The matrix is kept out of core, in an unlinked scratch file, so that memory does not grow with
+ * the number of materials; each material is read once. A cell that has no data in one or more of
+ * the materials is left out of the matrix. */
+#ifndef GONIO_DATABASE_H
+#define GONIO_DATABASE_H
+
+#include <gonio/material.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* s_c, 1/sr, for channel 0, 1, 2; 1/1500 for any other. */
+GONIO_API double gonio_log_scale(int channel);
+
+/* g = ln(1 + rho/s_c); and back, rho = s_c (e^g - 1), clamped at 0. */
+GONIO_API double gonio_log_from_brdf(double rho, int channel);
+GONIO_API double gonio_brdf_from_log(double g, int channel);
+
+typedef enum gonio_representation { GONIO_BIVARIATE = 0, GONIO_FULL = 1 } gonio_representation;
+typedef enum gonio_channel_model { GONIO_JOINT = 0, GONIO_SEPARATE = 1 } gonio_channel_model;
+
+/* Bivariate statistics of one slab in log space, by theta_d. */
+typedef struct gonio_slab_statistics {
+    int count[GONIO_THETA_D_BINS]; /* phi_d bins with data */
+    double mean[GONIO_THETA_D_BINS][GONIO_CHANNELS];
+    double scatter[GONIO_THETA_D_BINS][GONIO_CHANNELS]; /* sum of (g - mean)^2 */
+} gonio_slab_statistics;
+
+/* Which bins of a slab (material.h) count: data[theta_d][phi_d], true where the bin is valid
+ * (direction.h) and holds data. */
+GONIO_API void gonio_slab_mask(int theta_h, const double *rho, bool *data);
+
+/* A slab in log space, g[channel][theta_d][phi_d]; where there is no data g is 0. In place: g == rho is
+ * allowed. */
+GONIO_API void gonio_slab_to_log(const double *rho, double *g);
+
+/* Reduces a slab in log space to its bivariate statistics over the bins that count; mean and scatter
+ * are 0 where count is. */
+GONIO_API void gonio_slab_reduce(const double *g, const bool *data,
+                                 gonio_slab_statistics *statistics);
+
+typedef struct gonio_database gonio_database;
+
+typedef struct gonio_database_options {
+    gonio_representation representation;
+    gonio_channel_model channels;
+    const char *scratch; /* folder for the scratch file; NULL for $TMPDIR or /tmp */
+} gonio_database_options;
+
+/* Bivariate, joint: the paper's. */
+GONIO_API void gonio_database_options_default(gonio_database_options *options);
+
+/* Reads the materials at the given paths (as gonio_material_open takes them), several at a time.
+ * The order of the columns is that of the paths, whatever the number of threads.
+ * Errors: those of gonio_material_open and _read_slab; _DATA if a material has no data at all, if
+ * two have the same name, or if no cell has data in all of them; _IO for the scratch file. */
+GONIO_API gonio_status gonio_database_create(gonio_context *context, const char *const *paths,
+                                             size_t count, const gonio_database_options *options,
+                                             gonio_database **database);
+
+GONIO_API void gonio_database_free(gonio_database **database);
+
+/* What is in it; pointers belong to the database. */
+typedef struct gonio_database_view {
+    gonio_representation representation;
+    gonio_channel_model channels;
+    size_t materials;
+    const char *const *names;     /* [materials] */
+    const uint64_t *fingerprints; /* [materials], material.h */
+    size_t columns;               /* materials, or 3 x materials if separate */
+    size_t cells;                 /* cells with data in every material */
+    const int32_t *cell;          /* [cells], ascending; theta_d + 90 theta_h, or a bin's index */
+    size_t rows;                  /* 3 x cells if joint, cells if separate */
+} gonio_database_view;
+
+GONIO_API gonio_database_view gonio_database_describe(const gonio_database *database);
+
+/* Reads rows first .. first + count - 1 of H into block[column][count] (column-major), for the columns
+ * of the given materials (indices into names) in that order; subset NULL for all materials.
+ * Errors: _ARGUMENT (outside the matrix), _IO. */
+GONIO_API gonio_status gonio_database_read_rows(const gonio_database *database,
+                                                gonio_context *context, size_t first, size_t count,
+                                                const size_t *subset, size_t subset_count,
+                                                double *block);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

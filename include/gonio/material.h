@@ -1,0 +1,102 @@
+/* A material: the BRDF of an isotropic surface on the grid of direction.h, read slab by slab.
+ *
+ * A material is never held whole: it is asked for one theta_h index (a slab) at a time, from a
+ * file, an analytic model or any callback. A slab is an array rho[channel][theta_d][phi_d] of 3 x
+ * 90 x 180 doubles (GONIO_SLAB_VALUES) in 1/sr, linear R, G, B. A bin with data has three finite
+ * values >= 0; a bin without has -1 in all three channels. */
+#ifndef GONIO_MATERIAL_H
+#define GONIO_MATERIAL_H
+
+#include <stddef.h>
+
+#include <gonio/context.h>
+#include <gonio/direction.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum {
+    GONIO_SLAB_BINS = GONIO_THETA_D_BINS * GONIO_PHI_D_BINS, /* 16,200 */
+    GONIO_SLAB_VALUES = GONIO_CHANNELS * GONIO_SLAB_BINS     /* 48,600 */
+};
+
+typedef struct gonio_material gonio_material;
+
+/* Where a material's values come from. */
+typedef struct gonio_material_source {
+    /* Fills rho (GONIO_SLAB_VALUES) for one theta_h index in 0 .. 89. May be called from several
+     * threads at once and must give the same values every time. */
+    gonio_status (*read_slab)(void *self, gonio_context *context, int theta_h, double *rho);
+    /* Releases self; may be NULL. */
+    void (*release)(void *self);
+    void *self;
+} gonio_material_source;
+
+/* Opens a material: a MERL .binary table (phi_d of 180 bins, or 360 folded by reciprocity), a
+ * neural BRDF .h5, recognised by content, or "atlas:NAME" for a built-in one. The path is copied.
+ * Errors: _IO (missing, unreadable, a directory), _FORMAT (not a known format, truncated,
+ * oversized, non-finite weights), _ARGUMENT (no such built-in material), _MEMORY. */
+GONIO_API gonio_status gonio_material_open(gonio_context *context, const char *path,
+                                           gonio_material **material);
+
+/* Wraps a source, for materials that come from elsewhere. On success the material owns source.self
+ * and releases it with itself; on failure the caller still owns it. The strings are copied. */
+GONIO_API gonio_status gonio_material_create(gonio_context *context, const char *name,
+                                             const char *format, gonio_material_source source,
+                                             gonio_material **material);
+
+GONIO_API void gonio_material_free(gonio_material **material);
+
+/* The name: of a file, its base name without the extension; of a built-in, the part after ':'. */
+GONIO_API const char *gonio_material_name(const gonio_material *material);
+
+/* Where it came from in words: "MERL table 90 x 90 x 180", "neural BRDF 6-21-21-3". */
+GONIO_API const char *gonio_material_format(const gonio_material *material);
+
+/* Reads one slab into rho (GONIO_SLAB_VALUES doubles, the caller's). Thread-safe.
+ * Errors: _ARGUMENT (theta_h outside 0 .. 89), and those of the source (_IO, _FORMAT). */
+GONIO_API gonio_status gonio_material_read_slab(const gonio_material *material,
+                                                gonio_context *context, int theta_h, double *rho);
+
+/* A 64-bit fingerprint of a material's values: XXH3 over the slabs in order, as little-endian
+ * doubles in 1/sr. The same values have the same fingerprint whatever file they are kept in. Feed
+ * all 90 slabs in order. */
+typedef struct gonio_fingerprint gonio_fingerprint;
+GONIO_API gonio_status gonio_fingerprint_create(gonio_fingerprint **fingerprint);
+GONIO_API void gonio_fingerprint_add(gonio_fingerprint *fingerprint, const void *data, size_t size);
+GONIO_API uint64_t gonio_fingerprint_value(const gonio_fingerprint *fingerprint);
+GONIO_API void gonio_fingerprint_free(gonio_fingerprint **fingerprint);
+
+/* Writes a material as a MERL .binary table: int32 90, 90, 180, then three planes (R, G, B) of
+ * float64 rho / ((1, 1.15, 1.66)/1500), -1 for no data. The file appears whole or not at all.
+ * Errors: _IO, and those of the source. */
+GONIO_API gonio_status gonio_material_write_merl(gonio_context *context,
+                                                 const gonio_material *material, const char *path);
+
+/* A material read whole (35 MB), for look-ups in any order. */
+typedef struct gonio_table gonio_table;
+
+GONIO_API gonio_status gonio_table_load(gonio_context *context, const gonio_material *material,
+                                        gonio_table **table);
+GONIO_API void gonio_table_free(gonio_table **table);
+
+/* All values, rho[theta_h][channel][theta_d][phi_d] (90 slabs). */
+GONIO_API const double *gonio_table_values(const gonio_table *table);
+
+/* The BRDF at any directions, trilinear between bin centres in (sqrt theta_h, theta_d, phi_d),
+ * phi_d periodic, bins without data left out and the weights of the others scaled up. Returns
+ * false, and rho = 0, if either direction is at or below the horizon or none of the bins around has
+ * data. */
+GONIO_API bool gonio_table_value(const gonio_table *table, gonio_half_difference coordinates,
+                                 double rho[GONIO_CHANNELS]);
+
+/* The directional-hemispherical reflectance (albedo) for light from theta_i, by the midpoint rule
+ * on a grid of outgoing directions around the mirror direction. */
+GONIO_API void gonio_table_albedo(const gonio_table *table, double theta_i,
+                                  double albedo[GONIO_CHANNELS]);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

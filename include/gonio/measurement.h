@@ -1,0 +1,80 @@
+/* Measurements: readings of a new material at chosen directions, and the simulated instrument.
+ *
+ * A readings file is CSV (docs/plan-and-readings.md): `#` comment lines, a line of column names in
+ * any order, then a line a direction. theta_i_deg, phi_i_deg, theta_o_deg, phi_o_deg and at least
+ * one of R_per_sr, G_per_sr, B_per_sr are needed; channel (R, G, B or all) says what the plan meant
+ * to read there; other columns are kept. A plan is such a file without values. */
+#ifndef GONIO_MEASUREMENT_H
+#define GONIO_MEASUREMENT_H
+
+#include <gonio/plan.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct gonio_reading {
+    gonio_pair pair;              /* radians */
+    int channel;                  /* what was planned: 0 .. 2 or GONIO_ALL_CHANNELS */
+    double value[GONIO_CHANNELS]; /* 1/sr; NaN where nothing was read */
+    size_t line;                  /* of the file, for messages; 0 if there is none */
+} gonio_reading;
+
+typedef struct gonio_readings gonio_readings;
+
+typedef struct gonio_readings_options {
+    bool values_needed;    /* false: a plan will do */
+    bool average_repeats;  /* a direction read more than once in the same channel: true to accept
+                            * (least  squares averages it), false to refuse */
+    bool negative_to_zero; /* a reading below zero: true to take it as 0, false to refuse */
+} gonio_readings_options;
+
+/* Values needed, repeats and negative readings refused. */
+GONIO_API void gonio_readings_options_default(gonio_readings_options *options);
+
+/* Reads a file. Accepts commas, semicolons or tabs, CRLF, a byte-order mark, comments, empty lines.
+ * Angles: theta in [0, 90) degrees (a direction at or below the horizon is refused), phi in
+ * [-360, 360].
+ * Errors: _IO, _FORMAT (not such a file, missing columns, not a number), _DATA (angles out of
+ * range, repeats, negative or non-finite values, no readings); the message names the line. */
+GONIO_API gonio_status gonio_readings_read(gonio_context *context, const char *path,
+                                           const gonio_readings_options *options,
+                                           gonio_readings **readings);
+
+GONIO_API void gonio_readings_free(gonio_readings **readings);
+
+typedef struct gonio_readings_view {
+    size_t count;
+    const gonio_reading *reading;
+    const char *path;  /* where it was read from, for messages */
+    uint64_t basis;    /* fingerprint of the basis the plan was made for; 0 if not stated */
+    size_t components; /* K of the plan; 0 if not stated */
+} gonio_readings_view;
+
+GONIO_API gonio_readings_view gonio_readings_describe(const gonio_readings *readings);
+
+typedef struct gonio_instrument_options {
+    double noise; /* standard deviation relative to the value: 0.01 is 1 per cent */
+    double floor; /* standard deviation of the additive noise, 1/sr */
+    uint64_t seed;
+} gonio_instrument_options;
+
+/* No noise. */
+GONIO_API void gonio_instrument_options_default(gonio_instrument_options *options);
+
+/* The simulated instrument: puts a known material at the directions of `readings` (a plan) and
+ * fills in all channels with rho (1 + noise z) + floor z', z and z' standard normal and
+ * independent, clamped at 0. A direction that occurs several times is read once. Errors: _DATA if
+ * the material has no data around a direction; _ARGUMENT for negative noise. */
+GONIO_API gonio_status gonio_measure(gonio_context *context, gonio_readings *readings,
+                                     const gonio_table *table,
+                                     const gonio_instrument_options *options);
+
+/* Writes readings, other columns and comments of the file they came from included. */
+GONIO_API gonio_status gonio_readings_write(gonio_context *context, const gonio_readings *readings,
+                                            const char *command, const char *path);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,93 @@
+/* A plan: where to measure.
+ *
+ * Selection (Ali et al., section 3.8): of the rows of V_K choose n, X, that minimise the condition
+ * number kappa = lambda_max(X'X)/lambda_min(X'X), by swaps until no single one lowers it. */
+#ifndef GONIO_PLAN_H
+#define GONIO_PLAN_H
+
+#include <gonio/basis.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { GONIO_ALL_CHANNELS = -1 };
+
+/* One reading to make. */
+typedef struct gonio_plan_entry {
+    int32_t cell;    /* database.h */
+    int channel;     /* 0 .. 2 for a row of a joint basis, GONIO_ALL_CHANNELS otherwise */
+    gonio_pair pair; /* radians */
+} gonio_plan_entry;
+
+/* One point of the search: kappa after `swap` swaps of a start. */
+typedef struct gonio_plan_step {
+    int32_t restart;
+    int32_t swap;
+    double condition_number;
+} gonio_plan_step;
+
+typedef struct gonio_plan {
+    size_t count;
+    gonio_plan_entry *entries; /* ascending row of the basis */
+    size_t components;         /* K that the plan was made for */
+    double condition_number;   /* kappa of X'X; infinity if singular */
+    uint64_t basis;            /* fingerprint of the basis */
+    char method[32];
+    size_t steps;
+    gonio_plan_step *history; /* all restarts, in order; not kept in files */
+} gonio_plan;
+
+typedef struct gonio_plan_options {
+    const char *method; /* "condition" (default) or "random": gonio_plan_method_name */
+    size_t components;  /* K; 0 for all of the basis */
+    size_t count;       /* n, rows to choose; 80 by default */
+    int restarts;       /* starts, of which the best is kept; 5 by default */
+    uint64_t seed;      /* same seed, same plan, on any number of threads */
+    double phi_d;       /* where on the free angle to measure a bivariate cell; pi/2 by default */
+} gonio_plan_options;
+
+GONIO_API void gonio_plan_options_default(gonio_plan_options *options);
+
+/* Names and one-line descriptions of the methods; NULL past the last. */
+GONIO_API const char *gonio_plan_method_name(int index);
+GONIO_API const char *gonio_plan_method_summary(int index);
+
+/* Makes a plan. A chosen cell becomes the pair at its centre with phi_h = 0 and the given phi_d (of
+ * a full basis, the bin's own phi_d); where that pair would be at or below the horizon, the valid
+ * phi_d nearest to it is taken. Errors: _ARGUMENT (unknown method, K more than the basis has, n < K
+ * for the condition method, n more than there are rows, phi_d outside [0, pi)); _DATA (rows of rank
+ * less than K); _CANCELLED. */
+GONIO_API gonio_status gonio_plan_create(gonio_context *context, const gonio_basis *basis,
+                                         const gonio_plan_options *options, gonio_plan **plan);
+
+GONIO_API void gonio_plan_free(gonio_plan **plan);
+
+/* Chooses n of `rows` rows of a matrix V[rows][components], ascending, into chosen[n]; the engine
+ * under gonio_plan_create, for rows that come from elsewhere. history and steps may be NULL;
+ * *history is then to be released with free(). */
+GONIO_API gonio_status gonio_plan_select(gonio_context *context, const double *vectors, size_t rows,
+                                         size_t components, const gonio_plan_options *options,
+                                         size_t *chosen, double *condition_number,
+                                         gonio_plan_step **history, size_t *steps);
+
+/* kappa of X'X for the rows chosen[n] of V[rows][leading]: the first `components` of each row.
+ * Infinity if singular to working precision. */
+GONIO_API gonio_status gonio_condition_number(gonio_context *context, const double *vectors,
+                                              size_t leading, size_t components,
+                                              const size_t *chosen, size_t count,
+                                              double *condition_number);
+
+/* A plan as CSV (docs/plan-and-readings.md): `#` lines, then columns theta_i_deg, phi_i_deg,
+ * theta_o_deg, phi_o_deg, channel. Whole or not at all. command may be NULL. */
+GONIO_API gonio_status gonio_plan_write(gonio_context *context, const gonio_plan *plan,
+                                        const char *command, const char *path);
+
+/* kappa against swaps, as CSV: restart, swap, condition_number. */
+GONIO_API gonio_status gonio_plan_write_history(gonio_context *context, const gonio_plan *plan,
+                                                const char *command, const char *path);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

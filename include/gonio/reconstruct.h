@@ -1,0 +1,66 @@
+/* Reconstruction: from a few readings to the whole BRDF.
+ *
+ * Ali et al., eq. (5): c = argmin |X c - (b_X - m_X)|, X the rows of V_K that the readings see, b_X
+ * the readings in log space, solved by QR with column pivoting; then g = m + V_K c. */
+#ifndef GONIO_RECONSTRUCT_H
+#define GONIO_RECONSTRUCT_H
+
+#include <gonio/measurement.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct gonio_reconstruct_options {
+    size_t components; /* K; 0 for the plan's, or if it states none the basis's */
+    bool all_channels; /* use all that was read, not only the planned channel of each direction */
+    bool other_basis;  /* accept readings planned with another basis */
+} gonio_reconstruct_options;
+
+GONIO_API void gonio_reconstruct_options_default(gonio_reconstruct_options *options);
+
+typedef struct gonio_reconstruction {
+    size_t components;
+    size_t columns;          /* 1 for a joint basis, 3 (R, G, B) for a separate one */
+    double *coefficients;    /* [columns][components] */
+    size_t readings;         /* equations used, per column */
+    double condition_number; /* kappa of X'X of the readings used */
+    double residual;         /* root mean square of X c - (b - m), log units */
+} gonio_reconstruction;
+
+/* Solves for the coefficients.
+ * Errors: _UNDETERMINED if the readings have fewer than K independent rows (the message says how
+ * many and what to do); _MISMATCH if they were planned with another basis; _ARGUMENT (K more than
+ * the basis has); _DATA (a planned channel was not read). */
+GONIO_API gonio_status gonio_reconstruct(gonio_context *context, const gonio_basis *basis,
+                                         const gonio_readings *readings,
+                                         const gonio_reconstruct_options *options,
+                                         gonio_reconstruction **reconstruction);
+
+/* The same for rows of the basis given by number, with b in log space: c for columns x count values
+ * b[column][count]. */
+GONIO_API gonio_status gonio_reconstruct_rows(gonio_context *context, const gonio_basis *basis,
+                                              size_t components, const size_t *rows, size_t count,
+                                              const double *b,
+                                              gonio_reconstruction **reconstruction);
+
+GONIO_API void gonio_reconstruction_free(gonio_reconstruction **reconstruction);
+
+/* The reconstructed BRDF as a material: every valid bin of a cell has the cell's value, cells that
+ * the basis lacks that of their nearest. The basis must outlive the material; the reconstruction
+ * need not. Errors: _MEMORY. */
+GONIO_API gonio_status gonio_reconstruction_material(gonio_context *context,
+                                                     const gonio_basis *basis,
+                                                     const gonio_reconstruction *reconstruction,
+                                                     const char *name, gonio_material **material);
+
+/* A material's own bivariate average (database.h) as a material: the best any bivariate method can
+ * do. The original must outlive it. */
+GONIO_API gonio_status gonio_bivariate_material(gonio_context *context,
+                                                const gonio_material *original,
+                                                gonio_material **material);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

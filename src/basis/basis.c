@@ -1,0 +1,231 @@
+/* A basis in memory: making, describing, and the row that a reading sees. */
+#include "basis.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../direction/grid.h"
+
+size_t gonio_i_basis_rows(size_t cells, gonio_channel_model channels)
+{
+    return channels == GONIO_JOINT ? GONIO_CHANNELS * cells : cells;
+}
+
+static size_t grid_cells(const gonio_basis *basis)
+{
+    return basis->representation == GONIO_BIVARIATE ? GONIO_CELLS : GONIO_BINS;
+}
+
+gonio_basis *gonio_i_basis_allocate(gonio_context *context, size_t materials, size_t cells,
+                                    gonio_channel_model channels, size_t components,
+                                    size_t variance_count)
+{
+    gonio_basis *made = gonio_i_allocate(context, 1, sizeof *made);
+    if (made == NULL) {
+        return NULL;
+    }
+    const size_t rows = gonio_i_basis_rows(cells, channels);
+    made->channels = channels;
+    made->materials = materials;
+    made->cells = cells;
+    made->rows = rows;
+    made->components = components;
+    made->variance_count = variance_count;
+    made->names = gonio_i_allocate(context, materials, sizeof *made->names);
+    made->fingerprints = gonio_i_allocate(context, materials, sizeof *made->fingerprints);
+    made->cell = gonio_i_allocate(context, cells, sizeof *made->cell);
+    made->mean = gonio_i_allocate(context, rows, sizeof *made->mean);
+    made->vectors = gonio_i_allocate(context, rows * components, sizeof *made->vectors);
+    made->variances = gonio_i_allocate(context, variance_count, sizeof *made->variances);
+    if (made->names == NULL || made->fingerprints == NULL || made->cell == NULL ||
+        made->mean == NULL || made->vectors == NULL || made->variances == NULL) {
+        gonio_basis_free(&made);
+    }
+    return made;
+}
+
+void gonio_basis_free(gonio_basis **basis)
+{
+    if (basis == NULL || *basis == NULL) {
+        return;
+    }
+    gonio_basis *old = *basis;
+    for (size_t k = 0; old->names != NULL && k < old->materials; k++) {
+        free(old->names[k]);
+    }
+    free(old->names);
+    free(old->fingerprints);
+    free(old->cell);
+    free(old->mean);
+    free(old->vectors);
+    free(old->variances);
+    free(old->program);
+    free(old->command);
+    free(old->position);
+    free(old);
+    *basis = NULL;
+}
+
+/* Integer coordinates of a cell of the grid. */
+static gonio_bin coordinates_of(const gonio_basis *basis, int32_t cell)
+{
+    return gonio_bin_from_index(basis->representation == GONIO_BIVARIATE ? cell * GONIO_PHI_D_BINS
+                                                                         : cell);
+}
+
+static int32_t cell_of(const gonio_basis *basis, gonio_bin bin)
+{
+    const int32_t index = gonio_bin_index(bin);
+    return basis->representation == GONIO_BIVARIATE ? index / GONIO_PHI_D_BINS : index;
+}
+
+typedef struct nearest {
+    int32_t position; /* -1: none yet */
+    int distance;     /* squared, in index space */
+} nearest;
+
+/* Looks at the cell h, d, p steps away from the centre. */
+static void consider(const gonio_basis *basis, const int32_t *own, gonio_bin centre, int h, int d,
+                     int p, nearest *best)
+{
+    const gonio_bin bin = {centre.theta_h + h, centre.theta_d + d,
+                           (centre.phi_d + p + GONIO_PHI_D_BINS) % GONIO_PHI_D_BINS};
+    if (bin.theta_h < 0 || bin.theta_h >= GONIO_THETA_H_BINS || bin.theta_d < 0 ||
+        bin.theta_d >= GONIO_THETA_D_BINS) {
+        return;
+    }
+    const int32_t found = own[cell_of(basis, bin)];
+    const int distance = h * h + d * d + p * p;
+    const bool nearer = best->position < 0 || distance < best->distance ||
+                        (distance == best->distance && found < best->position);
+    if (found >= 0 && nearer) {
+        *best = (nearest){found, distance};
+    }
+}
+
+/* Goes outwards in cubic shells until no farther shell can hold a nearer cell. */
+static int32_t nearest_position(const gonio_basis *basis, const int32_t *own, int32_t cell)
+{
+    const gonio_bin centre = coordinates_of(basis, cell);
+    const int deepest = basis->representation == GONIO_BIVARIATE ? 0 : GONIO_PHI_D_BINS / 2;
+    nearest best = {-1, 0};
+    for (int shell = 0; best.position < 0 || shell * shell <= best.distance; shell++) {
+        const int deep = shell < deepest ? shell : deepest;
+        for (int h = -shell; h <= shell; h++) {
+            for (int d = -shell; d <= shell; d++) {
+                for (int p = -deep; p <= deep; p++) {
+                    if (abs(h) == shell || abs(d) == shell || abs(p) == shell) {
+                        consider(basis, own, centre, h, d, p, &best);
+                    }
+                }
+            }
+        }
+    }
+    return best.position;
+}
+
+/* Invalid bins of the full grid get a neighbour too: interpolation may touch them. */
+static gonio_status map_cells(gonio_context *context, gonio_basis *basis)
+{
+    const size_t all = grid_cells(basis);
+    int32_t *own = gonio_i_allocate(context, all, sizeof *own);
+    basis->position = gonio_i_allocate(context, all, sizeof *basis->position);
+    if (own == NULL || basis->position == NULL) {
+        free(own);
+        return GONIO_ERROR_MEMORY;
+    }
+    for (size_t k = 0; k < all; k++) {
+        own[k] = -1;
+    }
+    for (size_t k = 0; k < basis->cells; k++) {
+        own[basis->cell[k]] = (int32_t)k;
+    }
+#pragma omp parallel for schedule(dynamic, 1024) num_threads(gonio_context_threads(context))
+    for (size_t k = 0; k < all; k++) {
+        basis->position[k] =
+            own[k] >= 0 ? own[k] : nearest_position(basis, own, (int32_t)k);
+    }
+    free(own);
+    return GONIO_OK;
+}
+
+gonio_status gonio_i_basis_finish(gonio_context *context, gonio_basis *basis)
+{
+    gonio_fingerprint *fingerprint = NULL;
+    const gonio_status status = gonio_fingerprint_create(&fingerprint);
+    if (status != GONIO_OK) {
+        return status;
+    }
+    const int32_t kind[2] = {basis->representation, basis->channels};
+    gonio_fingerprint_add(fingerprint, kind, sizeof kind);
+    gonio_fingerprint_add(fingerprint, basis->cell, basis->cells * sizeof *basis->cell);
+    gonio_fingerprint_add(fingerprint, basis->mean, basis->rows * sizeof *basis->mean);
+    gonio_fingerprint_add(fingerprint, basis->vectors,
+                          basis->rows * basis->components * sizeof *basis->vectors);
+    basis->fingerprint = gonio_fingerprint_value(fingerprint);
+    gonio_fingerprint_free(&fingerprint);
+    return map_cells(context, basis);
+}
+
+gonio_basis_view gonio_basis_describe(const gonio_basis *basis)
+{
+    return (gonio_basis_view){
+        .representation = basis->representation,
+        .channels = basis->channels,
+        .materials = basis->materials,
+        .names = (const char *const *)basis->names,
+        .fingerprints = basis->fingerprints,
+        .cells = basis->cells,
+        .cell = basis->cell,
+        .rows = basis->rows,
+        .components = basis->components,
+        .mean = basis->mean,
+        .vectors = basis->vectors,
+        .variance_count = basis->variance_count,
+        .variances = basis->variances,
+        .fingerprint = basis->fingerprint,
+        .program = basis->program != NULL ? basis->program : "",
+        .command = basis->command != NULL ? basis->command : "",
+    };
+}
+
+double gonio_basis_cumulative_variance(const gonio_basis *basis, size_t k)
+{
+    double first = 0.0;
+    double all = 0.0;
+    for (size_t j = 0; j < basis->variance_count; j++) {
+        first += j < k ? basis->variances[j] : 0.0;
+        all += basis->variances[j];
+    }
+    return all > 0.0 ? first / all : 0.0;
+}
+
+size_t gonio_basis_position(const gonio_basis *basis, int32_t cell)
+{
+    return (size_t)basis->position[cell];
+}
+
+void gonio_basis_row_at(const gonio_basis *basis, gonio_half_difference coordinates, int channel,
+                        size_t components, double *mean, double *row)
+{
+    gonio_i_stencil stencil[GONIO_I_TRILINEAR];
+    const bool bivariate = basis->representation == GONIO_BIVARIATE;
+    const int points = bivariate ? GONIO_I_BILINEAR : GONIO_I_TRILINEAR;
+    if (bivariate) {
+        gonio_i_bilinear(coordinates, stencil);
+    } else {
+        gonio_i_trilinear(coordinates, stencil);
+    }
+    *mean = 0.0;
+    memset(row, 0, components * sizeof *row);
+    for (int k = 0; k < points; k++) {
+        const size_t position = gonio_basis_position(basis, cell_of(basis, stencil[k].bin));
+        const size_t source =
+            basis->channels == GONIO_JOINT ? GONIO_CHANNELS * position + (size_t)channel : position;
+        *mean += stencil[k].weight * basis->mean[source];
+        for (size_t j = 0; j < components; j++) {
+            row[j] += stencil[k].weight * basis->vectors[source * basis->components + j];
+        }
+    }
+}

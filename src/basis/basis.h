@@ -1,0 +1,39 @@
+/* The inside of a basis, shared by learning, files and look-ups. */
+#ifndef GONIO_BASIS_INTERNAL_H
+#define GONIO_BASIS_INTERNAL_H
+
+#include <gonio/basis.h>
+
+#include "../core/core.h"
+
+struct gonio_basis {
+    gonio_representation representation;
+    gonio_channel_model channels;
+    size_t materials;
+    char **names;
+    uint64_t *fingerprints;
+    size_t cells;
+    int32_t *cell;
+    size_t rows;
+    size_t components;
+    double *mean;
+    double *vectors;
+    size_t variance_count;
+    double *variances;
+    uint64_t fingerprint;
+    char *program;
+    char *command;
+    int32_t *position; /* of the whole grid: which of `cell` stands for it */
+};
+
+/* Allocates everything of a basis with no contents; NULL after a message. */
+gonio_basis *gonio_i_basis_allocate(gonio_context *context, size_t materials, size_t cells,
+                                    gonio_channel_model channels, size_t components,
+                                    size_t variance_count);
+
+/* The last step of making one: its fingerprint and the map of nearest cells. */
+gonio_status gonio_i_basis_finish(gonio_context *context, gonio_basis *basis);
+
+size_t gonio_i_basis_rows(size_t cells, gonio_channel_model channels);
+
+#endif

@@ -1,0 +1,429 @@
+/* The basis file: HDF5, layout in docs/basis-file.md. */
+#include "basis.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "../core/hdf.h"
+#include "../core/output.h"
+#include "../linalg/linalg.h"
+
+enum { FORMAT_VERSION = 1, MOST_MATERIALS = 1 << 20 };
+
+static const char format_name[] = "gonio basis";
+static const char *const representations[] = {"bivariate", "full"};
+static const char *const channel_models[] = {"joint", "separate"};
+
+/* ---- writing ---- */
+
+static bool write_grid(hid_t file, const gonio_basis *basis)
+{
+    const hid_t grid = H5Gcreate2(file, "grid", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    const bool done =
+        grid >= 0 && gonio_i_hdf_write_number(grid, "theta_h_bins", GONIO_THETA_H_BINS) &&
+        gonio_i_hdf_write_number(grid, "theta_d_bins", GONIO_THETA_D_BINS) &&
+        gonio_i_hdf_write_number(grid, "phi_d_bins", GONIO_PHI_D_BINS) &&
+        gonio_i_hdf_write_string(grid, "representation", representations[basis->representation]) &&
+        gonio_i_hdf_write_string(grid, "channels", channel_models[basis->channels]) &&
+        gonio_i_hdf_write_array(grid, "cell", 1, &basis->cells, H5T_NATIVE_INT32, H5T_STD_I32LE,
+                                basis->cell);
+    if (grid >= 0) {
+        H5Gclose(grid);
+    }
+    return done;
+}
+
+static bool write_materials(hid_t file, const gonio_basis *basis)
+{
+    const hid_t group = H5Gcreate2(file, "materials", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    const bool done =
+        group >= 0 &&
+        gonio_i_hdf_write_strings(group, "name", basis->materials,
+                                  (const char *const *)basis->names) &&
+        gonio_i_hdf_write_array(group, "fingerprint", 1, &basis->materials, H5T_NATIVE_UINT64,
+                                H5T_STD_U64LE, basis->fingerprints);
+    if (group >= 0) {
+        H5Gclose(group);
+    }
+    return done;
+}
+
+static bool write_contents(hid_t file, const gonio_basis *basis, const char *command)
+{
+    const size_t scales = GONIO_CHANNELS;
+    const double scale[GONIO_CHANNELS] = {gonio_log_scale(0), gonio_log_scale(1),
+                                          gonio_log_scale(2)};
+    const size_t shape[2] = {basis->rows, basis->components};
+    char fingerprint[32];
+    snprintf(fingerprint, sizeof fingerprint, "%016" PRIx64, basis->fingerprint);
+    return gonio_i_hdf_write_string(file, "format", format_name) &&
+           gonio_i_hdf_write_number(file, "format_version", FORMAT_VERSION) &&
+           gonio_i_hdf_write_string(file, "program", basis->program) &&
+           gonio_i_hdf_write_string(file, "command", command != NULL ? command : "") &&
+           gonio_i_hdf_write_string(file, "fingerprint", fingerprint) && write_grid(file, basis) &&
+           write_materials(file, basis) &&
+           gonio_i_hdf_write_array(file, "log_scale", 1, &scales, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE,
+                                   scale) &&
+           gonio_i_hdf_write_array(file, "mean", 1, &basis->rows, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE,
+                                   basis->mean) &&
+           gonio_i_hdf_write_array(file, "components", 2, shape, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE,
+                                   basis->vectors) &&
+           gonio_i_hdf_write_array(file, "variances", 1, &basis->variance_count, H5T_NATIVE_DOUBLE,
+                                   H5T_IEEE_F64LE, basis->variances);
+}
+
+static bool write_file(const char *path, const gonio_basis *basis, const char *command)
+{
+    const hid_t creation = H5Pcreate(H5P_FILE_CREATE);
+    H5Pset_obj_track_times(creation, false);
+    const hid_t file = H5Fcreate(path, H5F_ACC_TRUNC, creation, H5P_DEFAULT);
+    bool done = file >= 0 && write_contents(file, basis, command);
+    done = file >= 0 && H5Fclose(file) >= 0 && done;
+    H5Pclose(creation);
+    return done;
+}
+
+gonio_status gonio_basis_write(gonio_context *context, const gonio_basis *basis,
+                               const char *command, const char *path)
+{
+    gonio_i_output output;
+    gonio_status status = gonio_i_output_reserve(context, path, &output);
+    if (status != GONIO_OK) {
+        return status;
+    }
+    gonio_i_hdf_session session;
+    gonio_i_hdf_enter(&session);
+    errno = 0;
+    const bool done = write_file(output.temporary, basis, command);
+    const int reason = errno;
+    gonio_i_hdf_leave(&session);
+    if (!done) {
+        status = gonio_i_fail(context, GONIO_ERROR_IO, "%s: cannot write: %s", path,
+                              reason != 0 ? strerror(reason) : "HDF5 failed");
+    }
+    return gonio_i_output_close(context, &output, status);
+}
+
+/* ---- reading ---- */
+
+/* What a file holds, before it becomes a basis. */
+typedef struct contents {
+    gonio_context *context;
+    const char *path;
+    hid_t file;
+    int64_t representation, channels;
+    void *cell, *mean, *vectors, *variances, *fingerprints;
+    size_t cells, rows, components, variance_count, materials;
+    char **names;
+    char **program, **command, **fingerprint;
+} contents;
+
+static gonio_status damaged(const contents *c, const char *what, const char *problem)
+{
+    return gonio_i_fail(c->context, GONIO_ERROR_FORMAT,
+                        "%s: '%s' %s; learn the basis again with gonio learn", c->path, what,
+                        problem);
+}
+
+static gonio_status read_word(const contents *c, hid_t parent, const char *name,
+                              const char *const words[2], int64_t *value)
+{
+    char **text = NULL;
+    size_t count = 0;
+    *value = -1;
+    if (gonio_i_hdf_read_strings(parent, name, false, &text, &count) && count == 1) {
+        *value = strcmp(text[0], words[0]) == 0 ? 0 : strcmp(text[0], words[1]) == 0 ? 1 : -1;
+    }
+    free(text);
+    return *value >= 0 ? GONIO_OK : damaged(c, name, "is missing or unknown");
+}
+
+static gonio_status read_grid(contents *c)
+{
+    static const char *const names[3] = {"theta_h_bins", "theta_d_bins", "phi_d_bins"};
+    static const int64_t expected[3] = {GONIO_THETA_H_BINS, GONIO_THETA_D_BINS, GONIO_PHI_D_BINS};
+    const hid_t grid = H5Gopen2(c->file, "grid", H5P_DEFAULT);
+    if (grid < 0) {
+        return damaged(c, "grid", "is missing");
+    }
+    gonio_status status = GONIO_OK;
+    for (int k = 0; k < 3 && status == GONIO_OK; k++) {
+        int64_t bins = 0;
+        if (!gonio_i_hdf_read_number(grid, names[k], &bins)) {
+            status = damaged(c, names[k], "is missing");
+        } else if (bins != expected[k]) {
+            status = gonio_i_fail(c->context, GONIO_ERROR_MISMATCH,
+                                  "%s: a basis on a grid with %lld %s; this gonio works on "
+                                  "90 x 90 x 180",
+                                  c->path, (long long)bins, names[k]);
+        }
+    }
+    if (status == GONIO_OK) {
+        status = read_word(c, grid, "representation", representations, &c->representation);
+    }
+    if (status == GONIO_OK) {
+        status = read_word(c, grid, "channels", channel_models, &c->channels);
+    }
+    if (status == GONIO_OK) {
+        const char *problem = gonio_i_hdf_read_array(grid, "cell", 1, GONIO_BINS, H5T_NATIVE_INT32,
+                                                     &c->cell, &c->cells);
+        status = problem != NULL ? damaged(c, "grid/cell", problem) : GONIO_OK;
+    }
+    H5Gclose(grid);
+    return status;
+}
+
+static gonio_status read_materials(contents *c)
+{
+    size_t fingerprints = 0;
+    if (!gonio_i_hdf_read_strings(c->file, "materials/name", true, &c->names, &c->materials)) {
+        return damaged(c, "materials/name", "is missing or not a list of strings");
+    }
+    const char *problem =
+        gonio_i_hdf_read_array(c->file, "materials/fingerprint", 1, MOST_MATERIALS,
+                               H5T_NATIVE_UINT64, &c->fingerprints, &fingerprints);
+    if (problem == NULL && fingerprints != c->materials) {
+        problem = "has a wrong shape";
+    }
+    return problem != NULL ? damaged(c, "materials/fingerprint", problem) : GONIO_OK;
+}
+
+static gonio_status read_numbers(contents *c)
+{
+    const size_t most_rows = (size_t)GONIO_CHANNELS * GONIO_BINS;
+    size_t shape[2] = {0, 0};
+    const char *what = "mean";
+    const char *problem = gonio_i_hdf_read_array(c->file, what, 1, most_rows, H5T_NATIVE_DOUBLE,
+                                                 &c->mean, &c->rows);
+    if (problem == NULL) {
+        what = "components";
+        problem = gonio_i_hdf_read_array(c->file, what, 2, most_rows * 1024, H5T_NATIVE_DOUBLE,
+                                         &c->vectors, shape);
+        c->components = shape[1];
+    }
+    if (problem == NULL) {
+        what = "variances";
+        problem = gonio_i_hdf_read_array(c->file, what, 1, MOST_MATERIALS, H5T_NATIVE_DOUBLE,
+                                         &c->variances, &c->variance_count);
+    }
+    if (problem == NULL && (c->rows != gonio_i_basis_rows(c->cells, (gonio_channel_model)c->channels) ||
+                            shape[0] != c->rows || c->components == 0 || c->cells == 0 ||
+                            c->components > c->variance_count)) {
+        what = "components";
+        problem = "has a shape that does not fit the grid and the mean";
+    }
+    return problem != NULL ? damaged(c, what, problem) : GONIO_OK;
+}
+
+/* It is one of ours, and of a version that this program knows. */
+static gonio_status check_kind(const contents *c)
+{
+    char **text = NULL;
+    size_t count = 0;
+    int64_t version = 0;
+    const bool ours = gonio_i_hdf_read_strings(c->file, "format", false, &text, &count) &&
+                      count == 1 && strcmp(text[0], format_name) == 0;
+    free(text);
+    if (!ours) {
+        return gonio_i_fail(c->context, GONIO_ERROR_FORMAT,
+                            "%s: an HDF5 file, but not a gonio basis; gonio learn makes one",
+                            c->path);
+    }
+    if (!gonio_i_hdf_read_number(c->file, "format_version", &version) || version != FORMAT_VERSION) {
+        return gonio_i_fail(c->context, GONIO_ERROR_FORMAT,
+                            "%s: a basis of format version %lld; this gonio reads version %d", c->path,
+                            (long long)version, FORMAT_VERSION);
+    }
+    return GONIO_OK;
+}
+
+static gonio_status read_contents(contents *c)
+{
+    size_t count = 0;
+    gonio_status status = check_kind(c);
+    if (status == GONIO_OK) {
+        status = read_grid(c);
+    }
+    if (status == GONIO_OK) {
+        status = read_materials(c);
+    }
+    if (status == GONIO_OK) {
+        status = read_numbers(c);
+    }
+    if (status == GONIO_OK &&
+        (!gonio_i_hdf_read_strings(c->file, "program", false, &c->program, &count) || count != 1 ||
+         !gonio_i_hdf_read_strings(c->file, "command", false, &c->command, &count) || count != 1 ||
+         !gonio_i_hdf_read_strings(c->file, "fingerprint", false, &c->fingerprint, &count) ||
+         count != 1)) {
+        status = damaged(c, "program, command or fingerprint", "is missing");
+    }
+    return status;
+}
+
+static void free_contents(contents *c)
+{
+    free(c->cell);
+    free(c->mean);
+    free(c->vectors);
+    free(c->variances);
+    free(c->fingerprints);
+    free(c->names);
+    free(c->program);
+    free(c->command);
+    free(c->fingerprint);
+}
+
+static bool all_finite(const double *values, size_t count)
+{
+    for (size_t k = 0; k < count; k++) {
+        if (!isfinite(values[k])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool cells_in_order(const contents *c)
+{
+    const int32_t *cell = c->cell;
+    const int32_t end = c->representation == GONIO_BIVARIATE ? GONIO_CELLS : GONIO_BINS;
+    int32_t last = -1;
+    for (size_t k = 0; k < c->cells; k++) {
+        if (cell[k] <= last || cell[k] >= end) {
+            return false;
+        }
+        last = cell[k];
+    }
+    return true;
+}
+
+/* max |V'V - I| */
+static gonio_status check_orthonormal(const contents *c)
+{
+    const size_t k = c->components;
+    double *gram = gonio_i_allocate(c->context, k * k, sizeof *gram);
+    if (gram == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    gonio_status status = gonio_i_gram_rows(c->context, c->vectors, c->rows, k, k, gram);
+    for (size_t j = 0; j < k * k && status == GONIO_OK; j++) {
+        if (!(fabs(gram[j] - (j % (k + 1) == 0 ? 1.0 : 0.0)) < 1e-8)) {
+            status = damaged(c, "components", "are not orthonormal");
+        }
+    }
+    free(gram);
+    return status;
+}
+
+static gonio_status check_values(const contents *c)
+{
+    if (!cells_in_order(c)) {
+        return damaged(c, "grid/cell", "is not a rising list of cells of the grid");
+    }
+    if (!all_finite(c->mean, c->rows) || !all_finite(c->vectors, c->rows * c->components) ||
+        !all_finite(c->variances, c->variance_count)) {
+        return damaged(c, "mean, components or variances", "holds a number that is not finite");
+    }
+    return check_orthonormal(c);
+}
+
+static void *take(void **from)
+{
+    void *taken = *from;
+    *from = NULL;
+    return taken;
+}
+
+/* Moves what was read into a basis. */
+static gonio_status assemble(contents *c, gonio_basis **basis)
+{
+    gonio_basis *made = gonio_i_allocate(c->context, 1, sizeof *made);
+    if (made == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    *made = (gonio_basis){
+        .representation = (gonio_representation)c->representation,
+        .channels = (gonio_channel_model)c->channels,
+        .materials = c->materials,
+        .names = gonio_i_allocate(c->context, c->materials, sizeof *made->names),
+        .fingerprints = take(&c->fingerprints),
+        .cells = c->cells,
+        .cell = take(&c->cell),
+        .rows = c->rows,
+        .components = c->components,
+        .mean = take(&c->mean),
+        .vectors = take(&c->vectors),
+        .variance_count = c->variance_count,
+        .variances = take(&c->variances),
+        .program = strdup(c->program[0]),
+        .command = strdup(c->command[0]),
+    };
+    bool done = made->names != NULL && made->program != NULL && made->command != NULL;
+    for (size_t k = 0; done && k < c->materials; k++) {
+        made->names[k] = strdup(c->names[k]);
+        done = made->names[k] != NULL;
+    }
+    gonio_status status = done ? gonio_i_basis_finish(c->context, made) : GONIO_ERROR_MEMORY;
+    if (status == GONIO_OK &&
+        strtoull(c->fingerprint[0], NULL, 16) != (unsigned long long)made->fingerprint) {
+        status = damaged(c, "fingerprint", "does not fit the contents (the file was changed)");
+    }
+    if (status != GONIO_OK) {
+        gonio_basis_free(&made);
+        return status;
+    }
+    *basis = made;
+    return GONIO_OK;
+}
+
+static gonio_status check_file(gonio_context *context, const char *path)
+{
+    struct stat status;
+    if (stat(path, &status) != 0) {
+        return gonio_i_fail(context, GONIO_ERROR_IO, "%s: cannot read: %s", path, strerror(errno));
+    }
+    if (S_ISDIR(status.st_mode)) {
+        return gonio_i_fail(context, GONIO_ERROR_IO, "%s: cannot read: %s", path, strerror(EISDIR));
+    }
+    FILE *file = fopen(path, "rbe");
+    if (file == NULL) {
+        return gonio_i_fail(context, GONIO_ERROR_IO, "%s: cannot read: %s", path, strerror(errno));
+    }
+    fclose(file);
+    return GONIO_OK;
+}
+
+gonio_status gonio_basis_read(gonio_context *context, const char *path, gonio_basis **basis)
+{
+    gonio_status status = check_file(context, path);
+    if (status != GONIO_OK) {
+        return status;
+    }
+    contents c = {.context = context, .path = path};
+    gonio_i_hdf_session session;
+    gonio_i_hdf_enter(&session);
+    c.file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+    if (c.file < 0) {
+        status = gonio_i_fail(context, GONIO_ERROR_FORMAT,
+                              "%s: not a gonio basis (not an HDF5 file, or a damaged one); "
+                              "gonio learn makes one",
+                              path);
+    } else {
+        status = read_contents(&c);
+        H5Fclose(c.file);
+    }
+    gonio_i_hdf_leave(&session);
+    if (status == GONIO_OK) {
+        status = check_values(&c);
+    }
+    if (status == GONIO_OK) {
+        status = assemble(&c, basis);
+    }
+    free_contents(&c);
+    return status;
+}

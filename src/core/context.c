@@ -1,0 +1,166 @@
+/* The context: messages, progress, threads; and the library's status texts and version. */
+#include "core.h"
+
+#include <pthread.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cblas.h>
+#include <omp.h>
+
+struct gonio_context {
+    gonio_context_options options;
+    pthread_mutex_t callbacks;
+    bool cancelled;
+};
+
+#define TEXT(x) #x
+#define VERSION(major, minor, patch) TEXT(major) "." TEXT(minor) "." TEXT(patch)
+
+const char *gonio_version(void)
+{
+    return VERSION(GONIO_VERSION_MAJOR, GONIO_VERSION_MINOR, GONIO_VERSION_PATCH);
+}
+
+const char *gonio_status_text(gonio_status status)
+{
+    static const char *const texts[] = {
+        "success",          "invalid argument",
+        "out of memory",    "input/output error",
+        "wrong or damaged file", "unusable data",
+        "inputs do not belong together", "too few independent readings",
+        "cancelled",        "numerical failure",
+    };
+    if (status < 0 || (size_t)status >= sizeof texts / sizeof *texts) {
+        return "unknown status";
+    }
+    return texts[status];
+}
+
+void gonio_context_options_default(gonio_context_options *options)
+{
+    *options = (gonio_context_options){0};
+}
+
+gonio_status gonio_context_create(gonio_context **context, const gonio_context_options *options)
+{
+    if (options != NULL && options->threads < 0) {
+        return GONIO_ERROR_ARGUMENT;
+    }
+    gonio_context *made = calloc(1, sizeof *made);
+    if (made == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    if (options != NULL) {
+        made->options = *options;
+    }
+    pthread_mutex_init(&made->callbacks, NULL);
+    openblas_set_num_threads(1);
+    *context = made;
+    return GONIO_OK;
+}
+
+void gonio_context_free(gonio_context **context)
+{
+    if (context == NULL || *context == NULL) {
+        return;
+    }
+    pthread_mutex_destroy(&(*context)->callbacks);
+    free(*context);
+    *context = NULL;
+}
+
+int gonio_context_threads(const gonio_context *context)
+{
+    if (context != NULL && context->options.threads > 0) {
+        return context->options.threads;
+    }
+    return omp_get_num_procs();
+}
+
+static void send(gonio_context *context, gonio_message_level level, const char *format,
+                 va_list arguments)
+{
+    if (context == NULL || context->options.message == NULL) {
+        return;
+    }
+    char text[4096];
+    vsnprintf(text, sizeof text, format, arguments);
+    pthread_mutex_lock(&context->callbacks);
+    context->options.message(context->options.user, level, text);
+    pthread_mutex_unlock(&context->callbacks);
+}
+
+gonio_status gonio_i_fail(gonio_context *context, gonio_status status, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    send(context, GONIO_MESSAGE_ERROR, format, arguments);
+    va_end(arguments);
+    return status;
+}
+
+void gonio_i_warn(gonio_context *context, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    send(context, GONIO_MESSAGE_WARNING, format, arguments);
+    va_end(arguments);
+}
+
+void gonio_i_note(gonio_context *context, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    send(context, GONIO_MESSAGE_NOTE, format, arguments);
+    va_end(arguments);
+}
+
+gonio_status gonio_i_progress(gonio_context *context, const char *task, double fraction)
+{
+    if (context == NULL || context->options.progress == NULL) {
+        return GONIO_OK;
+    }
+    pthread_mutex_lock(&context->callbacks);
+    if (!context->cancelled) {
+        context->cancelled = context->options.progress(context->options.user, task, fraction) != 0;
+    }
+    const bool cancelled = context->cancelled;
+    pthread_mutex_unlock(&context->callbacks);
+    return cancelled ? GONIO_ERROR_CANCELLED : GONIO_OK;
+}
+
+void *gonio_i_allocate(gonio_context *context, size_t count, size_t size)
+{
+    void *made = calloc(count > 0 ? count : 1, size);
+    if (made == NULL) {
+        gonio_i_fail(context, GONIO_ERROR_MEMORY, "out of memory: %zu x %zu bytes needed", count,
+                     size);
+    }
+    return made;
+}
+
+char *gonio_i_format(const char *format, ...)
+{
+    va_list arguments;
+    char *text = NULL;
+    va_start(arguments, format);
+    const int length = vasprintf(&text, format, arguments);
+    va_end(arguments);
+    return length < 0 ? NULL : text;
+}
+
+char *gonio_i_base_name(const char *path, bool keep_extension)
+{
+    const char *slash = strrchr(path, '/');
+    char *name = strdup(slash != NULL ? slash + 1 : path);
+    if (name != NULL && !keep_extension) {
+        char *dot = strrchr(name, '.');
+        if (dot != NULL && dot != name) {
+            *dot = '\0';
+        }
+    }
+    return name;
+}

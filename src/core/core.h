@@ -1,0 +1,43 @@
+/* What every stage needs: failing with a message, progress, checked allocation. */
+#ifndef GONIO_CORE_H
+#define GONIO_CORE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <gonio/context.h>
+
+/* Functions whose inner loops pay for wider vectors are compiled several times and chosen at run time
+ * (not under the sanitizers, whose start-up does not stand the resolvers). */
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__linux__) &&       \
+    !defined(GONIO_NO_CLONES)
+#define GONIO_I_VECTORISED                                                                         \
+    __attribute__((target_clones("arch=skylake-avx512", "arch=haswell", "default")))
+#else
+#define GONIO_I_VECTORISED
+#endif
+
+#define GONIO_I_PRINTF(text, first) __attribute__((format(printf, text, first)))
+
+/* Sends one line to the message callback and returns the status, so that a failing function can end
+ * with `return gonio_i_fail(...)`. */
+gonio_status gonio_i_fail(gonio_context *context, gonio_status status, const char *format, ...)
+    GONIO_I_PRINTF(3, 4);
+void gonio_i_warn(gonio_context *context, const char *format, ...) GONIO_I_PRINTF(2, 3);
+void gonio_i_note(gonio_context *context, const char *format, ...) GONIO_I_PRINTF(2, 3);
+
+/* Reports progress; GONIO_ERROR_CANCELLED once the callback has asked to stop. Thread-safe. */
+gonio_status gonio_i_progress(gonio_context *context, const char *task, double fraction);
+
+/* Zeroed memory for count x size bytes, the product checked, or NULL after a message; released with
+ * free(). */
+void *gonio_i_allocate(gonio_context *context, size_t count, size_t size);
+
+/* A formatted string; NULL when out of memory. */
+char *gonio_i_format(const char *format, ...) GONIO_I_PRINTF(1, 2);
+
+/* A file's base name without folder and, if wanted, without its extension; NULL when out of memory. */
+char *gonio_i_base_name(const char *path, bool keep_extension);
+
+#endif

@@ -1,0 +1,47 @@
+/* Tables as text (CSV), on libcsv: `#` comment lines, a line of column names, then rows. Commas,
+ * semicolons or tabs between cells, quotes, CRLF and a byte-order mark are understood; with semicolons
+ * or tabs a decimal comma is too. */
+#ifndef GONIO_CSV_H
+#define GONIO_CSV_H
+
+#include "core.h"
+
+typedef struct gonio_i_csv {
+    size_t comments;
+    char **comment; /* without the leading '#' and blanks */
+    size_t columns;
+    char **name;
+    size_t rows;
+    char **cell;  /* [rows][columns] */
+    size_t *line; /* [rows]: where in the file, from 1 */
+    char delimiter;
+} gonio_i_csv;
+
+/* Errors: _IO; _FORMAT for binary data, bad quotes, rows of other lengths than the header, repeated
+ * column names, no header, or more than 1 GiB. The message names the line. */
+gonio_status gonio_i_csv_read(gonio_context *context, const char *path, gonio_i_csv **csv);
+gonio_status gonio_i_csv_write(gonio_context *context, const gonio_i_csv *csv, const char *path);
+void gonio_i_csv_free(gonio_i_csv **csv);
+
+/* Building one by hand. Text is copied; false when out of memory. */
+gonio_i_csv *gonio_i_csv_create(gonio_context *context);
+bool gonio_i_csv_add_comment(gonio_i_csv *csv, const char *format, ...) GONIO_I_PRINTF(2, 3);
+bool gonio_i_csv_add_column(gonio_i_csv *csv, const char *name); /* empty cells in every row */
+bool gonio_i_csv_add_row(gonio_i_csv *csv, size_t line);         /* of empty cells */
+bool gonio_i_csv_set(gonio_i_csv *csv, size_t row, size_t column, const char *format, ...)
+    GONIO_I_PRINTF(4, 5);
+
+/* The column of a name, or -1 (letter case does not matter). */
+int gonio_i_csv_column(const gonio_i_csv *csv, const char *name);
+const char *gonio_i_csv_cell(const gonio_i_csv *csv, size_t row, size_t column);
+
+/* Whether a cell is a number, all of it. */
+bool gonio_i_csv_number(const gonio_i_csv *csv, size_t row, size_t column, double *value);
+
+/* The text behind "key:" in the comments; NULL if there is none. */
+const char *gonio_i_csv_note(const gonio_i_csv *csv, const char *key);
+
+/* Removes the comments that begin with "key:". */
+void gonio_i_csv_drop_note(gonio_i_csv *csv, const char *key);
+
+#endif

@@ -1,0 +1,39 @@
+/* Reading and writing HDF5 with checks. The HDF5 library is not safe for threads: every use stands
+ * between gonio_i_hdf_enter and gonio_i_hdf_leave, which take a lock and keep HDF5 from printing. */
+#ifndef GONIO_HDF_H
+#define GONIO_HDF_H
+
+#include <hdf5.h>
+
+#include "core.h"
+
+typedef struct gonio_i_hdf_session {
+    H5E_auto2_t handler;
+    void *data;
+} gonio_i_hdf_session;
+
+void gonio_i_hdf_enter(gonio_i_hdf_session *session);
+void gonio_i_hdf_leave(gonio_i_hdf_session *session);
+
+/* A list of strings (fixed or variable length, rank 0 or 1) of an attribute, or of a dataset if
+ * `dataset` is set. The result is one block: release with free(). Returns false if it is not there or
+ * is something else. */
+bool gonio_i_hdf_read_strings(hid_t parent, const char *name, bool dataset, char ***strings,
+                              size_t *count);
+
+/* A numeric dataset of `rank` dimensions, at most `limit` values, converted to `type` (element size
+ * H5Tget_size(type)). dimensions[rank] is filled in. Released with free(). Returns NULL on success,
+ * otherwise what is wrong with it. */
+const char *gonio_i_hdf_read_array(hid_t parent, const char *name, int rank, size_t limit,
+                                   hid_t type, void **data, size_t *dimensions);
+
+/* Writing: false if HDF5 fails. */
+bool gonio_i_hdf_write_string(hid_t parent, const char *name, const char *text);
+bool gonio_i_hdf_write_strings(hid_t parent, const char *name, size_t count,
+                               const char *const *strings);
+bool gonio_i_hdf_write_array(hid_t parent, const char *name, int rank, const size_t *dimensions,
+                             hid_t memory_type, hid_t file_type, const void *data);
+bool gonio_i_hdf_write_number(hid_t parent, const char *name, int64_t value);
+bool gonio_i_hdf_read_number(hid_t parent, const char *name, int64_t *value);
+
+#endif

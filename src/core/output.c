@@ -1,0 +1,159 @@
+/* Output files that appear whole or not at all: see output.h. */
+#include "output.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static gonio_status cannot_write(gonio_context *context, const char *path)
+{
+    return gonio_i_fail(context, GONIO_ERROR_IO, "%s: cannot write: %s", path, strerror(errno));
+}
+
+/* A new file beside the target that nobody else has. */
+static int create_beside(const char *path, char **temporary)
+{
+    for (int attempt = 0; attempt < 100; attempt++) {
+        char *name = gonio_i_format("%s.%ld-%d.part", path, (long)getpid(), attempt);
+        if (name == NULL) {
+            errno = ENOMEM;
+            return -1;
+        }
+        const int descriptor = open(name, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (descriptor >= 0) {
+            *temporary = name;
+            return descriptor;
+        }
+        free(name);
+        if (errno != EEXIST) {
+            return -1;
+        }
+    }
+    return -1;
+}
+
+static gonio_status open_target(gonio_context *context, const char *path, gonio_i_output *output)
+{
+    struct stat status;
+    const bool exists = stat(path, &status) == 0;
+    char *resolved = exists ? realpath(path, NULL) : strdup(path);
+    *output = (gonio_i_output){.path = resolved, .descriptor = -1};
+    if (resolved == NULL) {
+        return cannot_write(context, path);
+    }
+    if (exists && S_ISDIR(status.st_mode)) {
+        errno = EISDIR;
+        return cannot_write(context, path);
+    }
+    if (exists && access(path, W_OK) != 0) {
+        return cannot_write(context, path);
+    }
+    if (exists && !S_ISREG(status.st_mode)) {
+        output->descriptor = open(path, O_WRONLY | O_CLOEXEC);
+    } else {
+        output->descriptor = create_beside(resolved, &output->temporary);
+    }
+    return output->descriptor < 0 ? cannot_write(context, path) : GONIO_OK;
+}
+
+gonio_status gonio_i_output_open(gonio_context *context, const char *path, gonio_i_output *output)
+{
+    const gonio_status status = open_target(context, path, output);
+    if (status != GONIO_OK) {
+        free(output->path);
+    }
+    return status;
+}
+
+gonio_status gonio_i_output_reserve(gonio_context *context, const char *path,
+                                    gonio_i_output *output)
+{
+    gonio_status status = gonio_i_output_open(context, path, output);
+    if (status == GONIO_OK && output->temporary == NULL) {
+        status = gonio_i_fail(context, GONIO_ERROR_IO,
+                              "%s: cannot write: this kind of file needs a regular file", path);
+        return gonio_i_output_close(context, output, status);
+    }
+    if (status == GONIO_OK) {
+        close(output->descriptor);
+        output->descriptor = -1;
+    }
+    return status;
+}
+
+gonio_status gonio_i_output_write(gonio_context *context, gonio_i_output *output, const void *data,
+                                  size_t size)
+{
+    const char *from = data;
+    while (size > 0) {
+        const ssize_t written = write(output->descriptor, from, size);
+        if (written < 0 && errno == EINTR) {
+            continue;
+        }
+        if (written < 0) {
+            return cannot_write(context, output->path);
+        }
+        from += written;
+        size -= (size_t)written;
+    }
+    return GONIO_OK;
+}
+
+gonio_status gonio_i_output_write_at(gonio_context *context, gonio_i_output *output,
+                                     const void *data, size_t size, off_t offset)
+{
+    const char *from = data;
+    while (size > 0) {
+        const ssize_t written = pwrite(output->descriptor, from, size, offset);
+        if (written < 0 && errno == EINTR) {
+            continue;
+        }
+        if (written < 0) {
+            return cannot_write(context, output->path);
+        }
+        from += written;
+        offset += written;
+        size -= (size_t)written;
+    }
+    return GONIO_OK;
+}
+
+/* Flushes to disk before the rename, so that a crash cannot leave an empty file under the name. */
+static gonio_status put_in_place(gonio_context *context, gonio_i_output *output)
+{
+    if (output->temporary == NULL) {
+        return GONIO_OK;
+    }
+    const int descriptor =
+        output->descriptor >= 0 ? dup(output->descriptor) : open(output->temporary, O_RDONLY);
+    const bool synced = descriptor >= 0 && fsync(descriptor) == 0;
+    if (descriptor >= 0) {
+        close(descriptor);
+    }
+    if (!synced || rename(output->temporary, output->path) != 0) {
+        return cannot_write(context, output->path);
+    }
+    return GONIO_OK;
+}
+
+gonio_status gonio_i_output_close(gonio_context *context, gonio_i_output *output,
+                                  gonio_status status)
+{
+    if (status == GONIO_OK) {
+        status = put_in_place(context, output);
+    }
+    if (output->descriptor >= 0 && close(output->descriptor) != 0 && status == GONIO_OK) {
+        status = cannot_write(context, output->path);
+    }
+    if (status != GONIO_OK && output->temporary != NULL) {
+        unlink(output->temporary);
+    }
+    free(output->temporary);
+    free(output->path);
+    *output = (gonio_i_output){.descriptor = -1};
+    return status;
+}

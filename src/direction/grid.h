@@ -1,0 +1,23 @@
+/* Inside the grid: which bins are valid, and linear interpolation between bin centres. */
+#ifndef GONIO_GRID_H
+#define GONIO_GRID_H
+
+#include <gonio/direction.h>
+
+/* The valid bins of a cell are those with first <= phi_d < 180 - first; 90 if there are none. */
+int gonio_i_first_valid_phi(int theta_h, int theta_d);
+
+enum { GONIO_I_BILINEAR = 4, GONIO_I_TRILINEAR = 8 };
+
+typedef struct gonio_i_stencil {
+    gonio_bin bin;
+    double weight; /* >= 0; the weights add up to 1 */
+} gonio_i_stencil;
+
+/* The bins around a point, linear in sqrt(theta_h), theta_d and (trilinear) phi_d, which is periodic
+ * with period pi; constant beyond the first and the last centre. Bilinear: phi_d = 0 in every bin. */
+void gonio_i_bilinear(gonio_half_difference coordinates, gonio_i_stencil stencil[GONIO_I_BILINEAR]);
+void gonio_i_trilinear(gonio_half_difference coordinates,
+                       gonio_i_stencil stencil[GONIO_I_TRILINEAR]);
+
+#endif

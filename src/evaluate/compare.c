@@ -1,0 +1,223 @@
+/* Errors between two BRDFs: see evaluate.h. */
+#include <gonio/evaluate.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../core/core.h"
+#include "../core/vector_math.h"
+
+/* Sums over bins for one channel; the errors are ratios of these. */
+typedef struct channel_sums {
+    double log_difference, log_reference;   /* squares of g - g', g */
+    double cube_difference, cube_reference; /* squares of r - r', r */
+    double ratio;                           /* squares of the log ratio */
+} channel_sums;
+
+typedef struct slab_sums {
+    channel_sums channel[GONIO_CHANNELS];
+    int64_t bins;
+    int64_t missing;
+} slab_sums;
+
+/* One thread's scratch. */
+typedef struct scratch {
+    double *reference; /* slabs, 1/sr */
+    double *other;
+    double *a; /* one channel each */
+    double *b;
+    double *cosines; /* c_i c_o of each bin */
+    bool *data;
+    bool *data_other;
+} scratch;
+
+static bool make_scratch(gonio_context *context, scratch *s)
+{
+    s->reference = gonio_i_allocate(context, GONIO_SLAB_VALUES, sizeof(double));
+    s->other = gonio_i_allocate(context, GONIO_SLAB_VALUES, sizeof(double));
+    s->a = gonio_i_allocate(context, GONIO_SLAB_BINS, sizeof(double));
+    s->b = gonio_i_allocate(context, GONIO_SLAB_BINS, sizeof(double));
+    s->cosines = gonio_i_allocate(context, GONIO_SLAB_BINS, sizeof(double));
+    s->data = gonio_i_allocate(context, GONIO_SLAB_BINS, sizeof(bool));
+    s->data_other = gonio_i_allocate(context, GONIO_SLAB_BINS, sizeof(bool));
+    return s->reference != NULL && s->other != NULL && s->a != NULL && s->b != NULL &&
+           s->cosines != NULL && s->data != NULL && s->data_other != NULL;
+}
+
+static void free_scratch(scratch *s)
+{
+    free(s->reference);
+    free(s->other);
+    free(s->a);
+    free(s->b);
+    free(s->cosines);
+    free(s->data);
+    free(s->data_other);
+}
+
+static void fill_cosines(int theta_h, double *cosines)
+{
+    double cos_phi[GONIO_PHI_D_BINS];
+    for (int p = 0; p < GONIO_PHI_D_BINS; p++) {
+        cos_phi[p] = cos(gonio_bin_centre((gonio_bin){0, 0, p}).phi_d);
+    }
+    for (int theta_d = 0; theta_d < GONIO_THETA_D_BINS; theta_d++) {
+        const gonio_half_difference c = gonio_bin_centre((gonio_bin){theta_h, theta_d, 0});
+        const double even = cos(c.theta_h) * cos(c.theta_d);
+        const double odd = sin(c.theta_h) * sin(c.theta_d);
+        for (int p = 0; p < GONIO_PHI_D_BINS; p++) {
+            const double swing = odd * cos_phi[p];
+            cosines[theta_d * GONIO_PHI_D_BINS + p] = (even - swing) * (even + swing);
+        }
+    }
+}
+
+GONIO_I_VECTORISED static void add_squares(const double *a, const double *b, double *difference,
+                                           double *reference)
+{
+    double d = 0.0;
+    double r = 0.0;
+#pragma omp simd reduction(+ : d, r)
+    for (size_t k = 0; k < GONIO_SLAB_BINS; k++) {
+        d += (a[k] - b[k]) * (a[k] - b[k]);
+        r += a[k] * a[k];
+    }
+    *difference = d;
+    *reference = r;
+}
+
+/* Bins without data are 0 in both, and so add nothing to any sum. */
+static void sum_channel(const double *x, const double *y, const scratch *s, int channel,
+                        channel_sums *sums)
+{
+    const double scale = 1.0 / gonio_log_scale(channel);
+    for (size_t k = 0; k < GONIO_SLAB_BINS; k++) {
+        s->a[k] = x[k] * scale;
+        s->b[k] = y[k] * scale;
+    }
+    gonio_i_log1p(GONIO_SLAB_BINS, s->a, s->a);
+    gonio_i_log1p(GONIO_SLAB_BINS, s->b, s->b);
+    add_squares(s->a, s->b, &sums->log_difference, &sums->log_reference);
+    for (size_t k = 0; k < GONIO_SLAB_BINS; k++) {
+        s->a[k] = x[k] * s->cosines[k];
+        s->b[k] = y[k] * s->cosines[k];
+    }
+    gonio_i_cbrt(GONIO_SLAB_BINS, s->a, s->a);
+    gonio_i_cbrt(GONIO_SLAB_BINS, s->b, s->b);
+    add_squares(s->a, s->b, &sums->cube_difference, &sums->cube_reference);
+    for (size_t k = 0; k < GONIO_SLAB_BINS; k++) {
+        const double w = fmin(fmax(s->cosines[k], 0.01), 1.0);
+        s->a[k] = (x[k] * w + 0.001) / (y[k] * w + 0.001);
+    }
+    gonio_i_log(GONIO_SLAB_BINS, s->a, s->a);
+    memset(s->b, 0, GONIO_SLAB_BINS * sizeof *s->b);
+    double unused = 0.0;
+    add_squares(s->a, s->b, &sums->ratio, &unused);
+}
+
+static gonio_status sum_slab(gonio_context *context, const gonio_material *reference,
+                             const gonio_material *other, int theta_h, const scratch *s,
+                             slab_sums *sums)
+{
+    gonio_status status = gonio_material_read_slab(reference, context, theta_h, s->reference);
+    if (status == GONIO_OK) {
+        status = gonio_material_read_slab(other, context, theta_h, s->other);
+    }
+    if (status != GONIO_OK) {
+        return status;
+    }
+    gonio_slab_mask(theta_h, s->reference, s->data);
+    gonio_slab_mask(theta_h, s->other, s->data_other);
+    fill_cosines(theta_h, s->cosines);
+    for (size_t k = 0; k < GONIO_SLAB_BINS; k++) {
+        const bool both = s->data[k] && s->data_other[k];
+        sums->bins += both;
+        sums->missing += s->data[k] && !both;
+        for (size_t v = k; v < GONIO_SLAB_VALUES && !both; v += GONIO_SLAB_BINS) {
+            s->reference[v] = 0.0;
+            s->other[v] = 0.0;
+        }
+    }
+    for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
+        const size_t plane = (size_t)channel * GONIO_SLAB_BINS;
+        sum_channel(s->reference + plane, s->other + plane, s, channel, &sums->channel[channel]);
+    }
+    return GONIO_OK;
+}
+
+static gonio_status sum_slabs(gonio_context *context, const gonio_material *reference,
+                              const gonio_material *other, slab_sums slabs[GONIO_THETA_H_BINS])
+{
+    gonio_status result = GONIO_OK;
+#pragma omp parallel num_threads(gonio_context_threads(context))
+    {
+        scratch s = {0};
+        gonio_status mine = make_scratch(context, &s) ? GONIO_OK : GONIO_ERROR_MEMORY;
+#pragma omp for schedule(dynamic)
+        for (int theta_h = 0; theta_h < GONIO_THETA_H_BINS; theta_h++) {
+            if (mine == GONIO_OK) {
+                mine = sum_slab(context, reference, other, theta_h, &s, &slabs[theta_h]);
+            }
+        }
+        free_scratch(&s);
+#pragma omp critical(gonio_compare)
+        result = mine != GONIO_OK ? mine : result;
+    }
+    return result;
+}
+
+static void add_channel(channel_sums *total, const channel_sums *part)
+{
+    total->log_difference += part->log_difference;
+    total->log_reference += part->log_reference;
+    total->cube_difference += part->cube_difference;
+    total->cube_reference += part->cube_reference;
+    total->ratio += part->ratio;
+}
+
+static gonio_error error_of(const channel_sums *s, double values)
+{
+    return (gonio_error){
+        .e6 = 100.0 * sqrt(s->log_difference / s->log_reference),
+        .cube_root = 100.0 * sqrt(s->cube_difference / s->cube_reference),
+        .log_relative = sqrt(s->ratio / values),
+    };
+}
+
+gonio_status gonio_compare(gonio_context *context, const gonio_material *reference,
+                           const gonio_material *other, gonio_comparison *comparison)
+{
+    slab_sums *slabs = gonio_i_allocate(context, GONIO_THETA_H_BINS, sizeof *slabs);
+    if (slabs == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    const gonio_status status = sum_slabs(context, reference, other, slabs);
+    slab_sums sums = {0};
+    channel_sums all = {0};
+    for (int theta_h = 0; theta_h < GONIO_THETA_H_BINS; theta_h++) {
+        sums.bins += slabs[theta_h].bins;
+        sums.missing += slabs[theta_h].missing;
+        for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
+            add_channel(&sums.channel[channel], &slabs[theta_h].channel[channel]);
+            add_channel(&all, &slabs[theta_h].channel[channel]);
+        }
+    }
+    free(slabs);
+    if (status != GONIO_OK) {
+        return status;
+    }
+    if (sums.bins == 0 || all.log_reference == 0.0) {
+        return gonio_i_fail(context, GONIO_ERROR_DATA,
+                            sums.bins == 0 ? "%s and %s have data in no common bin"
+                                           : "%s is black: no error relative to it (%s)",
+                            gonio_material_name(reference), gonio_material_name(other));
+    }
+    comparison->bins = sums.bins;
+    comparison->missing = sums.missing;
+    comparison->all = error_of(&all, (double)sums.bins * GONIO_CHANNELS);
+    for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
+        comparison->channel[channel] = error_of(&sums.channel[channel], (double)sums.bins);
+    }
+    return GONIO_OK;
+}

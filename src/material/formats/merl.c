@@ -1,0 +1,281 @@
+/* MERL .binary tables: int32 theta_h, theta_d, phi_d bins, then three planes (R, G, B) of float64,
+ * phi_d fastest; reflectance = stored x (1, 1.15, 1.66)/1500 1/sr; negative for no data. All
+ * little-endian. */
+#include "format.h"
+
+#include <endian.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "../../core/output.h"
+
+static const double scale[GONIO_CHANNELS] = {1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0};
+
+enum { HEADER = 12, FULL_CIRCLE = 2 * GONIO_PHI_D_BINS };
+
+typedef struct merl_table {
+    int descriptor;
+    int phi_bins; /* 180, or 360: phi_d to 2 pi, folded on reading */
+    char *path;
+} merl_table;
+
+static int32_t header_entry(const gonio_i_file *file, int k)
+{
+    uint32_t entry = 0;
+    memcpy(&entry, file->head + 4 * k, sizeof entry);
+    return (int32_t)le32toh(entry);
+}
+
+/* 12 + 24 n bytes for n bins; 0 if a dimension is not positive or the product overflows. */
+static uint64_t table_size(const gonio_i_file *file)
+{
+    uint64_t bins = 1;
+    for (int k = 0; k < 3; k++) {
+        const int32_t entry = header_entry(file, k);
+        if (entry <= 0 || __builtin_mul_overflow(bins, (uint64_t)entry, &bins)) {
+            return 0;
+        }
+    }
+    uint64_t size = 0;
+    return __builtin_mul_overflow(bins, UINT64_C(24), &size) ? 0 : size + HEADER;
+}
+
+static bool probe(const gonio_i_file *file)
+{
+    if (file->head_size < HEADER) {
+        return false;
+    }
+    return (header_entry(file, 0) == GONIO_THETA_H_BINS &&
+            header_entry(file, 1) == GONIO_THETA_D_BINS) ||
+           table_size(file) == file->size;
+}
+
+static void byte_order_to_host(double *values, size_t count)
+{
+#if __BYTE_ORDER == __BIG_ENDIAN
+    for (size_t k = 0; k < count; k++) {
+        uint64_t bits;
+        memcpy(&bits, values + k, sizeof bits);
+        bits = le64toh(bits);
+        memcpy(values + k, &bits, sizeof bits);
+    }
+#else
+    (void)values;
+    (void)count;
+#endif
+}
+
+static gonio_status read_exactly(gonio_context *context, const merl_table *table, void *to,
+                                 size_t size, off_t offset)
+{
+    char *next = to;
+    while (size > 0) {
+        const ssize_t got = pread(table->descriptor, next, size, offset);
+        if (got < 0 && errno == EINTR) {
+            continue;
+        }
+        if (got < 0) {
+            return gonio_i_fail(context, GONIO_ERROR_IO, "%s: cannot read: %s", table->path,
+                                strerror(errno));
+        }
+        if (got == 0) {
+            return gonio_i_fail(context, GONIO_ERROR_FORMAT,
+                                "%s: ends early: the file became shorter while it was read",
+                                table->path);
+        }
+        next += got;
+        offset += got;
+        size -= (size_t)got;
+    }
+    return GONIO_OK;
+}
+
+/* Stored numbers to 1/sr; a bin that lacks any channel lacks all. */
+GONIO_I_VECTORISED static void to_reflectance(double *rho)
+{
+    double *r = rho;
+    double *g = rho + GONIO_SLAB_BINS;
+    double *b = rho + 2 * (size_t)GONIO_SLAB_BINS;
+    for (size_t k = 0; k < GONIO_SLAB_BINS; k++) {
+        /* False for negative numbers and NaN; infinity fails the second half. */
+        const bool data = (r[k] >= 0.0) & (g[k] >= 0.0) & (b[k] >= 0.0) &
+                          (r[k] + g[k] + b[k] < INFINITY);
+        r[k] = data ? r[k] * scale[0] : -1.0;
+        g[k] = data ? g[k] * scale[1] : -1.0;
+        b[k] = data ? b[k] * scale[2] : -1.0;
+    }
+}
+
+/* phi_d and phi_d + pi are the same sample: the mean of those that hold data. */
+static void fold(const double *full, double *half)
+{
+    for (size_t row = 0; row < GONIO_THETA_D_BINS; row++) {
+        const double *from = full + row * FULL_CIRCLE;
+        for (size_t k = 0; k < GONIO_PHI_D_BINS; k++) {
+            const double a = from[k];
+            const double b = from[k + GONIO_PHI_D_BINS];
+            half[row * GONIO_PHI_D_BINS + k] = !(a >= 0.0)   ? b
+                                               : !(b >= 0.0) ? a
+                                                             : 0.5 * (a + b);
+        }
+    }
+}
+
+static gonio_status read_plane(gonio_context *context, const merl_table *table, int channel,
+                               int theta_h, double *plane)
+{
+    const size_t bins = (size_t)GONIO_THETA_D_BINS * (size_t)table->phi_bins;
+    const size_t first = bins * (size_t)(GONIO_THETA_H_BINS * channel + theta_h);
+    const off_t offset = (off_t)(HEADER + 8 * first);
+    if (table->phi_bins == GONIO_PHI_D_BINS) {
+        const gonio_status status = read_exactly(context, table, plane, 8 * bins, offset);
+        byte_order_to_host(plane, bins);
+        return status;
+    }
+    double *full = gonio_i_allocate(context, bins, sizeof *full);
+    if (full == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    const gonio_status status = read_exactly(context, table, full, 8 * bins, offset);
+    byte_order_to_host(full, bins);
+    fold(full, plane);
+    free(full);
+    return status;
+}
+
+static gonio_status read_slab(void *self, gonio_context *context, int theta_h, double *rho)
+{
+    const merl_table *table = self;
+    for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
+        const gonio_status status = read_plane(context, table, channel, theta_h,
+                                               rho + (size_t)channel * GONIO_SLAB_BINS);
+        if (status != GONIO_OK) {
+            return status;
+        }
+    }
+    to_reflectance(rho);
+    return GONIO_OK;
+}
+
+static void release(void *self)
+{
+    merl_table *table = self;
+    close(table->descriptor);
+    free(table->path);
+    free(table);
+}
+
+static gonio_status check_shape(gonio_context *context, const gonio_i_file *file)
+{
+    const int32_t bins[3] = {header_entry(file, 0), header_entry(file, 1), header_entry(file, 2)};
+    if (bins[0] != GONIO_THETA_H_BINS || bins[1] != GONIO_THETA_D_BINS ||
+        (bins[2] != GONIO_PHI_D_BINS && bins[2] != FULL_CIRCLE)) {
+        return gonio_i_fail(context, GONIO_ERROR_FORMAT,
+                            "%s: header says %d x %d x %d bins; gonio reads MERL tables of "
+                            "90 x 90 x 180 or 90 x 90 x 360",
+                            file->path, bins[0], bins[1], bins[2]);
+    }
+    const uint64_t size = table_size(file);
+    if (file->size != size) {
+        return gonio_i_fail(context, GONIO_ERROR_FORMAT,
+                            "%s: %s: %llu bytes where a MERL table of 90 x 90 x %d bins has %llu; "
+                            "copy it again from its source",
+                            file->path, file->size < size ? "truncated" : "too long",
+                            (unsigned long long)file->size, bins[2], (unsigned long long)size);
+    }
+    return GONIO_OK;
+}
+
+static gonio_status open_table(gonio_context *context, const gonio_i_file *file,
+                               gonio_material_source *source, char **description)
+{
+    gonio_status status = check_shape(context, file);
+    if (status != GONIO_OK) {
+        return status;
+    }
+    merl_table *table = gonio_i_allocate(context, 1, sizeof *table);
+    if (table == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    table->phi_bins = header_entry(file, 2);
+    table->path = strdup(file->path);
+    table->descriptor = open(file->path, O_RDONLY | O_CLOEXEC);
+    *description = gonio_i_format("MERL table 90 x 90 x %d", table->phi_bins);
+    if (table->path == NULL || *description == NULL || table->descriptor < 0) {
+        status = gonio_i_fail(context, table->descriptor < 0 ? GONIO_ERROR_IO : GONIO_ERROR_MEMORY,
+                              "%s: cannot open: %s", file->path, strerror(errno));
+        free(*description);
+        release(table);
+        return status;
+    }
+    *source = (gonio_material_source){read_slab, release, table};
+    return GONIO_OK;
+}
+
+const gonio_i_format_reader gonio_i_merl_reader = {"MERL .binary table", probe, open_table};
+
+static void to_stored(double *values, int channel)
+{
+    for (size_t k = 0; k < GONIO_SLAB_BINS; k++) {
+        values[k] = values[k] >= 0.0 ? values[k] / scale[channel] : -1.0;
+    }
+    byte_order_to_host(values, GONIO_SLAB_BINS);
+}
+
+static gonio_status write_slab(gonio_context *context, const gonio_material *material, int theta_h,
+                               double *rho, gonio_i_output *output)
+{
+    gonio_status status = gonio_material_read_slab(material, context, theta_h, rho);
+    for (int channel = 0; channel < GONIO_CHANNELS && status == GONIO_OK; channel++) {
+        double *plane = rho + (size_t)channel * GONIO_SLAB_BINS;
+        const size_t size = sizeof(double) * GONIO_SLAB_BINS;
+        const size_t slab = (size_t)(GONIO_THETA_H_BINS * channel + theta_h);
+        to_stored(plane, channel);
+        status = gonio_i_output_write_at(context, output, plane, size,
+                                         (off_t)(HEADER + slab * size));
+    }
+    return status;
+}
+
+static gonio_status write_slabs(gonio_context *context, const gonio_material *material,
+                                gonio_i_output *output)
+{
+    gonio_status result = GONIO_OK;
+#pragma omp parallel num_threads(gonio_context_threads(context))
+    {
+        double *rho = gonio_i_allocate(context, GONIO_SLAB_VALUES, sizeof *rho);
+        gonio_status mine = rho != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
+#pragma omp for schedule(dynamic)
+        for (int theta_h = 0; theta_h < GONIO_THETA_H_BINS; theta_h++) {
+            if (mine == GONIO_OK) {
+                mine = write_slab(context, material, theta_h, rho, output);
+            }
+        }
+        free(rho);
+#pragma omp critical(gonio_write_merl)
+        result = mine != GONIO_OK ? mine : result;
+    }
+    return result;
+}
+
+gonio_status gonio_material_write_merl(gonio_context *context, const gonio_material *material,
+                                       const char *path)
+{
+    const uint32_t header[3] = {htole32(GONIO_THETA_H_BINS), htole32(GONIO_THETA_D_BINS),
+                                htole32(GONIO_PHI_D_BINS)};
+    gonio_i_output output;
+    gonio_status status = gonio_i_output_open(context, path, &output);
+    if (status != GONIO_OK) {
+        return status;
+    }
+    status = gonio_i_output_write(context, &output, header, sizeof header);
+    if (status == GONIO_OK) {
+        status = write_slabs(context, material, &output);
+    }
+    return gonio_i_output_close(context, &output, status);
+}

@@ -1,0 +1,230 @@
+/* Neural BRDFs (Sztrajman et al. 2021): Keras weights in HDF5 of a network 6-21-21-3 that maps
+ * (h, d) to ln(1 + rho). Layer names vary from file to file, so the attributes are followed. */
+#include "format.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../core/hdf.h"
+#include "../../core/vector_math.h"
+#include "../../direction/grid.h"
+
+enum { INPUTS = 6, HIDDEN = 21, LAYERS = 3, PHI = GONIO_PHI_D_BINS };
+
+static const size_t widths[LAYERS + 1] = {INPUTS, HIDDEN, HIDDEN, GONIO_CHANNELS};
+
+typedef struct network {
+    double kernel[LAYERS][HIDDEN][HIDDEN]; /* [layer][from][to] */
+    double bias[LAYERS][HIDDEN];
+} network;
+
+static bool probe(const gonio_i_file *file)
+{
+    static const unsigned char signature[8] = {0x89, 'H', 'D', 'F', '\r', '\n', 0x1a, '\n'};
+    return file->head_size >= sizeof signature &&
+           memcmp(file->head, signature, sizeof signature) == 0;
+}
+
+/* out[j][phi] = bias_j + sum_k kernel_kj in[k][phi] for the bins of one theta_d. */
+GONIO_I_VECTORISED static void apply_layer(const network *net, int layer,
+                                           double in[restrict HIDDEN][PHI],
+                                           double out[restrict HIDDEN][PHI])
+{
+    for (size_t j = 0; j < widths[layer + 1]; j++) {
+        for (int p = 0; p < PHI; p++) {
+            out[j][p] = net->bias[layer][j];
+        }
+        for (size_t k = 0; k < widths[layer]; k++) {
+            const double weight = net->kernel[layer][k][j];
+            for (int p = 0; p < PHI; p++) {
+                out[j][p] += weight * in[k][p];
+            }
+        }
+        if (layer < LAYERS - 1) {
+            for (int p = 0; p < PHI; p++) {
+                out[j][p] = out[j][p] > 0.0 ? out[j][p] : 0.0;
+            }
+        }
+    }
+}
+
+/* h and d at the centres of the bins of one theta_d, phi_h = 0. */
+static void fill_inputs(int theta_h, int theta_d, const double cos_phi[PHI],
+                        const double sin_phi[PHI], double in[HIDDEN][PHI])
+{
+    const gonio_half_difference c = gonio_bin_centre((gonio_bin){theta_h, theta_d, 0});
+    const double sin_h = sin(c.theta_h);
+    const double cos_h = cos(c.theta_h);
+    const double sin_d = sin(c.theta_d);
+    const double cos_d = cos(c.theta_d);
+    for (int p = 0; p < PHI; p++) {
+        in[0][p] = sin_h;
+        in[1][p] = 0.0;
+        in[2][p] = cos_h;
+        in[3][p] = sin_d * cos_phi[p];
+        in[4][p] = sin_d * sin_phi[p];
+        in[5][p] = cos_d;
+    }
+}
+
+/* rho = exp(y) - 1, clamped at 0, in the valid bins. */
+static void store_row(int theta_h, int theta_d, double y[HIDDEN][PHI], double *rho)
+{
+    double value[PHI];
+    for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
+        gonio_i_expm1(PHI, y[channel], value);
+        double *row = rho + channel * GONIO_SLAB_BINS + (size_t)theta_d * PHI;
+        const int first = gonio_i_first_valid_phi(theta_h, theta_d);
+        for (int p = 0; p < PHI; p++) {
+            row[p] = p >= first && p < PHI - first ? fmax(value[p], 0.0) : -1.0;
+        }
+    }
+}
+
+static gonio_status read_slab(void *self, gonio_context *context, int theta_h, double *rho)
+{
+    (void)context;
+    double a[HIDDEN][PHI];
+    double b[HIDDEN][PHI];
+    double cos_phi[PHI];
+    double sin_phi[PHI];
+    for (int p = 0; p < PHI; p++) {
+        const double phi_d = gonio_bin_centre((gonio_bin){0, 0, p}).phi_d;
+        cos_phi[p] = cos(phi_d);
+        sin_phi[p] = sin(phi_d);
+    }
+    for (int theta_d = 0; theta_d < GONIO_THETA_D_BINS; theta_d++) {
+        fill_inputs(theta_h, theta_d, cos_phi, sin_phi, a);
+        apply_layer(self, 0, a, b);
+        apply_layer(self, 1, b, a);
+        apply_layer(self, 2, a, b);
+        store_row(theta_h, theta_d, b, rho);
+    }
+    return GONIO_OK;
+}
+
+/* Reads one weight dataset; returns what is wrong with it, or NULL. */
+static const char *read_weights(hid_t group, const char *name, int layer, network *net)
+{
+    const bool is_kernel = strstr(name, "kernel") != NULL;
+    const int rank = is_kernel ? 2 : 1;
+    size_t shape[2] = {0, 0};
+    void *data = NULL;
+    const char *problem =
+        gonio_i_hdf_read_array(group, name, rank, HIDDEN * HIDDEN, H5T_NATIVE_DOUBLE, &data, shape);
+    if (problem != NULL) {
+        return problem;
+    }
+    const size_t from = is_kernel ? widths[layer] : 1;
+    const size_t to = widths[layer + 1];
+    const bool fits = is_kernel ? shape[0] == from && shape[1] == to : shape[0] == to;
+    for (size_t k = 0; fits && k < from * to; k++) {
+        const double weight = ((const double *)data)[k];
+        if (!isfinite(weight)) {
+            problem = "holds a number that is not finite";
+        }
+        if (is_kernel) {
+            net->kernel[layer][k / to][k % to] = weight;
+        } else {
+            net->bias[layer][k] = weight;
+        }
+    }
+    free(data);
+    return fits ? problem : "has a wrong shape (a 6-21-21-3 network is expected)";
+}
+
+/* Reads the weights of one layer's group; counts the layer only if it has any. */
+static gonio_status read_layer(gonio_context *context, const char *path, hid_t root,
+                               const char *layer_name, int *layer, network *net)
+{
+    const hid_t group = H5Gopen2(root, layer_name, H5P_DEFAULT);
+    char **names = NULL;
+    size_t count = 0;
+    gonio_status status = GONIO_OK;
+    if (group < 0 || !gonio_i_hdf_read_strings(group, "weight_names", false, &names, &count)) {
+        status = gonio_i_fail(context, GONIO_ERROR_FORMAT,
+                              "%s: layer '%s' has no attribute 'weight_names'", path, layer_name);
+    } else if (count > 0 && (*layer >= LAYERS || count != 2)) {
+        status = gonio_i_fail(context, GONIO_ERROR_FORMAT,
+                              "%s: layer '%s': a network of 3 dense layers (6-21-21-3) is expected",
+                              path, layer_name);
+    }
+    for (size_t k = 0; k < count && status == GONIO_OK; k++) {
+        const char *problem = read_weights(group, names[k], *layer, net);
+        if (problem != NULL) {
+            status = gonio_i_fail(context, GONIO_ERROR_FORMAT, "%s: dataset '%s/%s' %s", path,
+                                  layer_name, names[k], problem);
+        }
+    }
+    *layer += count > 0 ? 1 : 0;
+    free(names);
+    if (group >= 0) {
+        H5Gclose(group);
+    }
+    return status;
+}
+
+static gonio_status read_layers(gonio_context *context, const char *path, hid_t root, network *net)
+{
+    char **layers = NULL;
+    size_t count = 0;
+    if (!gonio_i_hdf_read_strings(root, "layer_names", false, &layers, &count)) {
+        return gonio_i_fail(context, GONIO_ERROR_FORMAT,
+                            "%s: an HDF5 file, but not a neural BRDF: it has no attribute "
+                            "'layer_names'",
+                            path);
+    }
+    gonio_status status = GONIO_OK;
+    int layer = 0;
+    for (size_t k = 0; k < count && status == GONIO_OK; k++) {
+        status = read_layer(context, path, root, layers[k], &layer, net);
+    }
+    free(layers);
+    if (status == GONIO_OK && layer != LAYERS) {
+        status = gonio_i_fail(context, GONIO_ERROR_FORMAT,
+                              "%s: a network of %d dense layers where 3 (6-21-21-3) are expected",
+                              path, layer);
+    }
+    return status;
+}
+
+static gonio_status read_network(gonio_context *context, const char *path, network *net)
+{
+    gonio_i_hdf_session session;
+    gonio_i_hdf_enter(&session);
+    gonio_status status = GONIO_OK;
+    const hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+    if (file < 0) {
+        status = gonio_i_fail(context, GONIO_ERROR_FORMAT,
+                              "%s: cannot be opened as HDF5: damaged or truncated", path);
+    } else {
+        /* Some files nest everything in a group. */
+        hid_t root = H5Gopen2(file, "model_weights", H5P_DEFAULT);
+        root = root >= 0 ? root : H5Gopen2(file, "/", H5P_DEFAULT);
+        status = read_layers(context, path, root, net);
+        H5Gclose(root);
+        H5Fclose(file);
+    }
+    gonio_i_hdf_leave(&session);
+    return status;
+}
+
+static gonio_status open_network(gonio_context *context, const gonio_i_file *file,
+                                 gonio_material_source *source, char **description)
+{
+    network *net = gonio_i_allocate(context, 1, sizeof *net);
+    if (net == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    const gonio_status status = read_network(context, file->path, net);
+    *description = status == GONIO_OK ? strdup("neural BRDF 6-21-21-3") : NULL;
+    if (*description == NULL) {
+        free(net);
+        return status == GONIO_OK ? GONIO_ERROR_MEMORY : status;
+    }
+    *source = (gonio_material_source){read_slab, free, net};
+    return GONIO_OK;
+}
+
+const gonio_i_format_reader gonio_i_neural_reader = {"neural BRDF .h5", probe, open_network};

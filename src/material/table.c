@@ -1,0 +1,125 @@
+/* A material read whole: trilinear look-ups and the albedo. */
+#include <gonio/material.h>
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "../core/core.h"
+#include "../direction/grid.h"
+
+struct gonio_table {
+    double *rho; /* [theta_h][channel][theta_d][phi_d] */
+};
+
+gonio_status gonio_table_load(gonio_context *context, const gonio_material *material,
+                              gonio_table **table)
+{
+    gonio_table *made = gonio_i_allocate(context, 1, sizeof *made);
+    if (made == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    gonio_status status = GONIO_OK;
+    made->rho = gonio_i_allocate(context, (size_t)GONIO_THETA_H_BINS * GONIO_SLAB_VALUES,
+                                 sizeof *made->rho);
+    if (made->rho == NULL) {
+        status = GONIO_ERROR_MEMORY;
+    } else {
+#pragma omp parallel for schedule(dynamic) num_threads(gonio_context_threads(context))
+        for (int theta_h = 0; theta_h < GONIO_THETA_H_BINS; theta_h++) {
+            double *slab = made->rho + (size_t)theta_h * GONIO_SLAB_VALUES;
+            const gonio_status mine = gonio_material_read_slab(material, context, theta_h, slab);
+            if (mine != GONIO_OK) {
+#pragma omp critical(gonio_table_load)
+                status = mine;
+            }
+        }
+    }
+    if (status != GONIO_OK) {
+        gonio_table_free(&made);
+        return status;
+    }
+    *table = made;
+    return GONIO_OK;
+}
+
+void gonio_table_free(gonio_table **table)
+{
+    if (table == NULL || *table == NULL) {
+        return;
+    }
+    free((*table)->rho);
+    free(*table);
+    *table = NULL;
+}
+
+const double *gonio_table_values(const gonio_table *table)
+{
+    return table->rho;
+}
+
+static const double *bin_values(const gonio_table *table, gonio_bin bin)
+{
+    return table->rho + (size_t)bin.theta_h * GONIO_SLAB_VALUES +
+           (size_t)bin.theta_d * GONIO_PHI_D_BINS + (size_t)bin.phi_d;
+}
+
+bool gonio_table_value(const gonio_table *table, gonio_half_difference coordinates,
+                       double rho[GONIO_CHANNELS])
+{
+    rho[0] = rho[1] = rho[2] = 0.0;
+    double cosine_i = 0.0;
+    double cosine_o = 0.0;
+    gonio_cosines(coordinates, &cosine_i, &cosine_o);
+    if (cosine_i <= 0.0 || cosine_o <= 0.0) {
+        return false;
+    }
+    gonio_i_stencil stencil[GONIO_I_TRILINEAR];
+    gonio_i_trilinear(coordinates, stencil);
+    double total = 0.0;
+    for (int k = 0; k < GONIO_I_TRILINEAR; k++) {
+        const double *value = bin_values(table, stencil[k].bin);
+        if (value[0] >= 0.0) {
+            total += stencil[k].weight;
+            for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
+                rho[channel] += stencil[k].weight * value[(size_t)channel * GONIO_SLAB_BINS];
+            }
+        }
+    }
+    for (int channel = 0; channel < GONIO_CHANNELS && total > 0.0; channel++) {
+        rho[channel] /= total;
+    }
+    return total > 0.0;
+}
+
+/* Outgoing directions are drawn through the half vector, h = (theta_h, phi) with theta_h spaced like
+ * the grid, so that the narrowest peak of a table is resolved: d omega_o = 4 (i.h) d omega_h. */
+void gonio_table_albedo(const gonio_table *table, double theta_i, double albedo[GONIO_CHANNELS])
+{
+    enum { POLAR = 2 * GONIO_THETA_H_BINS, AZIMUTH = 180 };
+    const double sine_i = sin(theta_i);
+    const double cosine_i = cos(theta_i);
+    albedo[0] = albedo[1] = albedo[2] = 0.0;
+    for (int p = 0; p < POLAR; p++) {
+        const double t = (p + 0.5) / POLAR;
+        const double theta_h = t * t * (M_PI / 2.0);
+        const double step = 2.0 * t * (M_PI / 2.0) / POLAR * (M_PI / AZIMUTH);
+        for (int a = 0; a < AZIMUTH; a++) { /* half the circle: the plane of incidence mirrors */
+            const double phi = M_PI * (a + 0.5) / AZIMUTH;
+            const double h[3] = {sin(theta_h) * cos(phi), sin(theta_h) * sin(phi), cos(theta_h)};
+            const double i_h = sine_i * h[0] + cosine_i * h[2];
+            const double o[3] = {2.0 * i_h * h[0] - sine_i, 2.0 * i_h * h[1],
+                                 2.0 * i_h * h[2] - cosine_i};
+            double rho[GONIO_CHANNELS];
+            const gonio_pair pair = {{theta_i, 0.0},
+                                     {atan2(hypot(o[0], o[1]), o[2]), atan2(o[1], o[0])}};
+            if (i_h <= 0.0 || o[2] <= 0.0 ||
+                !gonio_table_value(table, gonio_half_difference_from_pair(pair), rho)) {
+                continue;
+            }
+            const double weight = 2.0 * o[2] * 4.0 * i_h * sin(theta_h) * step;
+            for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
+                albedo[channel] += weight * rho[channel];
+            }
+        }
+    }
+}

@@ -1,0 +1,63 @@
+/* The simulated instrument: reads a known material at given directions, with noise. */
+#include <math.h>
+
+#include "../core/random.h"
+#include "readings.h"
+
+void gonio_instrument_options_default(gonio_instrument_options *options)
+{
+    *options = (gonio_instrument_options){0};
+}
+
+/* Noise belongs to a direction, not to a line: the same directions give the same reading. */
+static uint64_t stream_of(const gonio_pair *pair)
+{
+    const union {
+        double angle[4];
+        uint64_t bits[4];
+    } u = {.angle = {pair->incident.theta, pair->incident.phi, pair->outgoing.theta,
+                     pair->outgoing.phi}};
+    uint64_t stream = 0;
+    for (int k = 0; k < 4; k++) {
+        stream = (stream ^ u.bits[k]) * UINT64_C(0x9e3779b97f4a7c15);
+        stream ^= stream >> 29;
+    }
+    return stream;
+}
+
+static gonio_status read_one(gonio_context *context, const gonio_readings *readings,
+                             gonio_reading *reading, const gonio_table *table,
+                             const gonio_instrument_options *options)
+{
+    const gonio_half_difference c = gonio_half_difference_from_pair(reading->pair);
+    if (!gonio_table_value(table, c, reading->value)) {
+        return gonio_i_fail(context, GONIO_ERROR_DATA,
+                            "%s:%zu: the material has no data around these directions",
+                            readings->path, reading->line);
+    }
+    gonio_i_random random;
+    gonio_i_random_seed(&random, options->seed, stream_of(&reading->pair));
+    for (int k = 0; k < GONIO_CHANNELS; k++) {
+        const double gain = 1.0 + options->noise * gonio_i_random_normal(&random);
+        const double offset = options->floor * gonio_i_random_normal(&random);
+        reading->value[k] = fmax(reading->value[k] * gain + offset, 0.0);
+    }
+    return GONIO_OK;
+}
+
+gonio_status gonio_measure(gonio_context *context, gonio_readings *readings,
+                           const gonio_table *table, const gonio_instrument_options *options)
+{
+    gonio_instrument_options defaults;
+    gonio_instrument_options_default(&defaults);
+    options = options != NULL ? options : &defaults;
+    if (!(options->noise >= 0.0 && isfinite(options->noise)) ||
+        !(options->floor >= 0.0 && isfinite(options->floor))) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "noise and floor cannot be negative");
+    }
+    gonio_status status = GONIO_OK;
+    for (size_t k = 0; k < readings->count && status == GONIO_OK; k++) {
+        status = read_one(context, readings, &readings->reading[k], table, options);
+    }
+    return status;
+}

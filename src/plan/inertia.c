@@ -1,0 +1,89 @@
+/* Eigenvalues after an exchange of rows: see inertia.h. */
+#include "inertia.h"
+
+#include <float.h>
+#include <math.h>
+
+#include "../core/core.h"
+
+typedef struct sums {
+    double yy, yz, zz; /* over 1/(d - x) */
+    int above;         /* d_k > x */
+} sums;
+
+GONIO_I_VECTORISED static sums sums_at(const gonio_i_exchange *e, double x)
+{
+    double yy = 0.0;
+    double yz = 0.0;
+    double zz = 0.0;
+    int above = 0;
+#pragma omp simd reduction(+ : yy, yz, zz, above)
+    for (size_t k = 0; k < e->n; k++) {
+        const double gap = e->d[k] - x;
+        const double weight = 1.0 / gap;
+        yy += e->y[k] * e->y[k] * weight;
+        yz += e->y[k] * e->z[k] * weight;
+        zz += e->z[k] * e->z[k] * weight;
+        above += gap > 0.0;
+    }
+    return (sums){yy, yz, zz, above};
+}
+
+int gonio_i_exchange_count_above(const gonio_i_exchange *e, double x)
+{
+    for (size_t k = 0; k < e->n; k++) {
+        if (e->d[k] == x) { /* step off the pole */
+            x = nextafter(x, 0.0);
+        }
+    }
+    const sums s = sums_at(e, x);
+    const double a = 1.0 - s.yy;
+    const double c = -1.0 - s.zz;
+    const double determinant = a * c - s.yz * s.yz;
+    const int positive = determinant < 0.0 ? 1 : a + c > 0.0 ? 2 : 0;
+    return s.above + positive - 1;
+}
+
+/* lambda_max(H) is at least the second largest d, and at least q'Hq for the leading eigenvector q. */
+static double largest_at_least(const gonio_i_exchange *e)
+{
+    const size_t top = e->n - 1;
+    return fmax(e->d[top - 1], e->d[top] - e->y[top] * e->y[top] + e->z[top] * e->z[top]);
+}
+
+bool gonio_i_exchange_may_beat(const gonio_i_exchange *e, double limit)
+{
+    return gonio_i_exchange_count_above(e, largest_at_least(e) / limit) == (int)e->n;
+}
+
+/* The point in (low, high) where the number of eigenvalues above falls below `count`. */
+static double bisect(const gonio_i_exchange *e, int count, double low, double high)
+{
+    while (high - low > 2.0 * DBL_EPSILON * high) {
+        const double middle = 0.5 * (low + high);
+        if (middle <= low || middle >= high) {
+            break;
+        }
+        if (gonio_i_exchange_count_above(e, middle) >= count) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    return 0.5 * (low + high);
+}
+
+double gonio_i_exchange_condition(const gonio_i_exchange *e, double limit)
+{
+    double added = 0.0;
+    for (size_t k = 0; k < e->n; k++) {
+        added += e->z[k] * e->z[k];
+    }
+    const double largest = bisect(e, 1, largest_at_least(e) * (1.0 - 4.0 * DBL_EPSILON),
+                                  (e->d[e->n - 1] + added) * (1.0 + 4.0 * DBL_EPSILON));
+    const double least = largest / limit;
+    if (gonio_i_exchange_count_above(e, least) != (int)e->n) {
+        return INFINITY;
+    }
+    return largest / bisect(e, (int)e->n, least, e->d[1] * (1.0 + 4.0 * DBL_EPSILON));
+}

@@ -1,0 +1,29 @@
+/* Eigenvalues after an exchange of rows: H = diag(d) - y y' + z z', d ascending.
+ *
+ * By Sylvester's law of inertia on the bordered matrix, the number of eigenvalues of H above x is
+ *   #(d_k > x) + n_plus(T) - 1,   T = [ 1 - sum y^2/(d - x)    - sum y z/(d - x)  ]
+ *                                     [  - sum y z/(d - x)   -1 - sum z^2/(d - x) ]
+ * with n_plus the number of positive eigenvalues of T. */
+#ifndef GONIO_INERTIA_H
+#define GONIO_INERTIA_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef struct gonio_i_exchange {
+    const double *d; /* [n], ascending, all > 0 */
+    const double *y; /* [n], what is taken out */
+    const double *z; /* [n], what is put in */
+    size_t n;        /* at least 2 */
+} gonio_i_exchange;
+
+/* Eigenvalues of H above x. */
+int gonio_i_exchange_count_above(const gonio_i_exchange *exchange, double x);
+
+/* A cheap necessary condition for lambda_max(H)/lambda_min(H) < limit. */
+bool gonio_i_exchange_may_beat(const gonio_i_exchange *exchange, double limit);
+
+/* lambda_max(H)/lambda_min(H) to rounding if that is below `limit`, otherwise infinity. */
+double gonio_i_exchange_condition(const gonio_i_exchange *exchange, double limit);
+
+#endif

@@ -1,0 +1,56 @@
+/* A selection method: to add one, write a file like random.c and add a line to the table in plan.c. */
+#ifndef GONIO_METHOD_H
+#define GONIO_METHOD_H
+
+#include <gonio/plan.h>
+
+#include "../core/core.h"
+
+/* Choose `count` of the rows of V (rows x components, row-major, contiguous). */
+typedef struct gonio_i_selection_problem {
+    gonio_context *context;
+    const double *vectors;
+    size_t rows;
+    size_t components;
+    size_t count;
+    int restarts;
+    uint64_t seed;
+} gonio_i_selection_problem;
+
+typedef struct gonio_i_selection {
+    size_t *chosen; /* [count], the caller's; to be filled in ascending */
+    double condition_number;
+    gonio_plan_step *history; /* grown by gonio_i_selection_record; released by the caller */
+    size_t steps;
+} gonio_i_selection;
+
+typedef struct gonio_i_method {
+    const char *name;
+    const char *summary;
+    bool needs_full_rank; /* n >= K */
+    gonio_status (*select)(const gonio_i_selection_problem *problem, gonio_i_selection *selection);
+} gonio_i_method;
+
+extern const gonio_i_method gonio_i_condition_method;
+extern const gonio_i_method gonio_i_random_method;
+
+/* Appends to the history. */
+gonio_status gonio_i_selection_record(gonio_context *context, gonio_i_selection *selection,
+                                      int restart, int swap, double condition_number);
+
+/* kappa = largest/smallest eigenvalue; infinity where the smallest is not above rounding. */
+double gonio_i_condition(const double *eigenvalues, size_t n);
+
+/* G (K x K) = X'X of the rows chosen[count] of V; `rows` is scratch of count x K values. */
+gonio_status gonio_i_chosen_gram(const gonio_i_selection_problem *problem, const size_t *chosen,
+                                 double *rows, double *gram);
+
+/* The condition number of a choice. */
+gonio_status gonio_i_chosen_condition(const gonio_i_selection_problem *problem,
+                                      const size_t *chosen, double *condition_number);
+
+/* A random choice without repeats, ascending. */
+gonio_status gonio_i_random_choice(const gonio_i_selection_problem *problem, uint64_t stream,
+                                   size_t *chosen);
+
+#endif

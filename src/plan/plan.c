@@ -1,0 +1,296 @@
+/* Plans: the table of methods, and from chosen rows to light/view pairs. */
+#include <gonio/plan.h>
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../direction/grid.h"
+#include "../linalg/linalg.h"
+#include "method.h"
+
+static const gonio_i_method *const methods[] = {
+    &gonio_i_condition_method,
+    &gonio_i_random_method,
+};
+
+enum { METHODS = sizeof methods / sizeof *methods };
+
+const char *gonio_plan_method_name(int index)
+{
+    return index >= 0 && index < METHODS ? methods[index]->name : NULL;
+}
+
+const char *gonio_plan_method_summary(int index)
+{
+    return index >= 0 && index < METHODS ? methods[index]->summary : NULL;
+}
+
+void gonio_plan_options_default(gonio_plan_options *options)
+{
+    *options = (gonio_plan_options){
+        .method = methods[0]->name, .count = 80, .restarts = 5, .phi_d = M_PI / 2.0};
+}
+
+/* ---- what the methods share ---- */
+
+gonio_status gonio_i_selection_record(gonio_context *context, gonio_i_selection *selection,
+                                      int restart, int swap, double condition_number)
+{
+    const size_t n = selection->steps;
+    if ((n & (n - 1)) == 0) {
+        void *more = reallocarray(selection->history, n > 0 ? 2 * n : 1, sizeof(gonio_plan_step));
+        if (more == NULL) {
+            return gonio_i_fail(context, GONIO_ERROR_MEMORY, "out of memory");
+        }
+        selection->history = more;
+    }
+    selection->history[n] = (gonio_plan_step){restart, swap, condition_number};
+    selection->steps++;
+    return GONIO_OK;
+}
+
+double gonio_i_condition(const double *eigenvalues, size_t n)
+{
+    const double smallest = eigenvalues[0];
+    const double largest = eigenvalues[n - 1];
+    return smallest > largest * DBL_EPSILON * (double)n ? largest / smallest : INFINITY;
+}
+
+gonio_status gonio_i_chosen_gram(const gonio_i_selection_problem *problem, const size_t *chosen,
+                                 double *rows, double *gram)
+{
+    const size_t k = problem->components;
+    for (size_t j = 0; j < problem->count; j++) {
+        memcpy(rows + j * k, problem->vectors + chosen[j] * k, k * sizeof *rows);
+    }
+    return gonio_i_gram_rows(problem->context, rows, problem->count, k, k, gram);
+}
+
+gonio_status gonio_i_chosen_condition(const gonio_i_selection_problem *problem,
+                                      const size_t *chosen, double *condition_number)
+{
+    const size_t k = problem->components;
+    double *rows = gonio_i_allocate(problem->context, problem->count * k, sizeof *rows);
+    double *gram = gonio_i_allocate(problem->context, k * k + k, sizeof *gram);
+    gonio_status status = rows == NULL || gram == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    if (status == GONIO_OK) {
+        status = gonio_i_chosen_gram(problem, chosen, rows, gram);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_eigen(problem->context, gram, k, false, gram + k * k);
+    }
+    if (status == GONIO_OK) {
+        *condition_number = gonio_i_condition(gram + k * k, k);
+    }
+    free(rows);
+    free(gram);
+    return status;
+}
+
+/* ---- selecting ---- */
+
+static const gonio_i_method *find_method(const char *name)
+{
+    for (int k = 0; k < METHODS; k++) {
+        if (strcmp(methods[k]->name, name) == 0) {
+            return methods[k];
+        }
+    }
+    return NULL;
+}
+
+static gonio_status check_selection(gonio_context *context, size_t rows, size_t components,
+                                    const gonio_plan_options *options)
+{
+    const gonio_i_method *method = find_method(options->method);
+    const size_t n = options->count;
+    if (method == NULL) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "no selection method is called '%s'",
+                            options->method);
+    }
+    if (n == 0) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "a plan needs at least 1 reading");
+    }
+    if (n > rows) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "%zu readings asked for, but the basis has only %zu rows to choose from", n,
+                            rows);
+    }
+    if (method->needs_full_rank && n < components) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "%zu readings cannot determine %zu coefficients: plan at least %zu "
+                            "readings, or use fewer components (--basis %zu or less)",
+                            n, components, components, n);
+    }
+    if (options->restarts < 1) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "at least 1 start is needed, not %d",
+                            options->restarts);
+    }
+    return GONIO_OK;
+}
+
+gonio_status gonio_plan_select(gonio_context *context, const double *vectors, size_t rows,
+                               size_t components, const gonio_plan_options *options, size_t *chosen,
+                               double *condition_number, gonio_plan_step **history, size_t *steps)
+{
+    gonio_status status = check_selection(context, rows, components, options);
+    if (status != GONIO_OK) {
+        return status;
+    }
+    const gonio_i_selection_problem problem = {
+        context, vectors, rows, components, options->count, options->restarts, options->seed};
+    gonio_i_selection selection = {.chosen = chosen};
+    status = find_method(options->method)->select(&problem, &selection);
+    if (status == GONIO_OK) {
+        *condition_number = selection.condition_number;
+    }
+    if (status == GONIO_OK && history != NULL) {
+        *history = selection.history;
+        *steps = selection.steps;
+    } else {
+        free(selection.history);
+    }
+    return status;
+}
+
+/* The first `components` of each row, close together. */
+static double *leading_components(gonio_context *context, const double *vectors, size_t rows,
+                                  size_t leading, size_t components)
+{
+    double *packed = gonio_i_allocate(context, rows * components, sizeof *packed);
+    for (size_t i = 0; packed != NULL && i < rows; i++) {
+        memcpy(packed + i * components, vectors + i * leading, components * sizeof *packed);
+    }
+    return packed;
+}
+
+gonio_status gonio_condition_number(gonio_context *context, const double *vectors, size_t leading,
+                                    size_t components, const size_t *chosen, size_t count,
+                                    double *condition_number)
+{
+    double *rows = gonio_i_allocate(context, count * components, sizeof *rows);
+    size_t *all = gonio_i_allocate(context, count, sizeof *all);
+    gonio_status status = rows == NULL || all == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    for (size_t j = 0; j < count && status == GONIO_OK; j++) {
+        memcpy(rows + j * components, vectors + chosen[j] * leading, components * sizeof *rows);
+        all[j] = j;
+    }
+    if (status == GONIO_OK) {
+        const gonio_i_selection_problem problem = {context, rows, count, components, count, 1, 0};
+        status = gonio_i_chosen_condition(&problem, all, condition_number);
+    }
+    free(rows);
+    free(all);
+    return status;
+}
+
+/* ---- plans ---- */
+
+/* The pair to measure a cell at. */
+static gonio_pair pair_of(const gonio_basis_view *basis, int32_t cell, double phi_d)
+{
+    if (basis->representation == GONIO_FULL) {
+        return gonio_pair_from_half_difference(gonio_bin_centre(gonio_bin_from_index(cell)));
+    }
+    const gonio_bin bin = {cell / GONIO_THETA_D_BINS, cell % GONIO_THETA_D_BINS, 0};
+    gonio_half_difference c = gonio_bin_centre(bin);
+    const int first = gonio_i_first_valid_phi(bin.theta_h, bin.theta_d);
+    const double low = (first + 0.5) / GONIO_PHI_D_BINS * M_PI;
+    const bool all_valid = first == 0;
+    c.phi_d = all_valid ? phi_d : fmin(fmax(phi_d, low), M_PI - low);
+    return gonio_pair_from_half_difference(c);
+}
+
+static void fill_entries(const gonio_basis_view *basis, const size_t *chosen, double phi_d,
+                         gonio_plan *plan)
+{
+    const bool joint = basis->channels == GONIO_JOINT;
+    for (size_t j = 0; j < plan->count; j++) {
+        const size_t position = joint ? chosen[j] / GONIO_CHANNELS : chosen[j];
+        const int32_t cell = basis->cell[position];
+        plan->entries[j] = (gonio_plan_entry){
+            cell, joint ? (int)(chosen[j] % GONIO_CHANNELS) : GONIO_ALL_CHANNELS,
+            pair_of(basis, cell, phi_d)};
+    }
+}
+
+static gonio_plan *allocate_plan(gonio_context *context, size_t count)
+{
+    gonio_plan *made = gonio_i_allocate(context, 1, sizeof *made);
+    if (made != NULL) {
+        made->count = count;
+        made->entries = gonio_i_allocate(context, count, sizeof *made->entries);
+    }
+    if (made != NULL && made->entries == NULL) {
+        gonio_plan_free(&made);
+    }
+    return made;
+}
+
+static gonio_status choose(gonio_context *context, const gonio_basis_view *basis,
+                           const gonio_plan_options *options, gonio_plan *plan)
+{
+    double *vectors = leading_components(context, basis->vectors, basis->rows, basis->components,
+                                         plan->components);
+    size_t *chosen = gonio_i_allocate(context, plan->count, sizeof *chosen);
+    gonio_status status = vectors == NULL || chosen == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    if (status == GONIO_OK) {
+        status = gonio_plan_select(context, vectors, basis->rows, plan->components, options, chosen,
+                                   &plan->condition_number, &plan->history, &plan->steps);
+    }
+    if (status == GONIO_OK) {
+        fill_entries(basis, chosen, options->phi_d, plan);
+    }
+    free(vectors);
+    free(chosen);
+    return status;
+}
+
+gonio_status gonio_plan_create(gonio_context *context, const gonio_basis *basis,
+                               const gonio_plan_options *options, gonio_plan **plan)
+{
+    const gonio_basis_view view = gonio_basis_describe(basis);
+    const size_t components = options->components > 0 ? options->components : view.components;
+    if (components > view.components) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "%zu components asked for, but the basis has %zu; learn one with more "
+                            "(gonio learn --basis %zu)",
+                            components, view.components, components);
+    }
+    if (!(options->phi_d >= 0.0 && options->phi_d < M_PI)) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "phi_d of %g degrees is outside [0, 180)", options->phi_d * 180.0 / M_PI);
+    }
+    gonio_status status = check_selection(context, view.rows, components, options);
+    if (status != GONIO_OK) {
+        return status;
+    }
+    gonio_plan *made = allocate_plan(context, options->count);
+    if (made == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    made->components = components;
+    made->basis = view.fingerprint;
+    snprintf(made->method, sizeof made->method, "%s", options->method);
+    status = choose(context, &view, options, made);
+    if (status != GONIO_OK) {
+        gonio_plan_free(&made);
+        return status;
+    }
+    *plan = made;
+    return GONIO_OK;
+}
+
+void gonio_plan_free(gonio_plan **plan)
+{
+    if (plan == NULL || *plan == NULL) {
+        return;
+    }
+    free((*plan)->entries);
+    free((*plan)->history);
+    free(*plan);
+    *plan = NULL;
+}

@@ -1,0 +1,97 @@
+/* Plans and their history as CSV (docs/plan-and-readings.md). */
+#include <gonio/plan.h>
+
+#include <inttypes.h>
+#include <math.h>
+
+#include "../core/core.h"
+#include "../core/csv.h"
+
+static const char *const channel_names[] = {"all", "R", "G", "B"};
+
+static bool add_origin(gonio_i_csv *csv, const char *kind, const char *command)
+{
+    return gonio_i_csv_add_comment(csv, "gonio %s", kind) &&
+           gonio_i_csv_add_comment(csv, "program: gonio %s", gonio_version()) &&
+           (command == NULL || gonio_i_csv_add_comment(csv, "command: %s", command));
+}
+
+static bool add_plan_notes(gonio_i_csv *csv, const gonio_plan *plan)
+{
+    return gonio_i_csv_add_comment(csv, "basis: %016" PRIx64, plan->basis) &&
+           gonio_i_csv_add_comment(csv, "components: %zu", plan->components) &&
+           gonio_i_csv_add_comment(csv, "method: %s", plan->method) &&
+           gonio_i_csv_add_comment(csv, "condition_number: %.6g", plan->condition_number) &&
+           gonio_i_csv_add_comment(csv, "grid: half/difference 90 x 90 x 180") &&
+           gonio_i_csv_add_comment(csv, "theta from the normal, phi about it, incident (i) towards "
+                                        "the light, outgoing (o) towards the detector; a row asks "
+                                        "for one channel, other channels read there may be kept");
+}
+
+static bool add_entry(gonio_i_csv *csv, const gonio_plan_entry *entry)
+{
+    const double degrees = 180.0 / M_PI;
+    const size_t row = csv->rows;
+    return gonio_i_csv_add_row(csv, 0) &&
+           gonio_i_csv_set(csv, row, 0, "%.9f", entry->pair.incident.theta * degrees) &&
+           gonio_i_csv_set(csv, row, 1, "%.9f", entry->pair.incident.phi * degrees) &&
+           gonio_i_csv_set(csv, row, 2, "%.9f", entry->pair.outgoing.theta * degrees) &&
+           gonio_i_csv_set(csv, row, 3, "%.9f", entry->pair.outgoing.phi * degrees) &&
+           gonio_i_csv_set(csv, row, 4, "%s", channel_names[entry->channel + 1]);
+}
+
+static bool fill_plan(gonio_i_csv *csv, const gonio_plan *plan, const char *command)
+{
+    bool done = add_origin(csv, "plan", command) && add_plan_notes(csv, plan) &&
+                gonio_i_csv_add_column(csv, "theta_i_deg") &&
+                gonio_i_csv_add_column(csv, "phi_i_deg") &&
+                gonio_i_csv_add_column(csv, "theta_o_deg") &&
+                gonio_i_csv_add_column(csv, "phi_o_deg") && gonio_i_csv_add_column(csv, "channel");
+    for (size_t k = 0; done && k < plan->count; k++) {
+        done = add_entry(csv, &plan->entries[k]);
+    }
+    return done;
+}
+
+static bool fill_history(gonio_i_csv *csv, const gonio_plan *plan, const char *command)
+{
+    bool done = add_origin(csv, "plan history", command) &&
+                gonio_i_csv_add_column(csv, "restart") && gonio_i_csv_add_column(csv, "swap") &&
+                gonio_i_csv_add_column(csv, "condition_number");
+    for (size_t k = 0; done && k < plan->steps; k++) {
+        const gonio_plan_step *step = &plan->history[k];
+        done = gonio_i_csv_add_row(csv, 0) &&
+               gonio_i_csv_set(csv, k, 0, "%d", (int)step->restart) &&
+               gonio_i_csv_set(csv, k, 1, "%d", (int)step->swap) &&
+               gonio_i_csv_set(csv, k, 2, "%.10g", step->condition_number);
+    }
+    return done;
+}
+
+static gonio_status write_table(gonio_context *context, const gonio_plan *plan, const char *command,
+                                const char *path,
+                                bool (*fill)(gonio_i_csv *, const gonio_plan *, const char *))
+{
+    gonio_i_csv *csv = gonio_i_csv_create(context);
+    if (csv == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    const gonio_status status =
+        fill(csv, plan, command)
+            ? gonio_i_csv_write(context, csv, path)
+            : gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", path);
+    gonio_i_csv_free(&csv);
+    return status;
+}
+
+gonio_status gonio_plan_write(gonio_context *context, const gonio_plan *plan, const char *command,
+                              const char *path)
+{
+    return write_table(context, plan, command, path, fill_plan);
+}
+
+gonio_status gonio_plan_write_history(gonio_context *context, const gonio_plan *plan,
+                                      const char *command, const char *path)
+{
+    return write_table(context, plan, command, path, fill_history);
+}

@@ -1,0 +1,27 @@
+/* What the test programs share: cmocka with its headers, the folder of shared data, scratch folders. */
+#ifndef GONIO_TEST_SUPPORT_H
+#define GONIO_TEST_SUPPORT_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <gonio/context.h>
+
+/* The folder with measured data and reference numbers, from $GONIO_SHARED; NULL if it is not there. */
+const char *support_shared(void);
+
+/* Skips the running test, saying so, where that folder is not there. */
+void support_need_shared(void);
+
+/* A context that keeps the last error message in support_message(). */
+gonio_context *support_context(void);
+const char *support_message(void);
+
+/* A new folder for a test's files; support_remove deletes it with its contents. */
+char *support_folder(void);
+void support_remove(char *folder);
+
+#endif
