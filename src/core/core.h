@@ -13,7 +13,7 @@
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__linux__) &&       \
     !defined(GONIO_NO_CLONES)
 #define GONIO_I_VECTORISED                                                                         \
-    __attribute__((target_clones("arch=skylake-avx512", "arch=haswell", "default")))
+    __attribute__((target_clones("avx512f", "avx2", "default")))
 #else
 #define GONIO_I_VECTORISED
 #endif

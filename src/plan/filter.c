@@ -184,26 +184,6 @@ size_t gonio_i_filter_survivors(gonio_i_filter *f, const double *x, size_t posit
     return count;
 }
 
-size_t gonio_i_filter_strongest(const gonio_i_filter *f, const double *x, size_t position,
-                                const size_t *survivors, size_t count)
-{
-    const double *w = w_of(f, position);
-    const double loss = loss_of(f, x, position);
-    const double sign = f->below == 0 ? 1.0 : -1.0;
-    size_t best = survivors[0];
-    double most = -INFINITY;
-    for (size_t k = 0; k < count; k++) {
-        const size_t u = survivors[k];
-        /* The determinant of the bordered matrix is that of G - vv' + uu' - mu up to a constant. */
-        const double margin = sign * (loss * f->gain[u] + w[u] * w[u]);
-        if (margin > most) {
-            most = margin;
-            best = u;
-        }
-    }
-    return best;
-}
-
 /* C = (diag(-1, 1) + P'BP)^-1 for P = [v u]: B becomes B - [Bv Bu] C [Bv Bu]'. */
 typedef struct woodbury {
     double vv, vu, uu;

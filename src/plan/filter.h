@@ -45,10 +45,6 @@ gonio_status gonio_i_filter_load(gonio_i_filter *filter, const double *x, size_t
 size_t gonio_i_filter_survivors(gonio_i_filter *filter, const double *x, size_t position,
                                 size_t *survivors);
 
-/* The row, not taken and passing, that lies furthest inside the passing side: a good first guess. */
-size_t gonio_i_filter_strongest(const gonio_i_filter *filter, const double *x, size_t position,
-                                const size_t *survivors, size_t count);
-
 /* Follows a swap at a position of the batch: row `in` of the matrix for the row v = x[position] that was
  * there. To be called before x is changed; the swap must be one that passed. Within a batch, positions
  * must come in rising order. */

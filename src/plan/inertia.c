@@ -51,20 +51,21 @@ static double largest_at_least(const gonio_i_exchange *e)
     return fmax(e->d[top - 1], e->d[top] - e->y[top] * e->y[top] + e->z[top] * e->z[top]);
 }
 
-bool gonio_i_exchange_may_beat(const gonio_i_exchange *e, double limit)
+/* lambda_max(H), by bisection on the number of eigenvalues above. */
+static double largest(const gonio_i_exchange *e)
 {
-    return gonio_i_exchange_count_above(e, largest_at_least(e) / limit) == (int)e->n;
-}
-
-/* The point in (low, high) where the number of eigenvalues above falls below `count`. */
-static double bisect(const gonio_i_exchange *e, int count, double low, double high)
-{
+    double added = 0.0;
+    for (size_t k = 0; k < e->n; k++) {
+        added += e->z[k] * e->z[k];
+    }
+    double low = largest_at_least(e) * (1.0 - 4.0 * DBL_EPSILON);
+    double high = (e->d[e->n - 1] + added) * (1.0 + 4.0 * DBL_EPSILON);
     while (high - low > 2.0 * DBL_EPSILON * high) {
         const double middle = 0.5 * (low + high);
         if (middle <= low || middle >= high) {
             break;
         }
-        if (gonio_i_exchange_count_above(e, middle) >= count) {
+        if (gonio_i_exchange_count_above(e, middle) > 0) {
             low = middle;
         } else {
             high = middle;
@@ -73,17 +74,10 @@ static double bisect(const gonio_i_exchange *e, int count, double low, double hi
     return 0.5 * (low + high);
 }
 
-double gonio_i_exchange_condition(const gonio_i_exchange *e, double limit)
+bool gonio_i_exchange_beats(const gonio_i_exchange *e, double limit)
 {
-    double added = 0.0;
-    for (size_t k = 0; k < e->n; k++) {
-        added += e->z[k] * e->z[k];
-    }
-    const double largest = bisect(e, 1, largest_at_least(e) * (1.0 - 4.0 * DBL_EPSILON),
-                                  (e->d[e->n - 1] + added) * (1.0 + 4.0 * DBL_EPSILON));
-    const double least = largest / limit;
-    if (gonio_i_exchange_count_above(e, least) != (int)e->n) {
-        return INFINITY;
-    }
-    return largest / bisect(e, (int)e->n, least, e->d[1] * (1.0 + 4.0 * DBL_EPSILON));
+    const int all = (int)e->n;
+    /* Most are out by the cheap bound already. */
+    return gonio_i_exchange_count_above(e, largest_at_least(e) / limit) == all &&
+           gonio_i_exchange_count_above(e, largest(e) / limit) == all;
 }

@@ -20,10 +20,7 @@ typedef struct gonio_i_exchange {
 /* Eigenvalues of H above x. */
 int gonio_i_exchange_count_above(const gonio_i_exchange *exchange, double x);
 
-/* A cheap necessary condition for lambda_max(H)/lambda_min(H) < limit. */
-bool gonio_i_exchange_may_beat(const gonio_i_exchange *exchange, double limit);
-
-/* lambda_max(H)/lambda_min(H) to rounding if that is below `limit`, otherwise infinity. */
-double gonio_i_exchange_condition(const gonio_i_exchange *exchange, double limit);
+/* Whether lambda_max(H)/lambda_min(H) < limit. */
+bool gonio_i_exchange_beats(const gonio_i_exchange *exchange, double limit);
 
 #endif

@@ -260,7 +260,6 @@ static double row_error(const split *s, size_t components, const size_t *rows, s
         for (size_t k = 0; k < components; k++) {
             g += s->view.vectors[row * s->view.components + k] * r->coefficients[k];
         }
-        g = fmax(g, 0.0);
         const double difference = g - m->mean[cell][row % GONIO_CHANNELS];
         sum += m->count[cell] * difference * difference;
     }
