@@ -1,4 +1,5 @@
-/* What the test programs share: cmocka with its headers, the folder of shared data, scratch folders. */
+/* What the test programs share: cmocka with its headers, the folder of shared data, scratch
+ * folders. */
 #ifndef GONIO_TEST_SUPPORT_H
 #define GONIO_TEST_SUPPORT_H
 
@@ -10,7 +11,8 @@
 #include <cmocka.h>
 #include <gonio/context.h>
 
-/* The folder with measured data and reference numbers, from $GONIO_SHARED; NULL if it is not there. */
+/* The folder with measured data and reference numbers, from $GONIO_SHARED; NULL if it is not there.
+ */
 const char *support_shared(void);
 
 /* Skips the running test, saying so, where that folder is not there. */

@@ -43,12 +43,12 @@ typedef struct gonio_slab_statistics {
  * (direction.h) and holds data. */
 GONIO_API void gonio_slab_mask(int theta_h, const double *rho, bool *data);
 
-/* A slab in log space, g[channel][theta_d][phi_d]; where there is no data g is 0. In place: g == rho is
- * allowed. */
+/* A slab in log space, g[channel][theta_d][phi_d]; where there is no data g is 0. In place: g ==
+ * rho is allowed. */
 GONIO_API void gonio_slab_to_log(const double *rho, double *g);
 
-/* Reduces a slab in log space to its bivariate statistics over the bins that count; mean and scatter
- * are 0 where count is. */
+/* Reduces a slab in log space to its bivariate statistics over the bins that count; mean and
+ * scatter are 0 where count is. */
 GONIO_API void gonio_slab_reduce(const double *g, const bool *data,
                                  gonio_slab_statistics *statistics);
 
@@ -88,8 +88,8 @@ typedef struct gonio_database_view {
 
 GONIO_API gonio_database_view gonio_database_describe(const gonio_database *database);
 
-/* Reads rows first .. first + count - 1 of H into block[column][count] (column-major), for the columns
- * of the given materials (indices into names) in that order; subset NULL for all materials.
+/* Reads rows first .. first + count - 1 of H into block[column][count] (column-major), for the
+ * columns of the given materials (indices into names) in that order; subset NULL for all materials.
  * Errors: _ARGUMENT (outside the matrix), _IO. */
 GONIO_API gonio_status gonio_database_read_rows(const gonio_database *database,
                                                 gonio_context *context, size_t first, size_t count,

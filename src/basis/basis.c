@@ -143,8 +143,7 @@ static gonio_status map_cells(gonio_context *context, gonio_basis *basis)
     }
 #pragma omp parallel for schedule(dynamic, 1024) num_threads(gonio_context_threads(context))
     for (size_t k = 0; k < all; k++) {
-        basis->position[k] =
-            own[k] >= 0 ? own[k] : nearest_position(basis, own, (int32_t)k);
+        basis->position[k] = own[k] >= 0 ? own[k] : nearest_position(basis, own, (int32_t)k);
     }
     free(own);
     return GONIO_OK;

@@ -198,8 +198,8 @@ static gonio_status read_numbers(contents *c)
     const size_t most_rows = (size_t)GONIO_CHANNELS * GONIO_BINS;
     size_t shape[2] = {0, 0};
     const char *what = "mean";
-    const char *problem = gonio_i_hdf_read_array(c->file, what, 1, most_rows, H5T_NATIVE_DOUBLE,
-                                                 &c->mean, &c->rows);
+    const char *problem =
+        gonio_i_hdf_read_array(c->file, what, 1, most_rows, H5T_NATIVE_DOUBLE, &c->mean, &c->rows);
     if (problem == NULL) {
         what = "components";
         problem = gonio_i_hdf_read_array(c->file, what, 2, most_rows * 1024, H5T_NATIVE_DOUBLE,
@@ -211,9 +211,10 @@ static gonio_status read_numbers(contents *c)
         problem = gonio_i_hdf_read_array(c->file, what, 1, MOST_MATERIALS, H5T_NATIVE_DOUBLE,
                                          &c->variances, &c->variance_count);
     }
-    if (problem == NULL && (c->rows != gonio_i_basis_rows(c->cells, (gonio_channel_model)c->channels) ||
-                            shape[0] != c->rows || c->components == 0 || c->cells == 0 ||
-                            c->components > c->variance_count)) {
+    if (problem == NULL &&
+        (c->rows != gonio_i_basis_rows(c->cells, (gonio_channel_model)c->channels) ||
+         shape[0] != c->rows || c->components == 0 || c->cells == 0 ||
+         c->components > c->variance_count)) {
         what = "components";
         problem = "has a shape that does not fit the grid and the mean";
     }
@@ -234,10 +235,11 @@ static gonio_status check_kind(const contents *c)
                             "%s: an HDF5 file, but not a gonio basis; gonio learn makes one",
                             c->path);
     }
-    if (!gonio_i_hdf_read_number(c->file, "format_version", &version) || version != FORMAT_VERSION) {
+    if (!gonio_i_hdf_read_number(c->file, "format_version", &version) ||
+        version != FORMAT_VERSION) {
         return gonio_i_fail(c->context, GONIO_ERROR_FORMAT,
-                            "%s: a basis of format version %lld; this gonio reads version %d", c->path,
-                            (long long)version, FORMAT_VERSION);
+                            "%s: a basis of format version %lld; this gonio reads version %d",
+                            c->path, (long long)version, FORMAT_VERSION);
     }
     return GONIO_OK;
 }

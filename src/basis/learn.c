@@ -2,10 +2,10 @@
  *
  * Given    H, read in blocks of rows
  * Returned m, the top K left singular vectors V of H - m, and all lambda_k = S_k^2/(columns - 1)
- * Method   G = (H - m)'(H - m) block by block, G = W S^2 W', V = (H - m) W S^-1 (Ali et al., sec. 3.6)
- * Accuracy G squares the condition number, which costs V some orthogonality; dividing V by the
- *          Cholesky factor of V'V restores it to rounding.
- * The blocks and the order in which they are added depend on the matrix only, never on the threads. */
+ * Method   G = (H - m)'(H - m) block by block, G = W S^2 W', V = (H - m) W S^-1 (Ali et al.,
+ * sec. 3.6) Accuracy G squares the condition number, which costs V some orthogonality; dividing V
+ * by the Cholesky factor of V'V restores it to rounding. The blocks and the order in which they are
+ * added depend on the matrix only, never on the threads. */
 #include "basis.h"
 
 #include <math.h>
@@ -134,8 +134,7 @@ static gonio_status orthonormalise(const learner *l)
     if (c == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    gonio_status status =
-        gonio_i_gram_rows(l->context, basis->vectors, basis->rows, k, k, c);
+    gonio_status status = gonio_i_gram_rows(l->context, basis->vectors, basis->rows, k, k, c);
     if (status == GONIO_OK) {
         status = gonio_i_divide_cholesky(l->context, basis->vectors, basis->rows, k, c);
     }
@@ -172,10 +171,11 @@ static gonio_status split_gram(const learner *l, const double *w, const double *
         rank += value > noise;
     }
     if (rank < k) {
-        return gonio_i_fail(l->context, GONIO_ERROR_DATA,
-                            "the materials span only %zu dimensions around their mean, %zu components "
-                            "were asked for; are some of them copies of others?",
-                            rank, k);
+        return gonio_i_fail(
+            l->context, GONIO_ERROR_DATA,
+            "the materials span only %zu dimensions around their mean, %zu components "
+            "were asked for; are some of them copies of others?",
+            rank, k);
     }
     for (size_t j = 0; j < k; j++) {
         for (size_t i = 0; i < n; i++) {
@@ -257,8 +257,8 @@ static gonio_status choose_components(gonio_context *context, size_t columns, si
                             "materials or ask for fewer components",
                             asked, columns, columns - 1);
     }
-    const size_t most = columns - 1 < GONIO_DEFAULT_COMPONENTS ? columns - 1
-                                                               : GONIO_DEFAULT_COMPONENTS;
+    const size_t most =
+        columns - 1 < GONIO_DEFAULT_COMPONENTS ? columns - 1 : GONIO_DEFAULT_COMPONENTS;
     *components = asked > 0 ? asked : most;
     return GONIO_OK;
 }
@@ -274,8 +274,7 @@ gonio_status gonio_basis_learn(gonio_context *context, const gonio_database *dat
     l.materials = l.subset != NULL ? options->subset_count : l.view.materials;
     l.columns = l.view.columns / l.view.materials * l.materials;
     size_t components = 0;
-    gonio_status status =
-        choose_components(context, l.columns, options->components, &components);
+    gonio_status status = choose_components(context, l.columns, options->components, &components);
     if (status != GONIO_OK) {
         return status;
     }

@@ -27,11 +27,16 @@ const char *gonio_version(void)
 const char *gonio_status_text(gonio_status status)
 {
     static const char *const texts[] = {
-        "success",          "invalid argument",
-        "out of memory",    "input/output error",
-        "wrong or damaged file", "unusable data",
-        "inputs do not belong together", "too few independent readings",
-        "cancelled",        "numerical failure",
+        "success",
+        "invalid argument",
+        "out of memory",
+        "input/output error",
+        "wrong or damaged file",
+        "unusable data",
+        "inputs do not belong together",
+        "too few independent readings",
+        "cancelled",
+        "numerical failure",
     };
     if (status < 0 || (size_t)status >= sizeof texts / sizeof *texts) {
         return "unknown status";

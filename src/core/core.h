@@ -8,12 +8,11 @@
 
 #include <gonio/context.h>
 
-/* Functions whose inner loops pay for wider vectors are compiled several times and chosen at run time
- * (not under the sanitizers, whose start-up does not stand the resolvers). */
+/* Functions whose inner loops pay for wider vectors are compiled several times and chosen at run
+ * time (not under the sanitizers, whose start-up does not stand the resolvers). */
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__linux__) &&       \
     !defined(GONIO_NO_CLONES)
-#define GONIO_I_VECTORISED                                                                         \
-    __attribute__((target_clones("avx512f", "avx2", "default")))
+#define GONIO_I_VECTORISED __attribute__((target_clones("avx512f", "avx2", "default")))
 #else
 #define GONIO_I_VECTORISED
 #endif
@@ -37,7 +36,8 @@ void *gonio_i_allocate(gonio_context *context, size_t count, size_t size);
 /* A formatted string; NULL when out of memory. */
 char *gonio_i_format(const char *format, ...) GONIO_I_PRINTF(1, 2);
 
-/* A file's base name without folder and, if wanted, without its extension; NULL when out of memory. */
+/* A file's base name without folder and, if wanted, without its extension; NULL when out of memory.
+ */
 char *gonio_i_base_name(const char *path, bool keep_extension);
 
 #endif

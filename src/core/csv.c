@@ -50,7 +50,8 @@ void gonio_i_csv_free(gonio_i_csv **csv)
 
 /* ---- building ---- */
 
-/* The block with room for one more item, capacities being powers of two; NULL when out of memory. */
+/* The block with room for one more item, capacities being powers of two; NULL when out of memory.
+ */
 static void *grow(void *block, size_t count, size_t size)
 {
     if (count > 0 && (count & (count - 1)) != 0) {
@@ -273,7 +274,8 @@ typedef struct record {
 static void on_cell(void *text, size_t length, void *data)
 {
     record *r = data;
-    r->failed = !append(&r->cell, &r->count, strndup(text != NULL ? text : "", length)) || r->failed;
+    r->failed =
+        !append(&r->cell, &r->count, strndup(text != NULL ? text : "", length)) || r->failed;
 }
 
 static void on_end(int terminator, void *data)
@@ -334,8 +336,8 @@ static gonio_status take_row(source *s, record *r)
     gonio_i_csv *csv = s->csv;
     if (r->count != csv->columns) {
         return gonio_i_fail(s->context, GONIO_ERROR_FORMAT,
-                            "%s:%zu: %zu cells where the header names %zu columns", s->path, s->line,
-                            r->count, csv->columns);
+                            "%s:%zu: %zu cells where the header names %zu columns", s->path,
+                            s->line, r->count, csv->columns);
     }
     size_t *lines = grow(csv->line, csv->rows, sizeof *lines);
     csv->line = lines != NULL ? lines : csv->line;

@@ -1,6 +1,6 @@
 /* Tables as text (CSV), on libcsv: `#` comment lines, a line of column names, then rows. Commas,
- * semicolons or tabs between cells, quotes, CRLF and a byte-order mark are understood; with semicolons
- * or tabs a decimal comma is too. */
+ * semicolons or tabs between cells, quotes, CRLF and a byte-order mark are understood; with
+ * semicolons or tabs a decimal comma is too. */
 #ifndef GONIO_CSV_H
 #define GONIO_CSV_H
 

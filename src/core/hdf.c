@@ -197,7 +197,8 @@ bool gonio_i_hdf_read_number(hid_t parent, const char *name, int64_t *value)
     }
     const hid_t type = H5Aget_type(attribute);
     const hid_t space = H5Aget_space(attribute);
-    const bool done = H5Tget_class(type) == H5T_INTEGER && H5Sget_simple_extent_npoints(space) == 1 &&
+    const bool done = H5Tget_class(type) == H5T_INTEGER &&
+                      H5Sget_simple_extent_npoints(space) == 1 &&
                       H5Aread(attribute, H5T_NATIVE_INT64, value) >= 0;
     H5Sclose(space);
     H5Tclose(type);
@@ -217,8 +218,7 @@ bool gonio_i_hdf_write_array(hid_t parent, const char *name, int rank, const siz
     H5Pset_obj_track_times(properties, false); /* same input, same bytes */
     const hid_t set =
         H5Dcreate2(parent, name, file_type, space, H5P_DEFAULT, properties, H5P_DEFAULT);
-    bool done =
-        set >= 0 && H5Dwrite(set, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0;
+    bool done = set >= 0 && H5Dwrite(set, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0;
     done = set >= 0 && H5Dclose(set) >= 0 && done;
     H5Pclose(properties);
     H5Sclose(space);

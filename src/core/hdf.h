@@ -1,5 +1,6 @@
 /* Reading and writing HDF5 with checks. The HDF5 library is not safe for threads: every use stands
- * between gonio_i_hdf_enter and gonio_i_hdf_leave, which take a lock and keep HDF5 from printing. */
+ * between gonio_i_hdf_enter and gonio_i_hdf_leave, which take a lock and keep HDF5 from printing.
+ */
 #ifndef GONIO_HDF_H
 #define GONIO_HDF_H
 
@@ -16,8 +17,8 @@ void gonio_i_hdf_enter(gonio_i_hdf_session *session);
 void gonio_i_hdf_leave(gonio_i_hdf_session *session);
 
 /* A list of strings (fixed or variable length, rank 0 or 1) of an attribute, or of a dataset if
- * `dataset` is set. The result is one block: release with free(). Returns false if it is not there or
- * is something else. */
+ * `dataset` is set. The result is one block: release with free(). Returns false if it is not there
+ * or is something else. */
 bool gonio_i_hdf_read_strings(hid_t parent, const char *name, bool dataset, char ***strings,
                               size_t *count);
 

@@ -13,8 +13,8 @@ typedef struct gonio_i_output {
     int descriptor;  /* -1 if another library writes the temporary file */
 } gonio_i_output;
 
-/* Starts an output. Errors: _IO if the target is a folder, is write-protected or its folder cannot be
- * written. */
+/* Starts an output. Errors: _IO if the target is a folder, is write-protected or its folder cannot
+ * be written. */
 gonio_status gonio_i_output_open(gonio_context *context, const char *path, gonio_i_output *output);
 
 /* The same, but leaves it to the caller to write output->temporary (closed and empty). Errors: also

@@ -1,6 +1,7 @@
 /* The observation matrix: materials read once, in log space, kept in an unlinked scratch file.
  *
- * Scratch layout: [material][cell of the whole grid][channel], float64, NaN where there is no data. */
+ * Scratch layout: [material][cell of the whole grid][channel], float64, NaN where there is no data.
+ */
 #include <gonio/database.h>
 
 #include <errno.h>
@@ -48,8 +49,8 @@ static gonio_status open_scratch(gonio_context *context, const char *folder, int
     free(name);
     if (*descriptor < 0) {
         return gonio_i_fail(context, GONIO_ERROR_IO,
-                            "%s: cannot make a scratch file: %s; set TMPDIR to another folder", used,
-                            strerror(reason));
+                            "%s: cannot make a scratch file: %s; set TMPDIR to another folder",
+                            used, strerror(reason));
     }
     return GONIO_OK;
 }
@@ -64,9 +65,10 @@ static gonio_status scratch_write(gonio_context *context, int descriptor, const 
             continue;
         }
         if (done < 0) {
-            return gonio_i_fail(context, GONIO_ERROR_IO,
-                                "cannot write the scratch file: %s; set TMPDIR to a folder with room",
-                                strerror(errno));
+            return gonio_i_fail(
+                context, GONIO_ERROR_IO,
+                "cannot write the scratch file: %s; set TMPDIR to a folder with room",
+                strerror(errno));
         }
         from += done;
         offset += done;
@@ -143,7 +145,8 @@ static size_t full_rows(const reader *r)
     return GONIO_SLAB_BINS;
 }
 
-/* Reads one slab of a material into the scratch file and counts the materials with data per cell. */
+/* Reads one slab of a material into the scratch file and counts the materials with data per cell.
+ */
 static gonio_status read_slab(gonio_context *context, const gonio_database *database, size_t column,
                               const gonio_material *material, int theta_h, const reader *r,
                               gonio_fingerprint *fingerprint, uint32_t *present)
@@ -234,7 +237,8 @@ static gonio_status read_materials(gonio_context *context, gonio_database *datab
     return result;
 }
 
-/* A cell stays if all materials have data there. Warns where that costs much, naming who lacks most. */
+/* A cell stays if all materials have data there. Warns where that costs much, naming who lacks
+ * most. */
 static gonio_status keep_common_cells(gonio_context *context, gonio_database *database,
                                       const uint32_t *present)
 {
@@ -317,8 +321,7 @@ static gonio_status fill(gonio_context *context, gonio_database *database, const
 }
 
 gonio_status gonio_database_create(gonio_context *context, const char *const *paths, size_t count,
-                                   const gonio_database_options *options,
-                                   gonio_database **database)
+                                   const gonio_database_options *options, gonio_database **database)
 {
     if (count == 0) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "no materials given");
@@ -440,7 +443,8 @@ gonio_status gonio_database_read_rows(const gonio_database *database, gonio_cont
     for (size_t k = 0; k < materials && status == GONIO_OK; k++) {
         const size_t material = subset != NULL ? subset[k] : k;
         const size_t start = material * grid_cells(view.representation) + (size_t)view.cell[low];
-        status = scratch_read(context, database->scratch, cells, span * size, (off_t)(start * size));
+        status =
+            scratch_read(context, database->scratch, cells, span * size, (off_t)(start * size));
         if (status == GONIO_OK) {
             pick_rows(database, cells, low, first, count, block + k * per_material * count);
         }

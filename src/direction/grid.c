@@ -53,8 +53,8 @@ gonio_bin gonio_bin_from_index(int32_t index)
                        index % GONIO_PHI_D_BINS};
 }
 
-/* cos theta_i and cos theta_o are both positive where |cos phi_d| < 1/(tan theta_h tan theta_d), which
- * is an interval around phi_d = pi/2. */
+/* cos theta_i and cos theta_o are both positive where |cos phi_d| < 1/(tan theta_h tan theta_d),
+ * which is an interval around phi_d = pi/2. */
 int gonio_i_first_valid_phi(int theta_h, int theta_d)
 {
     const gonio_half_difference c = gonio_bin_centre((gonio_bin){theta_h, theta_d, 0});

@@ -14,8 +14,9 @@ typedef struct gonio_i_stencil {
     double weight; /* >= 0; the weights add up to 1 */
 } gonio_i_stencil;
 
-/* The bins around a point, linear in sqrt(theta_h), theta_d and (trilinear) phi_d, which is periodic
- * with period pi; constant beyond the first and the last centre. Bilinear: phi_d = 0 in every bin. */
+/* The bins around a point, linear in sqrt(theta_h), theta_d and (trilinear) phi_d, which is
+ * periodic with period pi; constant beyond the first and the last centre. Bilinear: phi_d = 0 in
+ * every bin. */
 void gonio_i_bilinear(gonio_half_difference coordinates, gonio_i_stencil stencil[GONIO_I_BILINEAR]);
 void gonio_i_trilinear(gonio_half_difference coordinates,
                        gonio_i_stencil stencil[GONIO_I_TRILINEAR]);

@@ -26,15 +26,15 @@ static interval periodic(double position, int bins)
 void gonio_i_bilinear(gonio_half_difference c, gonio_i_stencil stencil[GONIO_I_BILINEAR])
 {
     const double quarter = M_PI / 2.0;
-    const interval h = clamped(GONIO_THETA_H_BINS * sqrt(fmax(c.theta_h, 0.0) / quarter),
-                               GONIO_THETA_H_BINS);
+    const interval h =
+        clamped(GONIO_THETA_H_BINS * sqrt(fmax(c.theta_h, 0.0) / quarter), GONIO_THETA_H_BINS);
     const interval d = clamped(GONIO_THETA_D_BINS * c.theta_d / quarter, GONIO_THETA_D_BINS);
     for (int k = 0; k < GONIO_I_BILINEAR; k++) {
         const bool upper_h = (k & 2) != 0;
         const bool upper_d = (k & 1) != 0;
-        stencil[k] = (gonio_i_stencil){
-            {upper_h ? h.high : h.low, upper_d ? d.high : d.low, 0},
-            (upper_h ? h.fraction : 1.0 - h.fraction) * (upper_d ? d.fraction : 1.0 - d.fraction)};
+        stencil[k] = (gonio_i_stencil){{upper_h ? h.high : h.low, upper_d ? d.high : d.low, 0},
+                                       (upper_h ? h.fraction : 1.0 - h.fraction) *
+                                           (upper_d ? d.fraction : 1.0 - d.fraction)};
     }
 }
 

@@ -97,8 +97,8 @@ gonio_status gonio_i_eigen(gonio_context *context, double *a, size_t n, bool vec
         return status;
     }
     /* Column-major on a symmetric matrix: the eigenvectors come out as rows of `a`. */
-    const lapack_int info = LAPACKE_dsyevd(LAPACK_COL_MAJOR, vectors ? 'V' : 'N', 'U', (int)n, a,
-                                           (int)n, values);
+    const lapack_int info =
+        LAPACKE_dsyevd(LAPACK_COL_MAJOR, vectors ? 'V' : 'N', 'U', (int)n, a, (int)n, values);
     return check_info(context, "dsyevd", info);
 }
 
@@ -107,8 +107,8 @@ gonio_status gonio_i_divide_cholesky(gonio_context *context, double *a, size_t r
 {
     gonio_status status = check_size(context, rows, n);
     if (status == GONIO_OK) {
-        status = check_info(context, "dpotrf",
-                            LAPACKE_dpotrf(LAPACK_ROW_MAJOR, 'U', (int)n, c, (int)n));
+        status =
+            check_info(context, "dpotrf", LAPACKE_dpotrf(LAPACK_ROW_MAJOR, 'U', (int)n, c, (int)n));
     }
     if (status == GONIO_OK) {
         cblas_dtrsm(CblasRowMajor, CblasRight, CblasUpper, CblasNoTrans, CblasNonUnit, (int)rows,
@@ -160,10 +160,10 @@ static gonio_status back_substitute(gonio_context *context, const double *factor
                                     size_t n, const double *b, double *work, double *x)
 {
     memcpy(work, b, rows * sizeof *work);
-    const gonio_status status = check_info(
-        context, "dormqr",
-        LAPACKE_dormqr(LAPACK_COL_MAJOR, 'L', 'T', (int)rows, 1, (int)n, factors, (int)rows,
-                       reflectors, work, (int)rows));
+    const gonio_status status =
+        check_info(context, "dormqr",
+                   LAPACKE_dormqr(LAPACK_COL_MAJOR, 'L', 'T', (int)rows, 1, (int)n, factors,
+                                  (int)rows, reflectors, work, (int)rows));
     if (status == GONIO_OK) {
         cblas_dtrsv(CblasColMajor, CblasUpper, CblasNoTrans, CblasNonUnit, (int)n, factors,
                     (int)rows, work, 1);
@@ -178,10 +178,9 @@ static gonio_status solve(gonio_context *context, double *factors, size_t rows, 
                           double *reflectors, lapack_int *pivots, double *work, const double *b,
                           size_t columns, double *x, size_t *rank, double *condition)
 {
-    gonio_status status =
-        check_info(context, "dgeqp3",
-                   LAPACKE_dgeqp3(LAPACK_COL_MAJOR, (int)rows, (int)n, factors, (int)rows, pivots,
-                                  reflectors));
+    gonio_status status = check_info(context, "dgeqp3",
+                                     LAPACKE_dgeqp3(LAPACK_COL_MAJOR, (int)rows, (int)n, factors,
+                                                    (int)rows, pivots, reflectors));
     if (status != GONIO_OK) {
         return status;
     }

@@ -1,6 +1,6 @@
-/* Dense linear algebra: the only callers of BLAS and LAPACK. Sizes are checked against LAPACK's 32-bit
- * integers, `info` becomes a status. Matrices are row-major with the row length as leading dimension
- * unless said otherwise. */
+/* Dense linear algebra: the only callers of BLAS and LAPACK. Sizes are checked against LAPACK's
+ * 32-bit integers, `info` becomes a status. Matrices are row-major with the row length as leading
+ * dimension unless said otherwise. */
 #ifndef GONIO_LINALG_H
 #define GONIO_LINALG_H
 
@@ -25,8 +25,8 @@ gonio_status gonio_i_product_transposed(gonio_context *context, const double *a,
                                         size_t k, const double *b, size_t n, double *c,
                                         size_t leading);
 
-/* Eigenvalues (ascending) of a symmetric n x n matrix, and with `vectors` its eigenvectors: on return
- * row j of a is the eigenvector of the j-th value. a is overwritten in any case. */
+/* Eigenvalues (ascending) of a symmetric n x n matrix, and with `vectors` its eigenvectors: on
+ * return row j of a is the eigenvector of the j-th value. a is overwritten in any case. */
 gonio_status gonio_i_eigen(gonio_context *context, double *a, size_t n, bool vectors,
                            double *values);
 
@@ -36,15 +36,15 @@ gonio_status gonio_i_divide_cholesky(gonio_context *context, double *a, size_t r
                                      double *c);
 
 /* argmin |A x - b| by QR with column pivoting. A: rows x n, row-major; b: `columns`
- * right-hand sides of `rows` values each; x: [columns][n]. rank: of A to working precision; if it is
- * less than n, x is not written. condition: (largest/smallest singular value of A)^2. */
+ * right-hand sides of `rows` values each; x: [columns][n]. rank: of A to working precision; if it
+ * is less than n, x is not written. condition: (largest/smallest singular value of A)^2. */
 gonio_status gonio_i_least_squares(gonio_context *context, const double *a, size_t rows, size_t n,
                                    const double *b, size_t columns, double *x, size_t *rank,
                                    double *condition);
 
-/* One step of QR with row pivoting: finds the longest of the rows (rows x n, row-major) and takes its
- * direction out of all of them. GONIO_ERROR_DATA if all are 0 to rounding; `step` is the number of
- * directions already taken out. */
+/* One step of QR with row pivoting: finds the longest of the rows (rows x n, row-major) and takes
+ * its direction out of all of them. GONIO_ERROR_DATA if all are 0 to rounding; `step` is the number
+ * of directions already taken out. */
 gonio_status gonio_i_take_farthest(gonio_context *context, double *a, size_t rows, size_t n,
                                    size_t step, size_t *farthest);
 

@@ -104,8 +104,9 @@ static gonio_status open_atlas(gonio_context *context, const char *name, gonio_m
     *self = index;
     const gonio_material_source source = {read_atlas_slab, free, self};
     char *format = gonio_i_format("built-in %s", gonio_atlas_class(index));
-    const gonio_status status = format == NULL ? GONIO_ERROR_MEMORY
-                            : gonio_material_create(context, name, format, source, material);
+    const gonio_status status =
+        format == NULL ? GONIO_ERROR_MEMORY
+                       : gonio_material_create(context, name, format, source, material);
     free(format);
     if (status != GONIO_OK) {
         free(self);
@@ -119,8 +120,7 @@ static gonio_status look_at(gonio_context *context, const char *path, gonio_i_fi
     FILE *stream = stat(path, &status) == 0 && !S_ISDIR(status.st_mode) ? fopen(path, "rbe") : NULL;
     if (stream == NULL) {
         const int reason = errno == 0 || S_ISDIR(status.st_mode) ? EISDIR : errno;
-        return gonio_i_fail(context, GONIO_ERROR_IO, "%s: cannot read: %s", path,
-                            strerror(reason));
+        return gonio_i_fail(context, GONIO_ERROR_IO, "%s: cannot read: %s", path, strerror(reason));
     }
     file->path = path;
     file->size = (uint64_t)status.st_size;

@@ -91,8 +91,9 @@ bool gonio_table_value(const gonio_table *table, gonio_half_difference coordinat
     return total > 0.0;
 }
 
-/* Outgoing directions are drawn through the half vector, h = (theta_h, phi) with theta_h spaced like
- * the grid, so that the narrowest peak of a table is resolved: d omega_o = 4 (i.h) d omega_h. */
+/* Outgoing directions are drawn through the half vector, h = (theta_h, phi) with theta_h spaced
+ * like the grid, so that the narrowest peak of a table is resolved: d omega_o = 4 (i.h) d omega_h.
+ */
 void gonio_table_albedo(const gonio_table *table, double theta_i, double albedo[GONIO_CHANNELS])
 {
     enum { POLAR = 2 * GONIO_THETA_H_BINS, AZIMUTH = 180 };

@@ -88,8 +88,8 @@ static bool channels_overlap(int a, int b)
     return a == b || a == GONIO_ALL_CHANNELS || b == GONIO_ALL_CHANNELS;
 }
 
-/* A direction may be listed once for each channel. `seen` holds, for each group, the last reading of each
- * channel plus one. */
+/* A direction may be listed once for each channel. `seen` holds, for each group, the last reading
+ * of each channel plus one. */
 static gonio_status refuse_repeats(gonio_context *context, const gonio_readings *readings)
 {
     size_t(*seen)[GONIO_CHANNELS + 1] = gonio_i_allocate(context, readings->count, sizeof *seen);
@@ -142,10 +142,11 @@ static gonio_status find_columns(gonio_context *context, const gonio_readings *r
         any = any || c->value[k] >= 0;
     }
     if (values_needed && !any) {
-        return gonio_i_fail(context, GONIO_ERROR_FORMAT,
-                            "%s: no column of values (R_per_sr, G_per_sr, B_per_sr): a plan that was "
-                            "not measured yet?",
-                            readings->path);
+        return gonio_i_fail(
+            context, GONIO_ERROR_FORMAT,
+            "%s: no column of values (R_per_sr, G_per_sr, B_per_sr): a plan that was "
+            "not measured yet?",
+            readings->path);
     }
     c->channel = gonio_i_csv_column(readings->csv, "channel");
     return GONIO_OK;
@@ -245,8 +246,8 @@ static gonio_status read_row(gonio_context *context, const gonio_readings *readi
     double degrees[4];
     gonio_status status = read_angles(context, readings, row, c, degrees);
     if (status == GONIO_OK) {
-        reading->pair = (gonio_pair){to_angles(degrees[0], degrees[1]),
-                                     to_angles(degrees[2], degrees[3])};
+        reading->pair =
+            (gonio_pair){to_angles(degrees[0], degrees[1]), to_angles(degrees[2], degrees[3])};
         reading->line = readings->csv->line[row];
         status = read_channel(context, readings, row, c, &reading->channel);
     }
@@ -348,9 +349,9 @@ static bool set_values(gonio_i_csv *csv, const gonio_readings *readings)
         }
         for (size_t row = 0; row < readings->count; row++) {
             const double value = readings->reading[row].value[k];
-            const bool set =
-                isnan(value) ? gonio_i_csv_set(csv, row, (size_t)column, "%s", "")
-                             : gonio_i_csv_set(csv, row, (size_t)column, "%.10g", value);
+            const bool set = isnan(value)
+                                 ? gonio_i_csv_set(csv, row, (size_t)column, "%s", "")
+                                 : gonio_i_csv_set(csv, row, (size_t)column, "%.10g", value);
             if (!set) {
                 return false;
             }

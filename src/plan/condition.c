@@ -1,15 +1,16 @@
-/* Condition-number plans (Ali et al., section 3.8): swap chosen rows for others until no single swap
- * lowers kappa = lambda_max/lambda_min of G = X'X.
+/* Condition-number plans (Ali et al., section 3.8): swap chosen rows for others until no single
+ * swap lowers kappa = lambda_max/lambda_min of G = X'X.
  *
  * The positions of the choice take turns; the rows outside are tried at each in cyclic order from a
- * random one on, and the first that lowers kappa is taken. (On ten bases of 35 components, 80 rows and
- * one start, this ends at kappa 4.1 on average; the best row of each position at 5.2, the best of all
- * swaps at over 6: greed gets stuck early.)
+ * random one on, and the first that lowers kappa is taken. (On ten bases of 35 components, 80 rows
+ * and one start, this ends at kappa 4.1 on average; the best row of each position at 5.2, the best
+ * of all swaps at over 6: greed gets stuck early.)
  *
- * Taking a row out leaves a largest eigenvalue of at least d_{K-1}, the second largest of G, so a swap
- * that lowers kappa must have lambda_min > mu = d_{K-1}/kappa. The filter (filter.h) finds the rows that
- * do, all at once, and those are decided exactly (inertia.h). Nothing is approximated: the same swaps
- * win as if kappa were computed for every one. A full turn without a swap proves a local optimum. */
+ * Taking a row out leaves a largest eigenvalue of at least d_{K-1}, the second largest of G, so a
+ * swap that lowers kappa must have lambda_min > mu = d_{K-1}/kappa. The filter (filter.h) finds the
+ * rows that do, all at once, and those are decided exactly (inertia.h). Nothing is approximated:
+ * the same swaps win as if kappa were computed for every one. A full turn without a swap proves a
+ * local optimum. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -96,7 +97,8 @@ static gonio_status refresh(search *s)
     return gonio_i_filter_refresh(&s->filter, s->gram, s->d, bound(s));
 }
 
-/* The first row in the cyclic order from `from` on that lowers kappa at a position; `rows` if none. */
+/* The first row in the cyclic order from `from` on that lowers kappa at a position; `rows` if none.
+ */
 static gonio_status first_winner(search *s, size_t position, size_t from, size_t *winner)
 {
     *winner = s->problem->rows;
@@ -161,7 +163,8 @@ static gonio_status sweep(search *s, int restart, int *swaps, gonio_i_selection 
     for (size_t position = 0; position < s->problem->count && status == GONIO_OK; position++) {
         size_t row = 0;
         bool gained = false;
-        status = first_winner(s, position, gonio_i_random_below(&s->random, s->problem->rows), &row);
+        status =
+            first_winner(s, position, gonio_i_random_below(&s->random, s->problem->rows), &row);
         if (status == GONIO_OK && row < s->problem->rows) {
             status = make_swap(s, position, row, &gained);
         }

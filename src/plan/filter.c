@@ -81,8 +81,8 @@ static gonio_status fill_gains(gonio_i_filter *f, size_t chunk, double *product)
     const size_t first = chunk * CHUNK;
     const size_t rows = chunk_rows(f->problem->rows, chunk);
     const double *u = f->problem->vectors + first * k;
-    const gonio_status status = gonio_i_product_transposed(f->problem->context, u, rows, k,
-                                                           f->resolvent, k, product, k);
+    const gonio_status status =
+        gonio_i_product_transposed(f->problem->context, u, rows, k, f->resolvent, k, product, k);
     for (size_t i = 0; i < rows && status == GONIO_OK; i++) {
         f->gain[first + i] = 1.0 + dot(u + i * k, product + i * k, k);
     }
@@ -219,8 +219,8 @@ static void update_matrix(gonio_i_filter *f, const double *bv, const double *bu,
     const size_t k = f->problem->components;
     for (size_t a = 0; a < k; a++) {
         for (size_t b = 0; b < k; b++) {
-            f->resolvent[a * k + b] -= bv[a] * (c.vv * bv[b] + c.vu * bu[b]) +
-                                       bu[a] * (c.vu * bv[b] + c.uu * bu[b]);
+            f->resolvent[a * k + b] -=
+                bv[a] * (c.vv * bv[b] + c.vu * bu[b]) + bu[a] * (c.vu * bv[b] + c.uu * bu[b]);
         }
     }
 }
@@ -237,8 +237,7 @@ gonio_status gonio_i_filter_swap(gonio_i_filter *f, const double *x, size_t posi
     }
     double *bv = bu + k;
     memcpy(bv, f->bv + (position - f->first) * k, k * sizeof *bv);
-    gonio_status status =
-        gonio_i_product_transposed(p->context, u, 1, k, f->resolvent, k, bu, k);
+    gonio_status status = gonio_i_product_transposed(p->context, u, 1, k, f->resolvent, k, bu, k);
     const woodbury c = woodbury_of(dot(v, bv, k), dot(u, bv, k), dot(u, bu, k));
     /* Later positions of the batch only: the search does not go back within one. */
     const size_t last = f->first + f->batch;

@@ -1,5 +1,6 @@
-/* The filter of the condition-number search: for one position of the choice, which rows could take it
- * and lift lambda_min above a bound mu. It never misses one; what passes is decided exactly elsewhere.
+/* The filter of the condition-number search: for one position of the choice, which rows could take
+ * it and lift lambda_min above a bound mu. It never misses one; what passes is decided exactly
+ * elsewhere.
  *
  * With G = X'X, B = (G - mu)^-1, v the row at the position and u a candidate, Sylvester's law on
  * G - vv' + uu' - mu (inertia.h) reads, in terms of
@@ -14,20 +15,22 @@
 
 #include "method.h"
 
-enum { GONIO_I_BATCH = 16 }; /* positions whose w are kept: a product this wide is not memory-bound */
+enum {
+    GONIO_I_BATCH = 16
+}; /* positions whose w are kept: a product this wide is not memory-bound */
 
 typedef struct gonio_i_filter {
     const gonio_i_selection_problem *problem;
     double mu;
-    double *resolvent; /* B, [K][K] */
-    double *gain;      /* b_u, [rows] */
-    double *w;         /* [GONIO_I_BATCH][rows] */
-    double *w_in;      /* [rows], scratch of an update */
-    double *bv;        /* [GONIO_I_BATCH][K]: B v of the batch */
-    size_t first;      /* position of the batch's first */
-    size_t batch;      /* positions in the batch; 0 if none is loaded */
-    int below;         /* eigenvalues of G below mu */
-    int updates;       /* since the last refresh */
+    double *resolvent;   /* B, [K][K] */
+    double *gain;        /* b_u, [rows] */
+    double *w;           /* [GONIO_I_BATCH][rows] */
+    double *w_in;        /* [rows], scratch of an update */
+    double *bv;          /* [GONIO_I_BATCH][K]: B v of the batch */
+    size_t first;        /* position of the batch's first */
+    size_t batch;        /* positions in the batch; 0 if none is loaded */
+    int below;           /* eigenvalues of G below mu */
+    int updates;         /* since the last refresh */
     unsigned char *pass; /* [rows] */
 } gonio_i_filter;
 
@@ -45,9 +48,9 @@ gonio_status gonio_i_filter_load(gonio_i_filter *filter, const double *x, size_t
 size_t gonio_i_filter_survivors(gonio_i_filter *filter, const double *x, size_t position,
                                 size_t *survivors);
 
-/* Follows a swap at a position of the batch: row `in` of the matrix for the row v = x[position] that was
- * there. To be called before x is changed; the swap must be one that passed. Within a batch, positions
- * must come in rising order. */
+/* Follows a swap at a position of the batch: row `in` of the matrix for the row v = x[position]
+ * that was there. To be called before x is changed; the swap must be one that passed. Within a
+ * batch, positions must come in rising order. */
 gonio_status gonio_i_filter_swap(gonio_i_filter *filter, const double *x, size_t position,
                                  size_t in);
 

@@ -44,7 +44,8 @@ int gonio_i_exchange_count_above(const gonio_i_exchange *e, double x)
     return s.above + positive - 1;
 }
 
-/* lambda_max(H) is at least the second largest d, and at least q'Hq for the leading eigenvector q. */
+/* lambda_max(H) is at least the second largest d, and at least q'Hq for the leading eigenvector q.
+ */
 static double largest_at_least(const gonio_i_exchange *e)
 {
     const size_t top = e->n - 1;

@@ -1,4 +1,5 @@
-/* A selection method: to add one, write a file like random.c and add a line to the table in plan.c. */
+/* A selection method: to add one, write a file like random.c and add a line to the table in plan.c.
+ */
 #ifndef GONIO_METHOD_H
 #define GONIO_METHOD_H
 

@@ -115,9 +115,9 @@ static gonio_status check_selection(gonio_context *context, size_t rows, size_t 
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "a plan needs at least 1 reading");
     }
     if (n > rows) {
-        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                            "%zu readings asked for, but the basis has only %zu rows to choose from", n,
-                            rows);
+        return gonio_i_fail(
+            context, GONIO_ERROR_ARGUMENT,
+            "%zu readings asked for, but the basis has only %zu rows to choose from", n, rows);
     }
     if (method->needs_full_rank && n < components) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
@@ -211,9 +211,9 @@ static void fill_entries(const gonio_basis_view *basis, const size_t *chosen, do
     for (size_t j = 0; j < plan->count; j++) {
         const size_t position = joint ? chosen[j] / GONIO_CHANNELS : chosen[j];
         const int32_t cell = basis->cell[position];
-        plan->entries[j] = (gonio_plan_entry){
-            cell, joint ? (int)(chosen[j] % GONIO_CHANNELS) : GONIO_ALL_CHANNELS,
-            pair_of(basis, cell, phi_d)};
+        plan->entries[j] =
+            (gonio_plan_entry){cell, joint ? (int)(chosen[j] % GONIO_CHANNELS) : GONIO_ALL_CHANNELS,
+                               pair_of(basis, cell, phi_d)};
     }
 }
 
@@ -262,7 +262,8 @@ gonio_status gonio_plan_create(gonio_context *context, const gonio_basis *basis,
     }
     if (!(options->phi_d >= 0.0 && options->phi_d < M_PI)) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                            "phi_d of %g degrees is outside [0, 180)", options->phi_d * 180.0 / M_PI);
+                            "phi_d of %g degrees is outside [0, 180)",
+                            options->phi_d * 180.0 / M_PI);
     }
     gonio_status status = check_selection(context, view.rows, components, options);
     if (status != GONIO_OK) {

@@ -76,10 +76,9 @@ static gonio_status write_table(gonio_context *context, const gonio_plan *plan, 
     if (csv == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    const gonio_status status =
-        fill(csv, plan, command)
-            ? gonio_i_csv_write(context, csv, path)
-            : gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", path);
+    const gonio_status status = fill(csv, plan, command) ? gonio_i_csv_write(context, csv, path)
+                                                         : gonio_i_fail(context, GONIO_ERROR_MEMORY,
+                                                                        "%s: out of memory", path);
     gonio_i_csv_free(&csv);
     return status;
 }

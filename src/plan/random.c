@@ -32,5 +32,5 @@ static gonio_status select_random(const gonio_i_selection_problem *problem,
     return status;
 }
 
-const gonio_i_method gonio_i_random_method = {
-    "random", "rows drawn at random, the yardstick", false, select_random};
+const gonio_i_method gonio_i_random_method = {"random", "rows drawn at random, the yardstick",
+                                              false, select_random};

@@ -76,8 +76,7 @@ static gonio_status read_reconstructed(void *self, gonio_context *context, int t
     (void)context;
     for (int theta_d = 0; theta_d < GONIO_THETA_D_BINS; theta_d++) {
         for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
-            double *row =
-                rho + channel * GONIO_SLAB_BINS + (size_t)theta_d * GONIO_PHI_D_BINS;
+            double *row = rho + channel * GONIO_SLAB_BINS + (size_t)theta_d * GONIO_PHI_D_BINS;
             fill_row(self, theta_h, theta_d, channel, row);
             to_brdf(GONIO_PHI_D_BINS, row, (int)channel);
             clear_invalid(theta_h, theta_d, row);
@@ -144,6 +143,6 @@ gonio_status gonio_bivariate_material(gonio_context *context, const gonio_materi
 {
     /* The source only reads the original; its interface has no const. */
     const gonio_material_source source = {read_average, NULL, (void *)(uintptr_t)original};
-    return gonio_material_create(context, gonio_material_name(original), "bivariate average", source,
-                                 material);
+    return gonio_material_create(context, gonio_material_name(original), "bivariate average",
+                                 source, material);
 }

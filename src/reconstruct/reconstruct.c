@@ -65,13 +65,15 @@ static gonio_status undetermined(gonio_context *context, size_t count, size_t ra
 {
     if (rank == 0) {
         return gonio_i_fail(context, GONIO_ERROR_UNDETERMINED,
-                            "%zu readings for %zu coefficients, none of them usable", count, needed);
+                            "%zu readings for %zu coefficients, none of them usable", count,
+                            needed);
     }
-    return gonio_i_fail(context, GONIO_ERROR_UNDETERMINED,
-                        "%zu readings of which %zu are independent cannot determine %zu "
-                        "coefficients: measure at least %zu more directions, or use fewer components "
-                        "(--basis %zu)",
-                        count, rank, needed, needed - rank, rank);
+    return gonio_i_fail(
+        context, GONIO_ERROR_UNDETERMINED,
+        "%zu readings of which %zu are independent cannot determine %zu "
+        "coefficients: measure at least %zu more directions, or use fewer components "
+        "(--basis %zu)",
+        count, rank, needed, needed - rank, rank);
 }
 
 /* Root mean square of X c - b. */
@@ -121,8 +123,8 @@ typedef struct task {
     const gonio_reconstruct_options *options;
 } task;
 
-/* Whether a reading's channel makes an equation, given what was planned. A direction listed once for each
- * channel was read once: with all channels only its first line counts. */
+/* Whether a reading's channel makes an equation, given what was planned. A direction listed once
+ * for each channel was read once: with all channels only its first line counts. */
 static bool is_used(const task *t, size_t index, int channel)
 {
     const gonio_reading *reading = &t->readings->reading[index];
@@ -138,17 +140,18 @@ static gonio_status add_reading(const task *t, const gonio_reading *reading, int
 {
     const double value = reading->value[channel];
     if (isnan(value) && channel == reading->channel) {
-        return gonio_i_fail(t->context, GONIO_ERROR_DATA,
-                            "%s:%zu: channel %c was planned here but not read; read it, or delete the "
-                            "line",
-                            t->readings->path, reading->line, "RGB"[channel]);
+        return gonio_i_fail(
+            t->context, GONIO_ERROR_DATA,
+            "%s:%zu: channel %c was planned here but not read; read it, or delete the "
+            "line",
+            t->readings->path, reading->line, "RGB"[channel]);
     }
     if (isnan(value)) {
         return GONIO_OK;
     }
     double mean = 0.0;
-    gonio_basis_row_at(t->basis, gonio_half_difference_from_pair(reading->pair), channel, components,
-                       &mean, e->x + e->count * components);
+    gonio_basis_row_at(t->basis, gonio_half_difference_from_pair(reading->pair), channel,
+                       components, &mean, e->x + e->count * components);
     e->b[e->count++] = gonio_log_from_brdf(value, channel) - mean;
     return GONIO_OK;
 }

@@ -41,7 +41,8 @@ static bool holds(const size_t *chosen, size_t n, size_t row)
 }
 
 /* The lowest kappa that one swap reaches. */
-static double best_single_swap(const double *v, size_t rows, size_t k, const size_t *chosen, size_t n)
+static double best_single_swap(const double *v, size_t rows, size_t k, const size_t *chosen,
+                               size_t n)
 {
     size_t *trial = malloc(n * sizeof *trial);
     double best = INFINITY;
@@ -79,7 +80,8 @@ static void test_local_optimum(void **state)
     (void)state;
     static const struct {
         size_t rows, k, n;
-    } cases[] = {{60, 2, 2}, {60, 2, 5}, {120, 5, 5}, {120, 5, 12}, {200, 8, 20}, {90, 1, 3}, {12, 3, 12}};
+    } cases[] = {{60, 2, 2},   {60, 2, 5}, {120, 5, 5}, {120, 5, 12},
+                 {200, 8, 20}, {90, 1, 3}, {12, 3, 12}};
     for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
         for (uint64_t seed = 0; seed < 4; seed++) {
             const size_t rows = cases[c].rows, k = cases[c].k, n = cases[c].n;

@@ -110,8 +110,8 @@ static int set_up(void **state)
     for (size_t k = 0; k < MATERIALS; k++) {
         paths[k] = path_of(json_string_value(json_array_get(names, k)));
     }
-    assert_int_equal(gonio_database_create(data.context, (const char *const *)paths, MATERIALS, NULL,
-                                           &data.database),
+    assert_int_equal(gonio_database_create(data.context, (const char *const *)paths, MATERIALS,
+                                           NULL, &data.database),
                      GONIO_OK);
     data.view = gonio_database_describe(data.database);
     data.summaries = calloc(MATERIALS, sizeof *data.summaries);
@@ -251,8 +251,8 @@ static double row_error(const split *s, size_t components, const size_t *rows, s
         b[i] = m->mean[s->view.cell[rows[i] / GONIO_CHANNELS]][rows[i] % GONIO_CHANNELS];
     }
     gonio_reconstruction *r = NULL;
-    assert_int_equal(
-        gonio_reconstruct_rows(data.context, s->basis, components, rows, count, b, &r), GONIO_OK);
+    assert_int_equal(gonio_reconstruct_rows(data.context, s->basis, components, rows, count, b, &r),
+                     GONIO_OK);
     double sum = m->scatter;
     for (size_t row = 0; row < s->view.rows; row++) {
         const int32_t cell = s->view.cell[row / GONIO_CHANNELS];
@@ -289,8 +289,8 @@ static void check_random_rows(const split *s)
         assert_int_equal(sscanf(key, "%zu,%zu", &components, &count), 2);
         size_t *rows = malloc(count * sizeof *rows);
         for (size_t k = 0; k < count; k++) {
-            rows[k] = (size_t)json_integer_value(
-                json_array_get(json_object_get(expected, "rows"), k));
+            rows[k] =
+                (size_t)json_integer_value(json_array_get(json_object_get(expected, "rows"), k));
         }
         double condition = 0.0;
         assert_int_equal(gonio_condition_number(data.context, s->view.vectors, s->view.components,

@@ -1,1 +1,55 @@
-int main(void) { return 0; }
+/* gonio: a table of commands. */
+#include "tool.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const tool_command commands[] = {
+    {"info", "what a file is: materials, bases, plans, readings", cmd_info},
+    {"convert", "a material to a MERL table", cmd_convert},
+    {"learn", "a basis from measured materials", cmd_learn},
+    {"plan", "where to measure", cmd_plan},
+    {"measure", "a simulated instrument reads a known material", cmd_measure},
+    {"reconstruct", "the whole BRDF from a few readings", cmd_reconstruct},
+    {"compare", "how far BRDFs are from a reference", cmd_compare},
+    {"demo", "the whole chain on a built-in material", cmd_demo},
+};
+
+enum { COMMANDS = sizeof commands / sizeof *commands };
+
+static void print_help(FILE *stream)
+{
+    fputs("gonio plans BRDF measurements and completes them.\n\n"
+          "Usage: gonio COMMAND ...\n\nCommands:\n",
+          stream);
+    for (int k = 0; k < COMMANDS; k++) {
+        fprintf(stream, "  %-12s %s\n", commands[k].name, commands[k].summary);
+    }
+    fputs("\n'gonio COMMAND -h' explains each; 'gonio demo' shows them at work.\n"
+          "gonio --version prints the version.\n",
+          stream);
+}
+
+int main(int argc, char **argv)
+{
+    const char *name = argc > 1 ? argv[1] : "";
+    if (strcmp(name, "--version") == 0 || strcmp(name, "-V") == 0) {
+        printf("gonio %s\n", gonio_version());
+        return 0;
+    }
+    if (strcmp(name, "-h") == 0 || strcmp(name, "--help") == 0 || strcmp(name, "help") == 0) {
+        print_help(stdout);
+        return 0;
+    }
+    for (int k = 0; k < COMMANDS; k++) {
+        if (strcmp(commands[k].name, name) == 0) {
+            const int code = commands[k].run(argc - 1, (const char **)(argv + 1));
+            return fflush(stdout) == 0 ? code : EXIT_DATA;
+        }
+    }
+    if (argc > 1) {
+        fprintf(stderr, "gonio: no command is called '%s'\n\n", name);
+    }
+    print_help(stderr);
+    return EXIT_USAGE;
+}

@@ -103,8 +103,8 @@ GONIO_I_VECTORISED static void to_reflectance(double *rho)
     double *b = rho + 2 * (size_t)GONIO_SLAB_BINS;
     for (size_t k = 0; k < GONIO_SLAB_BINS; k++) {
         /* False for negative numbers and NaN; infinity fails the second half. */
-        const bool data = (r[k] >= 0.0) & (g[k] >= 0.0) & (b[k] >= 0.0) &
-                          (r[k] + g[k] + b[k] < INFINITY);
+        const bool data =
+            (r[k] >= 0.0) & (g[k] >= 0.0) & (b[k] >= 0.0) & (r[k] + g[k] + b[k] < INFINITY);
         r[k] = data ? r[k] * scale[0] : -1.0;
         g[k] = data ? g[k] * scale[1] : -1.0;
         b[k] = data ? b[k] * scale[2] : -1.0;
@@ -119,9 +119,7 @@ static void fold(const double *full, double *half)
         for (size_t k = 0; k < GONIO_PHI_D_BINS; k++) {
             const double a = from[k];
             const double b = from[k + GONIO_PHI_D_BINS];
-            half[row * GONIO_PHI_D_BINS + k] = !(a >= 0.0)   ? b
-                                               : !(b >= 0.0) ? a
-                                                             : 0.5 * (a + b);
+            half[row * GONIO_PHI_D_BINS + k] = !(a >= 0.0) ? b : !(b >= 0.0) ? a : 0.5 * (a + b);
         }
     }
 }
@@ -152,8 +150,8 @@ static gonio_status read_slab(void *self, gonio_context *context, int theta_h, d
 {
     const merl_table *table = self;
     for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
-        const gonio_status status = read_plane(context, table, channel, theta_h,
-                                               rho + (size_t)channel * GONIO_SLAB_BINS);
+        const gonio_status status =
+            read_plane(context, table, channel, theta_h, rho + (size_t)channel * GONIO_SLAB_BINS);
         if (status != GONIO_OK) {
             return status;
         }
@@ -236,8 +234,8 @@ static gonio_status write_slab(gonio_context *context, const gonio_material *mat
         const size_t size = sizeof(double) * GONIO_SLAB_BINS;
         const size_t slab = (size_t)(GONIO_THETA_H_BINS * channel + theta_h);
         to_stored(plane, channel);
-        status = gonio_i_output_write_at(context, output, plane, size,
-                                         (off_t)(HEADER + slab * size));
+        status =
+            gonio_i_output_write_at(context, output, plane, size, (off_t)(HEADER + slab * size));
     }
     return status;
 }

@@ -1,0 +1,106 @@
+/* gonio compare: how far BRDFs are from a reference. */
+#include "tool.h"
+
+#include <stdio.h>
+
+typedef struct options {
+    int verbose;
+    int json;
+} options;
+
+static void print_row(const char *name, const gonio_error *error)
+{
+    printf("%-28s %9.3f %9.3f %9.4f\n", name, error->e6, error->cube_root, error->log_relative);
+}
+
+static json_t *error_json(const gonio_error *error)
+{
+    return json_pack("{s:f, s:f, s:f}", "e6_percent", error->e6, "cube_root_percent",
+                     error->cube_root, "log_relative", error->log_relative);
+}
+
+static json_t *comparison_json(const char *path, const gonio_comparison *c)
+{
+    return json_pack("{s:s, s:I, s:I, s:o, s:o, s:o, s:o}", "file", path, "bins",
+                     (json_int_t)c->bins, "missing_bins", (json_int_t)c->missing, "all",
+                     error_json(&c->all), "R", error_json(&c->channel[0]), "G",
+                     error_json(&c->channel[1]), "B", error_json(&c->channel[2]));
+}
+
+static void print_comparison(const char *path, const gonio_comparison *c, const options *o)
+{
+    static const char *const channels[GONIO_CHANNELS] = {"  R", "  G", "  B"};
+    print_row(path, &c->all);
+    for (int k = 0; k < GONIO_CHANNELS && o->verbose; k++) {
+        print_row(channels[k], &c->channel[k]);
+    }
+    if (o->verbose) {
+        printf("  %lld bins compared, %lld of the reference have no data here\n",
+               (long long)c->bins, (long long)c->missing);
+    } else if (c->missing > 0) {
+        printf("  (%lld bins of the reference have no data here)\n", (long long)c->missing);
+    }
+}
+
+static gonio_status compare_one(tool *t, const gonio_material *reference, const char *path,
+                                const options *o, json_t *results)
+{
+    gonio_material *other = NULL;
+    gonio_comparison comparison;
+    gonio_status status = gonio_material_open(t->context, path, &other);
+    if (status == GONIO_OK) {
+        status = gonio_compare(t->context, reference, other, &comparison);
+    }
+    gonio_material_free(&other);
+    if (status == GONIO_OK && o->json) {
+        json_array_append_new(results, comparison_json(path, &comparison));
+    } else if (status == GONIO_OK) {
+        print_comparison(path, &comparison, o);
+    }
+    return status;
+}
+
+static int run(tool *t, const options *o)
+{
+    size_t count = 0;
+    const char **arguments = tool_arguments(t, &count);
+    if (count < 2) {
+        return tool_usage_error(t, "REFERENCE and at least one OTHER are needed");
+    }
+    gonio_material *reference = NULL;
+    gonio_status status = gonio_material_open(t->context, arguments[0], &reference);
+    json_t *results = json_array();
+    if (status == GONIO_OK && !o->json) {
+        printf("%-28s %9s %9s %9s\n", "", "E6 %", "cbrt %", "log-rel");
+    }
+    for (size_t k = 1; k < count && status == GONIO_OK; k++) {
+        status = compare_one(t, reference, arguments[k], o, results);
+    }
+    gonio_material_free(&reference);
+    if (status == GONIO_OK && o->json) {
+        return tool_print_json(
+            json_pack("{s:s, s:o}", "reference", arguments[0], "comparisons", results));
+    }
+    json_decref(results);
+    return tool_exit_code(status);
+}
+
+int cmd_compare(int argc, const char **argv)
+{
+    options o = {0};
+    const struct poptOption table[] = {
+        {"verbose", 'v', POPT_ARG_NONE, &o.verbose, 0, "Each channel, and the bins compared", NULL},
+        {"json", '\0', POPT_ARG_NONE, &o.json, 0, "Print the result as JSON", NULL},
+        TOOL_OPTIONS};
+    tool t;
+    int code = tool_begin(
+        &t, argc, argv, table, "[OPTION...] REFERENCE OTHER...",
+        "E6: relative RMS of ln(1 + rho/s) over all valid bins (Ali et al., eq. 6), per cent.\n"
+        "cbrt: relative RMS of the cube root of rho cos cos (Fores et al. 2012), per cent.\n"
+        "log-rel: RMS of the log ratio, cosine-weighted (Nielsen et al. 2015).");
+    if (code < 0) {
+        code = run(&t, &o);
+    }
+    tool_end(&t);
+    return code;
+}

@@ -1,0 +1,316 @@
+/* gonio info: what a file is, judged by its content. */
+#include "tool.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { INCIDENCES = 6, VALID_BINS = 1096216 };
+
+static const double incidence_deg[INCIDENCES] = {0.0, 30.0, 45.0, 60.0, 75.0, 85.0};
+
+/* ---- materials ---- */
+
+typedef struct material_facts {
+    int64_t bins;
+    double peak;      /* largest value of any channel, 1/sr */
+    double asymmetry; /* relative RMS of rho(phi_d) - rho(180 - phi_d), per cent */
+    double albedo[INCIDENCES][GONIO_CHANNELS];
+    double largest_albedo;
+    uint64_t fingerprint;
+} material_facts;
+
+static gonio_status fingerprint_of(const gonio_table *table, uint64_t *value)
+{
+    gonio_fingerprint *fingerprint = NULL;
+    const gonio_status status = gonio_fingerprint_create(&fingerprint);
+    if (status == GONIO_OK) {
+        gonio_fingerprint_add(fingerprint, gonio_table_values(table),
+                              sizeof(double) * GONIO_THETA_H_BINS * GONIO_SLAB_VALUES);
+        *value = gonio_fingerprint_value(fingerprint);
+    }
+    gonio_fingerprint_free(&fingerprint);
+    return status;
+}
+
+/* Sums over one row of phi_d bins of one channel. */
+static void add_row(const double *row, material_facts *facts, double *difference, double *square)
+{
+    for (int p = 0; p < GONIO_PHI_D_BINS; p++) {
+        const double mirrored = row[GONIO_PHI_D_BINS - 1 - p];
+        if (row[p] >= 0.0) {
+            facts->peak = fmax(facts->peak, row[p]);
+        }
+        if (row[p] >= 0.0 && mirrored >= 0.0) {
+            *difference += (row[p] - mirrored) * (row[p] - mirrored);
+            *square += row[p] * row[p];
+        }
+    }
+}
+
+static gonio_status find_facts(const gonio_table *table, material_facts *facts)
+{
+    const double *values = gonio_table_values(table);
+    double difference = 0.0;
+    double square = 0.0;
+    *facts = (material_facts){0};
+    for (int theta_h = 0; theta_h < GONIO_THETA_H_BINS; theta_h++) {
+        const double *slab = values + (size_t)theta_h * GONIO_SLAB_VALUES;
+        bool data[GONIO_SLAB_BINS];
+        gonio_slab_mask(theta_h, slab, data);
+        for (int k = 0; k < GONIO_SLAB_BINS; k++) {
+            facts->bins += data[k];
+        }
+        for (int k = 0; k < GONIO_CHANNELS * GONIO_THETA_D_BINS; k++) {
+            add_row(slab + (size_t)k * GONIO_PHI_D_BINS, facts, &difference, &square);
+        }
+    }
+    facts->asymmetry = square > 0.0 ? 100.0 * sqrt(difference / square) : 0.0;
+    for (int k = 0; k < INCIDENCES; k++) {
+        gonio_table_albedo(table, incidence_deg[k] * M_PI / 180.0, facts->albedo[k]);
+        for (int c = 0; c < GONIO_CHANNELS; c++) {
+            facts->largest_albedo = fmax(facts->largest_albedo, facts->albedo[k][c]);
+        }
+    }
+    return fingerprint_of(table, &facts->fingerprint);
+}
+
+static json_t *material_json(const char *path, const gonio_material *material,
+                             const material_facts *facts)
+{
+    char fingerprint[20];
+    snprintf(fingerprint, sizeof fingerprint, "%016" PRIx64, facts->fingerprint);
+    json_t *albedo = json_array();
+    for (int k = 0; k < INCIDENCES; k++) {
+        json_array_append_new(albedo, json_pack("{s:f, s:[f, f, f]}", "theta_i_deg",
+                                                incidence_deg[k], "albedo_rgb", facts->albedo[k][0],
+                                                facts->albedo[k][1], facts->albedo[k][2]));
+    }
+    return json_pack("{s:s, s:s, s:s, s:s, s:I, s:f, s:f, s:f, s:o, s:b, s:s}", "file", path,
+                     "kind", "material", "name", gonio_material_name(material), "format",
+                     gonio_material_format(material), "valid_bins", (json_int_t)facts->bins,
+                     "valid_share", (double)facts->bins / VALID_BINS, "peak_per_sr", facts->peak,
+                     "mirror_asymmetry_percent", facts->asymmetry, "albedo", albedo,
+                     "conserves_energy", facts->largest_albedo <= 1.0, "fingerprint", fingerprint);
+}
+
+static void print_material(const char *path, const gonio_material *material,
+                           const material_facts *facts)
+{
+    printf("%s: %s\n", path, gonio_material_format(material));
+    printf("  name         %s\n", gonio_material_name(material));
+    printf("  valid bins   %" PRId64 " of %d (%.1f %%)\n", facts->bins, (int)VALID_BINS,
+           100.0 * (double)facts->bins / VALID_BINS);
+    printf("  peak         %.4g 1/sr\n", facts->peak);
+    printf("  albedo       theta_i      R      G      B\n");
+    for (int k = 0; k < INCIDENCES; k++) {
+        printf("               %4.0f deg %6.3f %6.3f %6.3f\n", incidence_deg[k],
+               facts->albedo[k][0], facts->albedo[k][1], facts->albedo[k][2]);
+    }
+    printf("  energy       %s\n", facts->largest_albedo <= 1.0
+                                      ? "conserved at these incidences"
+                                      : "NOT conserved: reflects more than it receives");
+    printf("  reciprocity  exact: phi_d and phi_d + 180 degrees are one bin\n");
+    printf("  mirror       rho(phi_d) and rho(180 - phi_d) differ by %.2f %% (RMS)\n",
+           facts->asymmetry);
+    printf("  fingerprint  %016" PRIx64 "\n", facts->fingerprint);
+}
+
+static int info_material(const tool *t, const char *path, json_t *results)
+{
+    gonio_material *material = NULL;
+    gonio_table *table = NULL;
+    material_facts facts;
+    gonio_status status = gonio_material_open(t->context, path, &material);
+    if (status == GONIO_OK) {
+        status = gonio_table_load(t->context, material, &table);
+    }
+    if (status == GONIO_OK) {
+        status = find_facts(table, &facts);
+    }
+    if (status == GONIO_OK && results != NULL) {
+        json_array_append_new(results, material_json(path, material, &facts));
+    } else if (status == GONIO_OK) {
+        print_material(path, material, &facts);
+    }
+    gonio_table_free(&table);
+    gonio_material_free(&material);
+    return tool_exit_code(status);
+}
+
+/* ---- the atlas ---- */
+
+static int info_atlas(json_t *results)
+{
+    for (int k = 0; k < gonio_atlas_count(); k++) {
+        if (results != NULL) {
+            json_array_append_new(results, json_pack("{s:s, s:s}", "name", gonio_atlas_name(k),
+                                                     "class", gonio_atlas_class(k)));
+        } else {
+            printf("atlas:%-28s %s\n", gonio_atlas_name(k), gonio_atlas_class(k));
+        }
+    }
+    return 0;
+}
+
+/* ---- bases ---- */
+
+static json_t *basis_json(const char *path, const gonio_basis *basis)
+{
+    const gonio_basis_view view = gonio_basis_describe(basis);
+    char fingerprint[20];
+    snprintf(fingerprint, sizeof fingerprint, "%016" PRIx64, view.fingerprint);
+    json_t *names = json_array();
+    for (size_t k = 0; k < view.materials; k++) {
+        json_array_append_new(names, json_string(view.names[k]));
+    }
+    return json_pack(
+        "{s:s, s:s, s:s, s:s, s:I, s:I, s:f, s:o, s:s, s:s, s:s}", "file", path, "kind", "basis",
+        "representation", view.representation == GONIO_BIVARIATE ? "bivariate" : "full", "channels",
+        view.channels == GONIO_JOINT ? "joint" : "separate", "components",
+        (json_int_t)view.components, "cells", (json_int_t)view.cells, "explained_variance",
+        gonio_basis_cumulative_variance(basis, view.components), "materials", names, "fingerprint",
+        fingerprint, "program", view.program, "command", view.command);
+}
+
+static void print_basis(const char *path, const gonio_basis *basis)
+{
+    const gonio_basis_view view = gonio_basis_describe(basis);
+    printf("%s: gonio basis, %s, %s channels\n", path,
+           view.representation == GONIO_BIVARIATE ? "bivariate" : "full grid",
+           view.channels == GONIO_JOINT ? "joint" : "separate");
+    printf("  components   %zu on %zu cells (%zu rows)\n", view.components, view.cells, view.rows);
+    printf("  variance     ");
+    for (size_t k = 1; k < view.components; k = k < 5 ? 5 : 2 * k) {
+        printf("%.4f at %zu, ", gonio_basis_cumulative_variance(basis, k), k);
+    }
+    printf("%.4f at %zu\n", gonio_basis_cumulative_variance(basis, view.components),
+           view.components);
+    printf("  materials    %zu:", view.materials);
+    int column = 80;
+    for (size_t k = 0; k < view.materials; k++) {
+        const int width = (int)strlen(view.names[k]) + 2;
+        if (column + width > 79) {
+            printf("\n    ");
+            column = 4;
+        }
+        printf("%s%s", view.names[k], k + 1 < view.materials ? ", " : "\n");
+        column += width;
+    }
+    printf("  fingerprint  %016" PRIx64 "\n", view.fingerprint);
+    printf("  made by      %s: %s\n", view.program, view.command);
+}
+
+static int info_basis(const tool *t, const char *path, json_t *results)
+{
+    gonio_basis *basis = NULL;
+    const gonio_status status = gonio_basis_read(t->context, path, &basis);
+    if (status == GONIO_OK && results != NULL) {
+        json_array_append_new(results, basis_json(path, basis));
+    } else if (status == GONIO_OK) {
+        print_basis(path, basis);
+    }
+    gonio_basis_free(&basis);
+    return tool_exit_code(status);
+}
+
+/* ---- plans and readings ---- */
+
+static int info_readings(const tool *t, const char *path, json_t *results)
+{
+    const gonio_readings_options how = {.average_repeats = true, .negative_to_zero = true};
+    gonio_readings *readings = NULL;
+    const gonio_status status = gonio_readings_read(t->context, path, &how, &readings);
+    if (status != GONIO_OK) {
+        return tool_exit_code(status);
+    }
+    const gonio_readings_view view = gonio_readings_describe(readings);
+    size_t measured = 0;
+    for (size_t k = 0; k < view.count; k++) {
+        const double *v = view.reading[k].value;
+        measured += !isnan(v[0]) || !isnan(v[1]) || !isnan(v[2]);
+    }
+    char basis[20] = "not stated";
+    if (view.basis != 0) {
+        snprintf(basis, sizeof basis, "%016" PRIx64, view.basis);
+    }
+    const char *kind = measured > 0 ? "readings" : "plan";
+    if (results != NULL) {
+        json_array_append_new(results, json_pack("{s:s, s:s, s:I, s:I, s:s, s:I}", "file", path,
+                                                 "kind", kind, "directions", (json_int_t)view.count,
+                                                 "measured", (json_int_t)measured, "basis", basis,
+                                                 "components", (json_int_t)view.components));
+    } else {
+        printf("%s: gonio %s, %zu directions, %zu measured\n", path, kind, view.count, measured);
+        printf("  basis        %s\n", basis);
+        if (view.components > 0) {
+            printf("  components   %zu\n", view.components);
+        }
+    }
+    gonio_readings_free(&readings);
+    return 0;
+}
+
+/* ---- which of them a file is ---- */
+
+typedef int info_function(const tool *t, const char *path, json_t *results);
+
+static info_function *kind_of(const char *path)
+{
+    static const char signature[] = "\x89HDF\r\n\x1a\n";
+    static const char basis_mark[] = "gonio basis";
+    char head[8192];
+    FILE *file = strncmp(path, "atlas:", 6) != 0 ? fopen(path, "rbe") : NULL;
+    const size_t size = file != NULL ? fread(head, 1, sizeof head, file) : 0;
+    if (file != NULL) {
+        fclose(file);
+    }
+    if (size >= 8 && memcmp(head, signature, 8) == 0) {
+        const bool basis = memmem(head, size, basis_mark, sizeof basis_mark - 1) != NULL;
+        return basis ? info_basis : info_material;
+    }
+    const bool text = size > 0 && memchr(head, '\0', size) == NULL;
+    return text ? info_readings : info_material;
+}
+
+static int run(const tool *t, int json)
+{
+    size_t count = 0;
+    const char **arguments = tool_arguments(t, &count);
+    if (count == 0) {
+        return tool_usage_error(t, "no file given");
+    }
+    json_t *results = json ? json_array() : NULL;
+    int code = 0;
+    for (size_t k = 0; k < count; k++) {
+        const int one = strcmp(arguments[k], "atlas:") == 0
+                            ? info_atlas(results)
+                            : kind_of(arguments[k])(t, arguments[k], results);
+        code = one != 0 ? one : code;
+    }
+    if (results != NULL && code == 0) {
+        return tool_print_json(results);
+    }
+    json_decref(results);
+    return code;
+}
+
+int cmd_info(int argc, const char **argv)
+{
+    int json = 0;
+    const struct poptOption table[] = {
+        {"json", '\0', POPT_ARG_NONE, &json, 0, "Print the result as JSON", NULL}, TOOL_OPTIONS};
+    tool t;
+    int code =
+        tool_begin(&t, argc, argv, table, "[OPTION...] FILE...",
+                   "FILE is a material, a basis, a plan or readings, told apart by content.\n"
+                   "'gonio info atlas:' lists the built-in materials.");
+    if (code < 0) {
+        code = run(&t, json);
+    }
+    tool_end(&t);
+    return code;
+}

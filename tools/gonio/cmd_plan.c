@@ -1,0 +1,127 @@
+/* gonio plan: where to measure. */
+#include "tool.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+typedef struct options {
+    const char *output;
+    const char *history;
+    const char *method;
+    int components;
+    int count;
+    int restarts;
+    long seed;
+    double phi_d; /* degrees */
+    int json;
+} options;
+
+static int report(const gonio_plan *plan, const options *o)
+{
+    if (o->json) {
+        json_t *kappa =
+            isfinite(plan->condition_number) ? json_real(plan->condition_number) : json_null();
+        return tool_print_json(json_pack("{s:s, s:s, s:I, s:I, s:o}", "plan", o->output, "method",
+                                         plan->method, "readings", (json_int_t)plan->count,
+                                         "components", (json_int_t)plan->components,
+                                         "condition_number", kappa));
+    }
+    if (!tool_quiet) {
+        printf("%s: %zu readings for %zu components, condition number %.3f\n", o->output,
+               plan->count, plan->components, plan->condition_number);
+    }
+    return 0;
+}
+
+static gonio_status make_plan(tool *t, const options *o, const char *basis_path, gonio_plan **plan)
+{
+    gonio_basis *basis = NULL;
+    gonio_plan_options how;
+    gonio_plan_options_default(&how);
+    how.method = o->method;
+    how.components = (size_t)o->components;
+    how.count = (size_t)o->count;
+    how.restarts = o->restarts;
+    how.seed = (uint64_t)o->seed;
+    how.phi_d = o->phi_d * M_PI / 180.0;
+    gonio_status status = tool_basis(t, basis_path, &basis);
+    if (status == GONIO_OK) {
+        status = gonio_plan_create(t->context, basis, &how, plan);
+    }
+    gonio_basis_free(&basis);
+    return status;
+}
+
+static int check(const tool *t, const options *o, size_t count, const char **arguments)
+{
+    int code = count > 1 ? tool_usage_error(t, "one BASIS at most, not %zu", count) : 0;
+    if (code == 0) {
+        code = tool_check_output(t, o->output, arguments, count);
+    }
+    if (code == 0 && o->history != NULL) {
+        code = tool_check_output(t, o->history, arguments, count);
+    }
+    if (code == 0 && o->history != NULL && strcmp(o->history, o->output) == 0) {
+        code = tool_usage_error(t, "--history and -o name the same file");
+    }
+    if (code == 0) {
+        code = tool_check_count(t, "-n", o->count, 1);
+    }
+    if (code == 0) {
+        code = tool_check_count(t, "--restarts", o->restarts, 1);
+    }
+    return code != 0 ? code : tool_check_count(t, "--basis", o->components, 0);
+}
+
+static int run(tool *t, const options *o)
+{
+    size_t count = 0;
+    const char **arguments = tool_arguments(t, &count);
+    const int code = check(t, o, count, arguments);
+    if (code != 0) {
+        return code;
+    }
+    gonio_plan *plan = NULL;
+    gonio_status status = make_plan(t, o, count > 0 ? arguments[0] : NULL, &plan);
+    if (status == GONIO_OK && o->history != NULL) {
+        status = gonio_plan_write_history(t->context, plan, t->command_line, o->history);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_plan_write(t->context, plan, t->command_line, o->output);
+    }
+    const int result = status == GONIO_OK ? report(plan, o) : tool_exit_code(status);
+    gonio_plan_free(&plan);
+    return result;
+}
+
+int cmd_plan(int argc, const char **argv)
+{
+    options o = {.method = "condition", .count = 80, .restarts = 5, .phi_d = 90.0};
+    const struct poptOption table[] = {
+        {"output", 'o', POPT_ARG_STRING, &o.output, 0, "The plan to write (CSV)", "PLAN"},
+        {"number", 'n', POPT_ARG_INT, &o.count, 0, "How many readings (default: 80)", "N"},
+        {"basis", 'K', POPT_ARG_INT, &o.components, 0,
+         "Use the first K components (default: all of the basis)", "K"},
+        {"method", '\0', POPT_ARG_STRING, &o.method, 0,
+         "condition (lowest condition number; the default) or random", "METHOD"},
+        {"restarts", '\0', POPT_ARG_INT, &o.restarts, 0,
+         "Random starts, of which the best is kept (default: 5)", "N"},
+        {"seed", '\0', POPT_ARG_LONG, &o.seed, 0, "Same seed, same plan (default: 0)", "N"},
+        {"phi-d", '\0', POPT_ARG_DOUBLE, &o.phi_d, 0,
+         "Where on the free angle to measure (default: 90; 0 is in the plane of incidence)",
+         "DEGREES"},
+        {"history", '\0', POPT_ARG_STRING, &o.history, 0,
+         "Write the condition number after each swap (CSV)", "FILE"},
+        {"json", '\0', POPT_ARG_NONE, &o.json, 0, "Print the result as JSON", NULL},
+        TOOL_OPTIONS};
+    tool t;
+    int code = tool_begin(&t, argc, argv, table, "[OPTION...] [BASIS] -o PLAN",
+                          "Without BASIS, the basis of the built-in materials serves.\n"
+                          "Example: gonio plan merl.gonio --basis 35 -n 80 -o plan.csv");
+    if (code < 0) {
+        code = run(&t, &o);
+    }
+    tool_end(&t);
+    return code;
+}

@@ -1,0 +1,356 @@
+/* What the commands share: see tool.h. */
+#include "tool.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+int tool_threads = 0;
+int tool_quiet = 0;
+
+struct poptOption tool_common_options[] = {
+    {"threads", '\0', POPT_ARG_INT, &tool_threads, 0, "Use at most N threads (default: all)", "N"},
+    {"quiet", 'q', POPT_ARG_NONE, &tool_quiet, 0, "Only errors, no notes and no progress", NULL},
+    POPT_TABLEEND};
+
+/* Set by the first interrupt; the work then ends at its next progress report and tidies up. */
+static volatile sig_atomic_t interrupted = 0;
+
+static void on_interrupt(int signal_number)
+{
+    (void)signal_number;
+    interrupted = 1;
+    signal(SIGINT, SIG_DFL);
+    signal(SIGTERM, SIG_DFL);
+}
+
+static double now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* ---- messages and progress ---- */
+
+static void clear_progress(tool *t)
+{
+    if (t->progress_visible) {
+        fputs("\r\033[K", stderr);
+        t->progress_visible = false;
+    }
+}
+
+static void on_message(void *user, gonio_message_level level, const char *text)
+{
+    tool *t = user;
+    if (level != GONIO_MESSAGE_ERROR && tool_quiet) {
+        return;
+    }
+    clear_progress(t);
+    const char *kind = level == GONIO_MESSAGE_ERROR     ? ""
+                       : level == GONIO_MESSAGE_WARNING ? "warning: "
+                                                        : "note: ";
+    fprintf(stderr, "gonio %s: %s%s\n", t->name, kind, text);
+}
+
+static void draw_progress(const char *task, double fraction, double elapsed)
+{
+    enum { WIDTH = 30 };
+    char bar[WIDTH + 1];
+    const int full = (int)(fraction * WIDTH);
+    for (int k = 0; k < WIDTH; k++) {
+        bar[k] = k < full ? '#' : '.';
+    }
+    bar[WIDTH] = '\0';
+    fprintf(stderr, "\r\033[K%s [%s] %3.0f%% %.0f s", task, bar, 100.0 * fraction, elapsed);
+    fflush(stderr);
+}
+
+/* A bar on a terminal once the work has taken a second, ten times a second. */
+static int on_progress(void *user, const char *task, double fraction)
+{
+    tool *t = user;
+    const double time = now();
+    if (t->progress_start == 0.0) {
+        t->progress_start = time;
+    }
+    if (fraction >= 1.0) {
+        clear_progress(t);
+        t->progress_start = 0.0;
+    } else if (!tool_quiet && time - t->progress_start > 1.0 && time - t->progress_shown > 0.1 &&
+               isatty(STDERR_FILENO)) {
+        draw_progress(task, fraction, time - t->progress_start);
+        t->progress_shown = time;
+        t->progress_visible = true;
+    }
+    return interrupted != 0;
+}
+
+/* ---- the command line ---- */
+
+static bool is_plain(const char *word)
+{
+    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                                "-_./:=,+%@";
+    return *word != '\0' && word[strspn(word, plain)] == '\0';
+}
+
+/* The command line as typed, quoted where the shell would need it. */
+static char *join(int argc, const char **argv)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *stream = open_memstream(&text, &size);
+    if (stream == NULL) {
+        return NULL;
+    }
+    fputs("gonio", stream);
+    for (int k = 0; k < argc; k++) {
+        if (is_plain(argv[k])) {
+            fprintf(stream, " %s", argv[k]);
+            continue;
+        }
+        fputs(" '", stream);
+        for (const char *c = argv[k]; *c != '\0'; c++) {
+            if (*c == '\'') {
+                fputs("'\\''", stream);
+            } else {
+                fputc(*c == '\n' || *c == '\r' ? ' ' : *c, stream);
+            }
+        }
+        fputc('\'', stream);
+    }
+    fclose(stream);
+    return text;
+}
+
+int tool_usage_error(const tool *t, const char *format, ...)
+{
+    va_list arguments;
+    fprintf(stderr, "gonio %s: ", t->name);
+    va_start(arguments, format);
+    vfprintf(stderr, format, arguments);
+    va_end(arguments);
+    fprintf(stderr, " (see gonio %s -h)\n", t->name);
+    return EXIT_USAGE;
+}
+
+static int parse(tool *t, const char *text)
+{
+    int code = 0;
+    while ((code = poptGetNextOpt(t->options)) > 0) {
+        if (code == 'h') {
+            poptPrintHelp(t->options, stdout, 0);
+            printf("\n%s\n", text);
+            return 0;
+        }
+    }
+    if (code < -1) {
+        return tool_usage_error(t, "%s: %s", poptBadOption(t->options, POPT_BADOPTION_NOALIAS),
+                                poptStrerror(code));
+    }
+    if (tool_threads < 0) {
+        return tool_usage_error(t, "--threads cannot be negative");
+    }
+    return -1;
+}
+
+int tool_begin(tool *t, int argc, const char **argv, const struct poptOption *table,
+               const char *usage, const char *text)
+{
+    *t = (tool){.name = argv[0], .command_line = join(argc, argv)};
+    char *name = NULL;
+    if (asprintf(&name, "gonio %s", argv[0]) < 0) {
+        return EXIT_DATA;
+    }
+    t->options = poptGetContext(name, argc, argv, table, 0);
+    free(name);
+    poptSetOtherOptionHelp(t->options, usage);
+    const int code = parse(t, text);
+    if (code >= 0) {
+        return code;
+    }
+    const gonio_context_options options = {on_message, on_progress, t, tool_threads};
+    signal(SIGINT, on_interrupt);
+    signal(SIGTERM, on_interrupt);
+    signal(SIGXFSZ, SIG_IGN); /* a file-size limit becomes an error like a full disk */
+    signal(SIGPIPE, SIG_IGN);
+    return gonio_context_create(&t->context, &options) == GONIO_OK ? -1 : EXIT_DATA;
+}
+
+void tool_end(tool *t)
+{
+    clear_progress(t);
+    gonio_context_free(&t->context);
+    poptFreeContext(t->options);
+    free(t->command_line);
+}
+
+const char **tool_arguments(const tool *t, size_t *count)
+{
+    const char **arguments = poptGetArgs(t->options);
+    *count = 0;
+    while (arguments != NULL && arguments[*count] != NULL) {
+        (*count)++;
+    }
+    return arguments;
+}
+
+int tool_exit_code(gonio_status status)
+{
+    return status == GONIO_OK ? 0 : status == GONIO_ERROR_ARGUMENT ? EXIT_USAGE : EXIT_DATA;
+}
+
+int tool_check_output(const tool *t, const char *output, const char *const *inputs, size_t count)
+{
+    struct stat out;
+    if (output == NULL) {
+        return tool_usage_error(t, "no output: give -o FILE");
+    }
+    for (size_t k = 0; stat(output, &out) == 0 && k < count; k++) {
+        struct stat in;
+        if (inputs[k] != NULL && stat(inputs[k], &in) == 0 && in.st_dev == out.st_dev &&
+            in.st_ino == out.st_ino && S_ISREG(in.st_mode)) {
+            return tool_usage_error(t, "%s is an input: give another name for the output", output);
+        }
+    }
+    return 0;
+}
+
+int tool_check_count(const tool *t, const char *option, long value, long least)
+{
+    return value < least
+               ? tool_usage_error(t, "%s: %ld is too small, at least %ld", option, value, least)
+               : 0;
+}
+
+/* ---- the built-in basis ---- */
+
+static bool make_folder(const char *path)
+{
+    return mkdir(path, 0777) == 0 || errno == EEXIST;
+}
+
+/* $XDG_CACHE_HOME/gonio or ~/.cache/gonio, made if need be; NULL if that cannot be. */
+static char *cache_folder(void)
+{
+    const char *cache = getenv("XDG_CACHE_HOME");
+    const char *home = getenv("HOME");
+    char *folder = NULL;
+    int length = -1;
+    if (cache != NULL && cache[0] == '/') {
+        length = asprintf(&folder, "%s/gonio", cache);
+    } else if (home != NULL && home[0] != '\0') {
+        length = asprintf(&folder, "%s/.cache/gonio", home);
+    }
+    if (length < 0) {
+        return NULL;
+    }
+    for (char *slash = strchr(folder + 1, '/'); slash != NULL; slash = strchr(slash + 1, '/')) {
+        *slash = '\0';
+        const bool made = make_folder(folder);
+        *slash = '/';
+        if (!made) {
+            break;
+        }
+    }
+    if (!make_folder(folder)) {
+        free(folder);
+        return NULL;
+    }
+    return folder;
+}
+
+static gonio_status learn_atlas(tool *t, gonio_basis **basis)
+{
+    const int count = gonio_atlas_count();
+    char **paths = calloc((size_t)count, sizeof *paths);
+    gonio_status status = paths == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    for (int k = 0; k < count && status == GONIO_OK; k++) {
+        status = asprintf(&paths[k], "atlas:%s", gonio_atlas_name(k)) < 0 ? GONIO_ERROR_MEMORY
+                                                                          : GONIO_OK;
+    }
+    gonio_database *database = NULL;
+    if (status == GONIO_OK) {
+        status = gonio_database_create(t->context, (const char *const *)paths, (size_t)count, NULL,
+                                       &database);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_basis_learn(t->context, database, NULL, basis);
+    }
+    gonio_database_free(&database);
+    for (int k = 0; paths != NULL && k < count; k++) {
+        free(paths[k]);
+    }
+    free(paths);
+    return status;
+}
+
+static gonio_status make_builtin(tool *t, const char *path)
+{
+    gonio_basis *basis = NULL;
+    if (!tool_quiet) {
+        on_message(t, GONIO_MESSAGE_NOTE,
+                   "no BASIS given: learning one from the built-in materials (once; kept in the "
+                   "cache)");
+    }
+    gonio_status status = learn_atlas(t, &basis);
+    if (status == GONIO_OK) {
+        status = gonio_basis_write(t->context, basis, "gonio learn atlas:", path);
+    }
+    gonio_basis_free(&basis);
+    return status;
+}
+
+gonio_status tool_builtin_basis(tool *t, char **path)
+{
+    char *folder = cache_folder();
+    if (folder == NULL) {
+        on_message(t, GONIO_MESSAGE_ERROR,
+                   "no cache folder for the built-in basis: set XDG_CACHE_HOME, or make a basis "
+                   "with 'gonio learn atlas: -o FILE' and give it as BASIS");
+        return GONIO_ERROR_IO;
+    }
+    const int length = asprintf(path, "%s/atlas-%s.gonio", folder, gonio_version());
+    free(folder);
+    if (length < 0) {
+        return GONIO_ERROR_MEMORY;
+    }
+    const gonio_status status = access(*path, F_OK) == 0 ? GONIO_OK : make_builtin(t, *path);
+    if (status != GONIO_OK) {
+        free(*path);
+    }
+    return status;
+}
+
+gonio_status tool_basis(tool *t, const char *path, gonio_basis **basis)
+{
+    if (path != NULL) {
+        return gonio_basis_read(t->context, path, basis);
+    }
+    char *builtin = NULL;
+    gonio_status status = tool_builtin_basis(t, &builtin);
+    if (status == GONIO_OK) {
+        status = gonio_basis_read(t->context, builtin, basis);
+        free(builtin);
+    }
+    return status;
+}
+
+int tool_print_json(json_t *json)
+{
+    if (json == NULL) {
+        return EXIT_DATA;
+    }
+    json_dumpf(json, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(10));
+    putchar('\n');
+    json_decref(json);
+    return fflush(stdout) == 0 ? 0 : EXIT_DATA;
+}

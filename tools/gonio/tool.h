@@ -1,0 +1,81 @@
+/* What the commands share: options, messages, progress, exit codes. */
+#ifndef GONIO_TOOL_H
+#define GONIO_TOOL_H
+
+#include <gonio/gonio.h>
+#include <jansson.h>
+#include <popt.h>
+
+enum { EXIT_DATA = 1, EXIT_USAGE = 2 }; /* 0 is success */
+
+/* One command of the program: to add one, write cmd_NAME.c and add a line to the table in main.c.
+ */
+typedef struct tool_command {
+    const char *name;
+    const char *summary;
+    int (*run)(int argc, const char **argv); /* argv[0] is the command's name; an exit code */
+} tool_command;
+
+/* The commands, each in its file. */
+int cmd_info(int argc, const char **argv);
+int cmd_convert(int argc, const char **argv);
+int cmd_learn(int argc, const char **argv);
+int cmd_plan(int argc, const char **argv);
+int cmd_measure(int argc, const char **argv);
+int cmd_reconstruct(int argc, const char **argv);
+int cmd_compare(int argc, const char **argv);
+int cmd_demo(int argc, const char **argv);
+
+/* What every command has. */
+typedef struct tool {
+    gonio_context *context;
+    poptContext options;
+    char *command_line; /* for the record in output files */
+    const char *name;   /* of the command */
+    int threads;
+    int quiet;
+    double progress_start; /* seconds */
+    double progress_shown;
+    bool progress_visible;
+} tool;
+
+/* The options of every command, to be included with TOOL_OPTIONS at the end of a table. */
+extern int tool_threads;
+extern int tool_quiet;
+extern struct poptOption tool_common_options[];
+#define TOOL_OPTIONS                                                                               \
+    {NULL, '\0', POPT_ARG_INCLUDE_TABLE, tool_common_options, 0, "Common options:", NULL},         \
+        {"help", 'h', POPT_ARG_NONE, NULL, 'h', "Show this help", NULL}, POPT_TABLEEND
+
+/* Parses the options. `usage` stands behind the command's name in the help, `text` below it.
+ * Returns an exit code, or -1 to go on. The tool must be ended with tool_end in any case. */
+int tool_begin(tool *t, int argc, const char **argv, const struct poptOption *table,
+               const char *usage, const char *text);
+void tool_end(tool *t);
+
+/* The arguments that are not options. */
+const char **tool_arguments(const tool *t, size_t *count);
+
+/* Complains about the command line; returns EXIT_USAGE. */
+int tool_usage_error(const tool *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* The exit code of a status: 0, 1 or 2. */
+int tool_exit_code(gonio_status status);
+
+/* Refuses an output that is one of the inputs; returns 0 or EXIT_USAGE. */
+int tool_check_output(const tool *t, const char *output, const char *const *inputs, size_t count);
+
+/* A count given by the user: an integer from `least` on; EXIT_USAGE otherwise, 0 if fine. */
+int tool_check_count(const tool *t, const char *option, long value, long least);
+
+/* A BASIS argument, or with NULL the basis of the built-in materials, made on first use and kept in
+ * the cache folder. */
+gonio_status tool_basis(tool *t, const char *path, gonio_basis **basis);
+
+/* The built-in basis's path, made if need be; to be released with free(). */
+gonio_status tool_builtin_basis(tool *t, char **path);
+
+/* Prints JSON to standard output and releases it. */
+int tool_print_json(json_t *json);
+
+#endif
