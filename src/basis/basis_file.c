@@ -120,7 +120,7 @@ typedef struct contents {
     void *cell, *mean, *vectors, *variances, *fingerprints;
     size_t cells, rows, components, variance_count, materials;
     char **names;
-    char **program, **command, **fingerprint;
+    char *program, *command, *fingerprint;
 } contents;
 
 static gonio_status damaged(const contents *c, const char *what, const char *problem)
@@ -244,9 +244,20 @@ static gonio_status check_kind(const contents *c)
     return GONIO_OK;
 }
 
+/* An attribute that is one string. */
+static gonio_status read_text(const contents *c, const char *name, char **text)
+{
+    char **strings = NULL;
+    size_t count = 0;
+    if (gonio_i_hdf_read_strings(c->file, name, false, &strings, &count) && count == 1) {
+        *text = strdup(strings[0]);
+    }
+    free(strings);
+    return *text != NULL ? GONIO_OK : damaged(c, name, "is missing");
+}
+
 static gonio_status read_contents(contents *c)
 {
-    size_t count = 0;
     gonio_status status = check_kind(c);
     if (status == GONIO_OK) {
         status = read_grid(c);
@@ -257,12 +268,14 @@ static gonio_status read_contents(contents *c)
     if (status == GONIO_OK) {
         status = read_numbers(c);
     }
-    if (status == GONIO_OK &&
-        (!gonio_i_hdf_read_strings(c->file, "program", false, &c->program, &count) || count != 1 ||
-         !gonio_i_hdf_read_strings(c->file, "command", false, &c->command, &count) || count != 1 ||
-         !gonio_i_hdf_read_strings(c->file, "fingerprint", false, &c->fingerprint, &count) ||
-         count != 1)) {
-        status = damaged(c, "program, command or fingerprint", "is missing");
+    if (status == GONIO_OK) {
+        status = read_text(c, "program", &c->program);
+    }
+    if (status == GONIO_OK) {
+        status = read_text(c, "command", &c->command);
+    }
+    if (status == GONIO_OK) {
+        status = read_text(c, "fingerprint", &c->fingerprint);
     }
     return status;
 }
@@ -362,17 +375,19 @@ static gonio_status assemble(contents *c, gonio_basis **basis)
         .vectors = take(&c->vectors),
         .variance_count = c->variance_count,
         .variances = take(&c->variances),
-        .program = strdup(c->program[0]),
-        .command = strdup(c->command[0]),
+        .program = c->program,
+        .command = c->command,
     };
-    bool done = made->names != NULL && made->program != NULL && made->command != NULL;
+    c->program = NULL; /* the basis's now */
+    c->command = NULL;
+    bool done = made->names != NULL;
     for (size_t k = 0; done && k < c->materials; k++) {
         made->names[k] = strdup(c->names[k]);
         done = made->names[k] != NULL;
     }
     gonio_status status = done ? gonio_i_basis_finish(c->context, made) : GONIO_ERROR_MEMORY;
     if (status == GONIO_OK &&
-        strtoull(c->fingerprint[0], NULL, 16) != (unsigned long long)made->fingerprint) {
+        strtoull(c->fingerprint, NULL, 16) != (unsigned long long)made->fingerprint) {
         status = damaged(c, "fingerprint", "does not fit the contents (the file was changed)");
     }
     if (status != GONIO_OK) {

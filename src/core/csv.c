@@ -86,8 +86,7 @@ bool gonio_i_csv_add_column(gonio_i_csv *csv, const char *name)
 {
     const size_t old = csv->columns;
     char **cell = calloc(csv->rows * (old + 1) + 1, sizeof *cell);
-    char *copy = strdup(name);
-    if (cell == NULL || copy == NULL || !append(&csv->name, &csv->columns, copy)) {
+    if (cell == NULL || !append(&csv->name, &csv->columns, strdup(name))) {
         free(cell);
         return false;
     }

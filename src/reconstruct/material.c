@@ -116,7 +116,8 @@ static gonio_status read_average(void *self, gonio_context *context, int theta_h
     if (data == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    const gonio_status status = gonio_material_read_slab(self, context, theta_h, rho);
+    const gonio_material *const *original = self;
+    const gonio_status status = gonio_material_read_slab(*original, context, theta_h, rho);
     if (status == GONIO_OK) {
         gonio_slab_statistics statistics;
         gonio_slab_mask(theta_h, rho, data);
@@ -141,8 +142,16 @@ static gonio_status read_average(void *self, gonio_context *context, int theta_h
 gonio_status gonio_bivariate_material(gonio_context *context, const gonio_material *original,
                                       gonio_material **material)
 {
-    /* The source only reads the original; its interface has no const. */
-    const gonio_material_source source = {read_average, NULL, (void *)(uintptr_t)original};
-    return gonio_material_create(context, gonio_material_name(original), "bivariate average",
-                                 source, material);
+    const gonio_material **self = gonio_i_allocate(context, 1, sizeof *self);
+    if (self == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    *self = original;
+    const gonio_material_source source = {read_average, free, self};
+    const gonio_status status = gonio_material_create(context, gonio_material_name(original),
+                                                      "bivariate average", source, material);
+    if (status != GONIO_OK) {
+        free(self);
+    }
+    return status;
 }

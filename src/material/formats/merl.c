@@ -232,7 +232,7 @@ static gonio_status write_slab(gonio_context *context, const gonio_material *mat
     for (int channel = 0; channel < GONIO_CHANNELS && status == GONIO_OK; channel++) {
         double *plane = rho + (size_t)channel * GONIO_SLAB_BINS;
         const size_t size = sizeof(double) * GONIO_SLAB_BINS;
-        const size_t slab = (size_t)(GONIO_THETA_H_BINS * channel + theta_h);
+        const size_t slab = (size_t)GONIO_THETA_H_BINS * (size_t)channel + (size_t)theta_h;
         to_stored(plane, channel);
         status =
             gonio_i_output_write_at(context, output, plane, size, (off_t)(HEADER + slab * size));

@@ -1,0 +1,25 @@
+#!/bin/sh
+# Formatting, lint and man pages: check-style.sh BUILD, with BUILD's compile_commands.json.
+set -eu
+build=$1
+cd "$(dirname "$0")/.."
+sources=$(find include src tools tests bench examples -name '*.[ch]' 2>/dev/null | sort)
+
+# Other versions format differently, so only the one that the code was formatted with judges.
+if clang-format --version | grep -q 'version 14\.'; then
+    clang-format --dry-run -Werror $sources
+    echo "clang-format: fine"
+else
+    echo "clang-format: skipped, version 14 is needed"
+fi
+
+if clang-tidy --version | grep -q 'version 14\.'; then
+    find src tools -name '*.c' | sort |
+        xargs -P "$(nproc)" -n 4 clang-tidy --quiet -p "$build" --warnings-as-errors='*' 2>/dev/null
+    echo "clang-tidy: fine"
+else
+    echo "clang-tidy: skipped, version 14 is needed"
+fi
+
+mandoc -Tlint -Wwarning docs/man/*.1
+echo "mandoc: fine"
