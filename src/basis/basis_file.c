@@ -195,25 +195,25 @@ static gonio_status read_materials(contents *c)
 
 static gonio_status read_numbers(contents *c)
 {
-    const size_t most_rows = (size_t)GONIO_CHANNELS * GONIO_BINS;
+    /* Each size limits the next, so that no file asks for more memory than its grid needs. */
+    const size_t rows = gonio_i_basis_rows(c->cells, (gonio_channel_model)c->channels);
     size_t shape[2] = {0, 0};
     const char *what = "mean";
     const char *problem =
-        gonio_i_hdf_read_array(c->file, what, 1, most_rows, H5T_NATIVE_DOUBLE, &c->mean, &c->rows);
-    if (problem == NULL) {
-        what = "components";
-        problem = gonio_i_hdf_read_array(c->file, what, 2, most_rows * 1024, H5T_NATIVE_DOUBLE,
-                                         &c->vectors, shape);
-        c->components = shape[1];
-    }
+        gonio_i_hdf_read_array(c->file, what, 1, rows, H5T_NATIVE_DOUBLE, &c->mean, &c->rows);
     if (problem == NULL) {
         what = "variances";
-        problem = gonio_i_hdf_read_array(c->file, what, 1, MOST_MATERIALS, H5T_NATIVE_DOUBLE,
-                                         &c->variances, &c->variance_count);
+        problem = gonio_i_hdf_read_array(c->file, what, 1, GONIO_CHANNELS * c->materials,
+                                         H5T_NATIVE_DOUBLE, &c->variances, &c->variance_count);
+    }
+    if (problem == NULL) {
+        what = "components";
+        problem = gonio_i_hdf_read_array(c->file, what, 2, rows * c->variance_count,
+                                         H5T_NATIVE_DOUBLE, &c->vectors, shape);
+        c->components = shape[1];
     }
     if (problem == NULL &&
-        (c->rows != gonio_i_basis_rows(c->cells, (gonio_channel_model)c->channels) ||
-         shape[0] != c->rows || c->components == 0 || c->cells == 0 ||
+        (c->rows != rows || shape[0] != c->rows || c->components == 0 || c->cells == 0 ||
          c->components > c->variance_count)) {
         what = "components";
         problem = "has a shape that does not fit the grid and the mean";

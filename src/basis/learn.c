@@ -285,7 +285,9 @@ gonio_status gonio_basis_learn(gonio_context *context, const gonio_database *dat
     if (l.basis == NULL) {
         return GONIO_ERROR_MEMORY;
     }
+    l.context = gonio_i_team_begin(context);
     status = learn(&l);
+    gonio_i_team_end(l.context, context);
     if (status != GONIO_OK) {
         gonio_basis_free(&l.basis);
         return status;

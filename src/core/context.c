@@ -1,6 +1,7 @@
 /* The context: messages, progress, threads; and the library's status texts and version. */
 #include "core.h"
 
+#include <ctype.h>
 #include <pthread.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -14,7 +15,12 @@ struct gonio_context {
     gonio_context_options options;
     pthread_mutex_t callbacks;
     bool cancelled;
+    gonio_context *above; /* of a team: where its messages go */
+    bool failed;          /* of a team: an error was told */
 };
+
+/* More threads than this for each processor cost memory and gain nothing. */
+enum { MOST_THREADS_PER_PROCESSOR = 16 };
 
 #define TEXT(x) #x
 #define VERSION(major, minor, patch) TEXT(major) "." TEXT(minor) "." TEXT(patch)
@@ -79,20 +85,65 @@ void gonio_context_free(gonio_context **context)
 
 int gonio_context_threads(const gonio_context *context)
 {
-    if (context != NULL && context->options.threads > 0) {
-        return context->options.threads;
+    const int processors = omp_get_num_procs();
+    if (context == NULL || context->options.threads == 0) {
+        return processors;
     }
-    return omp_get_num_procs();
+    const int most = MOST_THREADS_PER_PROCESSOR * processors;
+    return context->options.threads < most ? context->options.threads : most;
+}
+
+gonio_context *gonio_i_team_begin(gonio_context *context)
+{
+    gonio_context *team = context != NULL ? calloc(1, sizeof *team) : NULL;
+    if (team == NULL) {
+        return context;
+    }
+    team->options = context->options;
+    team->above = context;
+    pthread_mutex_init(&team->callbacks, NULL);
+    return team;
+}
+
+void gonio_i_team_end(gonio_context *team, const gonio_context *context)
+{
+    if (team != context) {
+        gonio_context_free(&team);
+    }
+}
+
+/* Whether a team may tell this error: the first only. */
+static bool is_first_error(gonio_context *team)
+{
+    pthread_mutex_lock(&team->callbacks);
+    const bool first = !team->failed;
+    team->failed = true;
+    pthread_mutex_unlock(&team->callbacks);
+    return first;
+}
+
+/* Names and cells of files may hold anything; a message is one line. */
+static void keep_to_one_line(char *text)
+{
+    for (char *c = text; *c != '\0'; c++) {
+        *c = iscntrl((unsigned char)*c) ? '?' : *c;
+    }
 }
 
 static void send(gonio_context *context, gonio_message_level level, const char *format,
                  va_list arguments)
 {
+    for (; context != NULL && context->above != NULL; context = context->above) {
+        if (level == GONIO_MESSAGE_ERROR && !is_first_error(context)) {
+            return;
+        }
+    }
     if (context == NULL || context->options.message == NULL) {
         return;
     }
     char text[4096];
     vsnprintf(text, sizeof text, format, arguments);
+    keep_to_one_line(text);
     pthread_mutex_lock(&context->callbacks);
     context->options.message(context->options.user, level, text);
     pthread_mutex_unlock(&context->callbacks);
@@ -125,6 +176,9 @@ void gonio_i_note(gonio_context *context, const char *format, ...)
 
 gonio_status gonio_i_progress(gonio_context *context, const char *task, double fraction)
 {
+    while (context != NULL && context->above != NULL) {
+        context = context->above;
+    }
     if (context == NULL || context->options.progress == NULL) {
         return GONIO_OK;
     }

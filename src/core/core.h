@@ -26,6 +26,12 @@ gonio_status gonio_i_fail(gonio_context *context, gonio_status status, const cha
 void gonio_i_warn(gonio_context *context, const char *format, ...) GONIO_I_PRINTF(2, 3);
 void gonio_i_note(gonio_context *context, const char *format, ...) GONIO_I_PRINTF(2, 3);
 
+/* For the length of a call that runs threads: a context that passes everything on, but of the
+ * threads' errors only the first, as a failure has one message. With no context or no memory it is
+ * the context itself. */
+gonio_context *gonio_i_team_begin(gonio_context *context);
+void gonio_i_team_end(gonio_context *team, const gonio_context *context);
+
 /* Reports progress; GONIO_ERROR_CANCELLED once the callback has asked to stop. Thread-safe. */
 gonio_status gonio_i_progress(gonio_context *context, const char *task, double fraction);
 

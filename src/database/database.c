@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "../core/core.h"
+#include "slab_mean.h"
 
 struct gonio_database {
     gonio_database_options options;
@@ -119,52 +120,44 @@ static void free_reader(reader *r)
     free(r->data);
 }
 
-/* [cell][channel] of one slab, bivariate. */
-static size_t bivariate_rows(const reader *r)
+/* [cell][channel] of one slab of the full grid, where every bin is a cell. */
+static void full_rows(int theta_h, const reader *r)
 {
-    gonio_slab_statistics statistics;
-    gonio_slab_reduce(r->rho, r->data, &statistics);
-    for (size_t k = 0; k < GONIO_THETA_D_BINS; k++) {
-        for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
-            r->rows[k * GONIO_CHANNELS + channel] =
-                statistics.count[k] > 0 ? statistics.mean[k][channel] : NAN;
-        }
-    }
-    return GONIO_THETA_D_BINS;
-}
-
-/* The same for the full grid: every bin a cell. */
-static size_t full_rows(const reader *r)
-{
+    gonio_slab_mask(theta_h, r->rho, r->data);
+    gonio_slab_to_log(r->rho, r->rho);
     for (size_t k = 0; k < GONIO_SLAB_BINS; k++) {
         for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
             r->rows[k * GONIO_CHANNELS + channel] =
                 r->data[k] ? r->rho[channel * GONIO_SLAB_BINS + k] : NAN;
         }
     }
-    return GONIO_SLAB_BINS;
 }
 
-/* Reads one slab of a material into the scratch file and counts the materials with data per cell.
- */
+/* Reads one slab of a material into the scratch file; counts the materials with data per cell, and
+ * the material's cells with data. */
 static gonio_status read_slab(gonio_context *context, const gonio_database *database, size_t column,
                               const gonio_material *material, int theta_h, const reader *r,
-                              gonio_fingerprint *fingerprint, uint32_t *present)
+                              gonio_fingerprint *fingerprint, uint32_t *present,
+                              size_t *with_data)
 {
     gonio_status status = gonio_material_read_slab(material, context, theta_h, r->rho);
     if (status != GONIO_OK) {
         return status;
     }
     gonio_fingerprint_add(fingerprint, r->rho, GONIO_SLAB_VALUES * sizeof *r->rho);
-    gonio_slab_mask(theta_h, r->rho, r->data);
-    gonio_slab_to_log(r->rho, r->rho);
     const bool bivariate = database->options.representation == GONIO_BIVARIATE;
-    const size_t cells = bivariate ? bivariate_rows(r) : full_rows(r);
+    if (bivariate) {
+        gonio_i_slab_mean(theta_h, r->rho, r->rows);
+    } else {
+        full_rows(theta_h, r);
+    }
+    const size_t cells = bivariate ? GONIO_THETA_D_BINS : GONIO_SLAB_BINS;
     const size_t first = (size_t)theta_h * cells;
     for (size_t k = 0; k < cells; k++) {
         if (!isnan(r->rows[k * GONIO_CHANNELS])) {
 #pragma omp atomic
             present[first + k]++;
+            (*with_data)++;
         }
     }
     const size_t size = GONIO_CHANNELS * sizeof *r->rows;
@@ -173,12 +166,14 @@ static gonio_status read_slab(gonio_context *context, const gonio_database *data
 }
 
 static gonio_status read_slabs(gonio_context *context, gonio_database *database, size_t column,
-                               const gonio_material *material, const reader *r, uint32_t *present)
+                               const gonio_material *material, const reader *r, uint32_t *present,
+                               size_t *with_data)
 {
     gonio_fingerprint *fingerprint = NULL;
     gonio_status status = gonio_fingerprint_create(&fingerprint);
     for (int theta_h = 0; theta_h < GONIO_THETA_H_BINS && status == GONIO_OK; theta_h++) {
-        status = read_slab(context, database, column, material, theta_h, r, fingerprint, present);
+        status = read_slab(context, database, column, material, theta_h, r, fingerprint, present,
+                           with_data);
     }
     if (status == GONIO_OK) {
         database->fingerprints[column] = gonio_fingerprint_value(fingerprint);
@@ -196,10 +191,15 @@ static gonio_status read_material(gonio_context *context, gonio_database *databa
         return status;
     }
     database->names[column] = strdup(gonio_material_name(material));
+    size_t with_data = 0;
     status = database->names[column] == NULL
                  ? GONIO_ERROR_MEMORY
-                 : read_slabs(context, database, column, material, r, present);
+                 : read_slabs(context, database, column, material, r, present, &with_data);
     gonio_material_free(&material);
+    if (status == GONIO_OK && with_data == 0) {
+        status = gonio_i_fail(context, GONIO_ERROR_DATA,
+                              "%s: the material holds no data at all; leave it out", path);
+    }
     return status;
 }
 
@@ -208,23 +208,24 @@ static gonio_status read_materials(gonio_context *context, gonio_database *datab
 {
     gonio_status result = GONIO_OK;
     size_t finished = 0;
+    gonio_context *team = gonio_i_team_begin(context);
 #pragma omp parallel num_threads(gonio_context_threads(context))
     {
         reader r = {0};
-        gonio_status mine = make_reader(context, &r) ? GONIO_OK : GONIO_ERROR_MEMORY;
+        gonio_status mine = make_reader(team, &r) ? GONIO_OK : GONIO_ERROR_MEMORY;
 #pragma omp for schedule(dynamic)
         for (size_t k = 0; k < database->materials; k++) {
             gonio_status seen;
 #pragma omp atomic read
             seen = result;
             if (mine == GONIO_OK && seen == GONIO_OK) {
-                mine = read_material(context, database, k, paths[k], &r, present);
+                mine = read_material(team, database, k, paths[k], &r, present);
             }
             size_t done;
 #pragma omp atomic capture
             done = ++finished;
             if (mine == GONIO_OK) {
-                mine = gonio_i_progress(context, "reading materials",
+                mine = gonio_i_progress(team, "reading materials",
                                         (double)done / (double)database->materials);
             }
             if (mine != GONIO_OK) {
@@ -234,6 +235,7 @@ static gonio_status read_materials(gonio_context *context, gonio_database *datab
         }
         free_reader(&r);
     }
+    gonio_i_team_end(team, context);
     return result;
 }
 
@@ -251,9 +253,8 @@ static gonio_status keep_common_cells(gonio_context *context, gonio_database *da
     }
     if (kept == 0) {
         return gonio_i_fail(context, GONIO_ERROR_DATA,
-                            any == 0 ? "the materials hold no data at all"
-                                     : "no cell of the grid has data in every material; leave out "
-                                       "the material with the most holes (gonio info shows them)");
+                            "no cell of the grid has data in every material; leave out the "
+                            "material with the most holes (gonio info shows them)");
     }
     database->cell = gonio_i_allocate(context, kept, sizeof *database->cell);
     if (database->cell == NULL) {

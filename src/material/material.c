@@ -117,10 +117,16 @@ static gonio_status open_atlas(gonio_context *context, const char *name, gonio_m
 static gonio_status look_at(gonio_context *context, const char *path, gonio_i_file *file)
 {
     struct stat status;
-    FILE *stream = stat(path, &status) == 0 && !S_ISDIR(status.st_mode) ? fopen(path, "rbe") : NULL;
+    if (stat(path, &status) != 0) {
+        return gonio_i_fail(context, GONIO_ERROR_IO, "%s: cannot read: %s", path, strerror(errno));
+    }
+    if (!S_ISREG(status.st_mode)) { /* a pipe cannot be read in any order */
+        return gonio_i_fail(context, GONIO_ERROR_IO, "%s: cannot read: %s", path,
+                            S_ISDIR(status.st_mode) ? strerror(EISDIR) : "not a regular file");
+    }
+    FILE *stream = fopen(path, "rbe");
     if (stream == NULL) {
-        const int reason = errno == 0 || S_ISDIR(status.st_mode) ? EISDIR : errno;
-        return gonio_i_fail(context, GONIO_ERROR_IO, "%s: cannot read: %s", path, strerror(reason));
+        return gonio_i_fail(context, GONIO_ERROR_IO, "%s: cannot read: %s", path, strerror(errno));
     }
     file->path = path;
     file->size = (uint64_t)status.st_size;

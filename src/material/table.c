@@ -19,6 +19,7 @@ gonio_status gonio_table_load(gonio_context *context, const gonio_material *mate
         return GONIO_ERROR_MEMORY;
     }
     gonio_status status = GONIO_OK;
+    gonio_context *team = gonio_i_team_begin(context);
     made->rho = gonio_i_allocate(context, (size_t)GONIO_THETA_H_BINS * GONIO_SLAB_VALUES,
                                  sizeof *made->rho);
     if (made->rho == NULL) {
@@ -27,13 +28,14 @@ gonio_status gonio_table_load(gonio_context *context, const gonio_material *mate
 #pragma omp parallel for schedule(dynamic) num_threads(gonio_context_threads(context))
         for (int theta_h = 0; theta_h < GONIO_THETA_H_BINS; theta_h++) {
             double *slab = made->rho + (size_t)theta_h * GONIO_SLAB_VALUES;
-            const gonio_status mine = gonio_material_read_slab(material, context, theta_h, slab);
+            const gonio_status mine = gonio_material_read_slab(material, team, theta_h, slab);
             if (mine != GONIO_OK) {
 #pragma omp critical(gonio_table_load)
                 status = mine;
             }
         }
     }
+    gonio_i_team_end(team, context);
     if (status != GONIO_OK) {
         gonio_table_free(&made);
         return status;

@@ -32,7 +32,8 @@ static gonio_status read_one(gonio_context *context, const gonio_readings *readi
     const gonio_half_difference c = gonio_half_difference_from_pair(reading->pair);
     if (!gonio_table_value(table, c, reading->value)) {
         return gonio_i_fail(context, GONIO_ERROR_DATA,
-                            "%s:%zu: the material has no data around these directions",
+                            "%s:%zu: the material has no data around these directions; delete "
+                            "the line, or take another material (gonio info shows its share)",
                             readings->path, reading->line);
     }
     gonio_i_random random;

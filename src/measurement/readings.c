@@ -1,6 +1,8 @@
 /* Reading and writing readings (and plans) as CSV: docs/plan-and-readings.md. */
 #include "readings.h"
 
+#include <ctype.h>
+#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
@@ -155,7 +157,7 @@ static gonio_status find_columns(gonio_context *context, const gonio_readings *r
 static gonio_status bad_cell(gonio_context *context, const gonio_readings *readings, size_t row,
                              int column, gonio_status status, const char *problem)
 {
-    return gonio_i_fail(context, status, "%s:%zu: %s '%s' %s", readings->path,
+    return gonio_i_fail(context, status, "%s:%zu: %s '%.60s' %s", readings->path,
                         readings->csv->line[row], readings->csv->name[column],
                         gonio_i_csv_cell(readings->csv, row, (size_t)column), problem);
 }
@@ -257,6 +259,27 @@ static gonio_status read_row(gonio_context *context, const gonio_readings *readi
     return status;
 }
 
+/* The number of a "# key: number" line; 0 if there is no such line. */
+static gonio_status read_note(gonio_context *context, const gonio_readings *readings,
+                              const char *key, int base, uint64_t *number)
+{
+    const char *text = gonio_i_csv_note(readings->csv, key);
+    if (text == NULL) {
+        *number = 0;
+        return GONIO_OK;
+    }
+    char *end = NULL;
+    errno = 0;
+    *number = strtoull(text, &end, base);
+    if (!isxdigit((unsigned char)*text) || *end != '\0' || errno != 0 || *number == 0) {
+        return gonio_i_fail(context, GONIO_ERROR_FORMAT,
+                            "%s: '# %s: %.60s' is not what gonio plan writes; restore it, or delete "
+                            "the line",
+                            readings->path, key, text);
+    }
+    return GONIO_OK;
+}
+
 static gonio_status read_notes(gonio_context *context, gonio_readings *readings)
 {
     const char *grid = gonio_i_csv_note(readings->csv, "grid");
@@ -265,11 +288,13 @@ static gonio_status read_notes(gonio_context *context, gonio_readings *readings)
                             "%s: made for the grid '%s'; this gonio works on '%s'", readings->path,
                             grid, grid_name);
     }
-    const char *basis = gonio_i_csv_note(readings->csv, "basis");
-    const char *components = gonio_i_csv_note(readings->csv, "components");
-    readings->basis = basis != NULL ? strtoull(basis, NULL, 16) : 0;
-    readings->components = components != NULL ? strtoull(components, NULL, 10) : 0;
-    return GONIO_OK;
+    uint64_t components = 0;
+    gonio_status status = read_note(context, readings, "basis", 16, &readings->basis);
+    if (status == GONIO_OK) {
+        status = read_note(context, readings, "components", 10, &components);
+    }
+    readings->components = (size_t)components;
+    return status;
 }
 
 static gonio_status read_rows(gonio_context *context, gonio_readings *readings,

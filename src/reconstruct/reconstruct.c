@@ -43,6 +43,7 @@ static gonio_reconstruction *allocate(gonio_context *context, const gonio_basis_
 
 /* The equations X c = b - m of one column. */
 typedef struct equations {
+    const char *origin; /* the file of the readings and ": ", for messages; "" if there is none */
     size_t count;
     double *x; /* [count][components] */
     double *b; /* [count]: readings in log space less the mean */
@@ -50,6 +51,7 @@ typedef struct equations {
 
 static bool allocate_equations(gonio_context *context, size_t most, size_t components, equations *e)
 {
+    e->origin = "";
     e->x = gonio_i_allocate(context, most * components, sizeof *e->x);
     e->b = gonio_i_allocate(context, most, sizeof *e->b);
     return e->x != NULL && e->b != NULL;
@@ -61,19 +63,21 @@ static void free_equations(equations *e)
     free(e->b);
 }
 
-static gonio_status undetermined(gonio_context *context, size_t count, size_t rank, size_t needed)
+static gonio_status undetermined(gonio_context *context, const equations *e, size_t rank,
+                                 size_t needed, const char *channel)
 {
     if (rank == 0) {
         return gonio_i_fail(context, GONIO_ERROR_UNDETERMINED,
-                            "%zu readings for %zu coefficients, none of them usable", count,
-                            needed);
+                            "%sno usable reading%s to determine %zu coefficients from: are the "
+                            "cells of the values empty?",
+                            e->origin, channel, needed);
     }
     return gonio_i_fail(
         context, GONIO_ERROR_UNDETERMINED,
-        "%zu readings of which %zu are independent cannot determine %zu "
+        "%s%zu readings%s of which %zu are independent cannot determine %zu "
         "coefficients: measure at least %zu more directions, or use fewer components "
         "(--basis %zu)",
-        count, rank, needed, needed - rank, rank);
+        e->origin, e->count, channel, rank, needed, needed - rank, rank);
 }
 
 /* Root mean square of X c - b. */
@@ -93,6 +97,7 @@ static double residual_of(const equations *e, size_t components, const double *c
 static gonio_status solve_column(gonio_context *context, const equations *e, size_t column,
                                  gonio_reconstruction *r)
 {
+    static const char *const channels[GONIO_CHANNELS] = {" in R", " in G", " in B"};
     const size_t k = r->components;
     double *c = r->coefficients + column * k;
     size_t rank = 0;
@@ -105,7 +110,7 @@ static gonio_status solve_column(gonio_context *context, const equations *e, siz
         }
     }
     if (rank < k) {
-        return undetermined(context, e->count, rank, k);
+        return undetermined(context, e, rank, k, r->columns > 1 ? channels[column] : "");
     }
     const double residual = residual_of(e, k, c);
     r->readings = e->count;
@@ -177,7 +182,10 @@ static gonio_status solve_readings(const task *t, gonio_reconstruction *r)
 {
     equations e = {0};
     gonio_status status = GONIO_ERROR_MEMORY;
-    if (allocate_equations(t->context, GONIO_CHANNELS * t->readings->count, r->components, &e)) {
+    char *origin = gonio_i_format("%s: ", t->readings->path);
+    if (allocate_equations(t->context, GONIO_CHANNELS * t->readings->count, r->components, &e) &&
+        origin != NULL) {
+        e.origin = origin;
         status = GONIO_OK;
     }
     for (size_t column = 0; column < r->columns && status == GONIO_OK; column++) {
@@ -187,6 +195,7 @@ static gonio_status solve_readings(const task *t, gonio_reconstruction *r)
         }
     }
     free_equations(&e);
+    free(origin);
     return status;
 }
 
@@ -197,10 +206,15 @@ static gonio_status choose_components(const task *t, size_t available, size_t *c
     size_t k = t->options->components;
     k = k > 0 ? k : planned;
     k = k > 0 ? k : available;
-    if (k > available) {
+    if (t->options->components > available) {
         return gonio_i_fail(t->context, GONIO_ERROR_ARGUMENT,
-                            "%zu components asked for%s, but the basis has %zu", k,
-                            t->options->components > 0 ? "" : " by the plan", available);
+                            "%zu components asked for, but the basis has %zu", k, available);
+    }
+    if (k > available) {
+        return gonio_i_fail(t->context, GONIO_ERROR_MISMATCH,
+                            "%s: planned for %zu components, but the basis has %zu; give the basis "
+                            "of the plan, or use fewer components (--basis %zu)",
+                            t->readings->path, k, available, available);
     }
     *components = k;
     return GONIO_OK;

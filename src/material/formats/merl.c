@@ -244,20 +244,22 @@ static gonio_status write_slabs(gonio_context *context, const gonio_material *ma
                                 gonio_i_output *output)
 {
     gonio_status result = GONIO_OK;
+    gonio_context *team = gonio_i_team_begin(context);
 #pragma omp parallel num_threads(gonio_context_threads(context))
     {
-        double *rho = gonio_i_allocate(context, GONIO_SLAB_VALUES, sizeof *rho);
+        double *rho = gonio_i_allocate(team, GONIO_SLAB_VALUES, sizeof *rho);
         gonio_status mine = rho != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
 #pragma omp for schedule(dynamic)
         for (int theta_h = 0; theta_h < GONIO_THETA_H_BINS; theta_h++) {
             if (mine == GONIO_OK) {
-                mine = write_slab(context, material, theta_h, rho, output);
+                mine = write_slab(team, material, theta_h, rho, output);
             }
         }
         free(rho);
 #pragma omp critical(gonio_write_merl)
         result = mine != GONIO_OK ? mine : result;
     }
+    gonio_i_team_end(team, context);
     return result;
 }
 

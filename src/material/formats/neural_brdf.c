@@ -68,16 +68,21 @@ static void fill_inputs(int theta_h, int theta_d, const double cos_phi[PHI],
     }
 }
 
-/* rho = exp(y) - 1, clamped at 0, in the valid bins. */
+/* rho = exp(y) - 1, clamped at 0, in the valid bins. Absurd weights give a y beyond the range of
+ * numbers; it stays finite. */
 static void store_row(int theta_h, int theta_d, double y[HIDDEN][PHI], double *rho)
 {
+    const double largest = 600.0;
     double value[PHI];
     for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
-        gonio_i_expm1(PHI, y[channel], value);
+        for (int p = 0; p < PHI; p++) {
+            value[p] = fmin(fmax(y[channel][p], 0.0), largest);
+        }
+        gonio_i_expm1(PHI, value, value);
         double *row = rho + channel * GONIO_SLAB_BINS + (size_t)theta_d * PHI;
         const int first = gonio_i_first_valid_phi(theta_h, theta_d);
         for (int p = 0; p < PHI; p++) {
-            row[p] = p >= first && p < PHI - first ? fmax(value[p], 0.0) : -1.0;
+            row[p] = p >= first && p < PHI - first ? value[p] : -1.0;
         }
     }
 }
@@ -104,11 +109,16 @@ static gonio_status read_slab(void *self, gonio_context *context, int theta_h, d
     return GONIO_OK;
 }
 
+static bool is_kernel(const char *name)
+{
+    return strstr(name, "kernel") != NULL;
+}
+
 /* Reads one weight dataset; returns what is wrong with it, or NULL. */
 static const char *read_weights(hid_t group, const char *name, int layer, network *net)
 {
-    const bool is_kernel = strstr(name, "kernel") != NULL;
-    const int rank = is_kernel ? 2 : 1;
+    const bool kernel = is_kernel(name);
+    const int rank = kernel ? 2 : 1;
     size_t shape[2] = {0, 0};
     void *data = NULL;
     const char *problem =
@@ -116,15 +126,15 @@ static const char *read_weights(hid_t group, const char *name, int layer, networ
     if (problem != NULL) {
         return problem;
     }
-    const size_t from = is_kernel ? widths[layer] : 1;
+    const size_t from = kernel ? widths[layer] : 1;
     const size_t to = widths[layer + 1];
-    const bool fits = is_kernel ? shape[0] == from && shape[1] == to : shape[0] == to;
+    const bool fits = kernel ? shape[0] == from && shape[1] == to : shape[0] == to;
     for (size_t k = 0; fits && k < from * to; k++) {
         const double weight = ((const double *)data)[k];
         if (!isfinite(weight)) {
             problem = "holds a number that is not finite";
         }
-        if (is_kernel) {
+        if (kernel) {
             net->kernel[layer][k / to][k % to] = weight;
         } else {
             net->bias[layer][k] = weight;
@@ -145,7 +155,8 @@ static gonio_status read_layer(gonio_context *context, const char *path, hid_t r
     if (group < 0 || !gonio_i_hdf_read_strings(group, "weight_names", false, &names, &count)) {
         status = gonio_i_fail(context, GONIO_ERROR_FORMAT,
                               "%s: layer '%s' has no attribute 'weight_names'", path, layer_name);
-    } else if (count > 0 && (*layer >= LAYERS || count != 2)) {
+    } else if (count > 0 && (*layer >= LAYERS || count != 2 ||
+                             is_kernel(names[0]) == is_kernel(names[1]))) {
         status = gonio_i_fail(context, GONIO_ERROR_FORMAT,
                               "%s: layer '%s': a network of 3 dense layers (6-21-21-3) is expected",
                               path, layer_name);

@@ -1,0 +1,11 @@
+/* The bivariate average of one slab, fast: what learning spends its time on. */
+#ifndef GONIO_SLAB_MEAN_H
+#define GONIO_SLAB_MEAN_H
+
+#include <gonio/database.h>
+
+/* mean[theta_d][channel]: the mean of g over the valid phi_d bins with data, NaN where there are
+ * none. rho: a slab (material.h). Agrees with gonio_slab_reduce to rounding. */
+void gonio_i_slab_mean(int theta_h, const double *rho, double *mean);
+
+#endif
