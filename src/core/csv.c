@@ -72,14 +72,29 @@ static bool append(char ***strings, size_t *count, char *text)
     return true;
 }
 
+/* A formatted string with decimal points, whatever the program's locale; NULL when out of memory.
+ */
+static char *format_plain(const char *format, va_list arguments)
+{
+    const locale_t plain = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0);
+    if (plain == (locale_t)0) {
+        return NULL;
+    }
+    char *text = NULL;
+    const locale_t before = uselocale(plain);
+    const int length = vasprintf(&text, format, arguments);
+    uselocale(before);
+    freelocale(plain);
+    return length < 0 ? NULL : text;
+}
+
 bool gonio_i_csv_add_comment(gonio_i_csv *csv, const char *format, ...)
 {
     va_list arguments;
-    char *text = NULL;
     va_start(arguments, format);
-    const int length = vasprintf(&text, format, arguments);
+    char *text = format_plain(format, arguments);
     va_end(arguments);
-    return append(&csv->comment, &csv->comments, length < 0 ? NULL : text);
+    return append(&csv->comment, &csv->comments, text);
 }
 
 bool gonio_i_csv_add_column(gonio_i_csv *csv, const char *name)
@@ -128,11 +143,10 @@ bool gonio_i_csv_add_row(gonio_i_csv *csv, size_t number)
 bool gonio_i_csv_set(gonio_i_csv *csv, size_t row, size_t column, const char *format, ...)
 {
     va_list arguments;
-    char *text = NULL;
     va_start(arguments, format);
-    const int length = vasprintf(&text, format, arguments);
+    char *text = format_plain(format, arguments);
     va_end(arguments);
-    if (length < 0) {
+    if (text == NULL) {
         return false;
     }
     char **cell = csv->cell + row * csv->columns + column;
