@@ -102,6 +102,20 @@ gonio_status gonio_i_eigen(gonio_context *context, double *a, size_t n, bool vec
     return check_info(context, "dsyevd", info);
 }
 
+gonio_status gonio_i_cholesky(gonio_context *context, double *c, size_t n)
+{
+    gonio_status status = check_size(context, n, n);
+    if (status == GONIO_OK) {
+        /* Upper in column-major is lower in row-major; so LAPACKE has nothing to transpose. */
+        status =
+            check_info(context, "dpotrf", LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'U', (int)n, c, (int)n));
+    }
+    for (size_t i = 0; i < n; i++) {
+        memset(c + i * n + i + 1, 0, (n - 1 - i) * sizeof *c);
+    }
+    return status;
+}
+
 gonio_status gonio_i_divide_cholesky(gonio_context *context, double *a, size_t rows, size_t n,
                                      double *c)
 {

@@ -30,6 +30,10 @@ gonio_status gonio_i_product_transposed(gonio_context *context, const double *a,
 gonio_status gonio_i_eigen(gonio_context *context, double *a, size_t n, bool vectors,
                            double *values);
 
+/* The lower triangular L of C = L L', in place of a symmetric positive definite C (n x n); zeros
+ * above the diagonal. */
+gonio_status gonio_i_cholesky(gonio_context *context, double *c, size_t n);
+
 /* A (rows x n, row-major) becomes A R^-1, with R upper triangular from the Cholesky factorisation
  * C = R'R of the symmetric positive definite C (n x n, overwritten). */
 gonio_status gonio_i_divide_cholesky(gonio_context *context, double *a, size_t rows, size_t n,

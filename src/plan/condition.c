@@ -25,24 +25,31 @@
 /* A swap has to lower kappa by more than this share: less is rounding. */
 static const double least_gain = 1e-10;
 
-enum { MOST_UPDATES = 64 }; /* swaps before the filter is computed afresh */
-
 typedef struct search {
     const gonio_i_selection_problem *problem;
     size_t *chosen;
     unsigned char *taken; /* [rows] */
     double *x;            /* [count][K]: the chosen rows */
-    double *y;            /* [count][K]: the same in the eigenbasis of G */
+    double *y;            /* [count][K]: the chosen rows in the eigenbasis of G */
     double *z;            /* [K]: a candidate in the eigenbasis of G */
     double *gram;         /* [K][K]; holds the eigenvectors as rows once decomposed */
+    double *columns;      /* [K][K]: the eigenvectors as columns */
     double *d;            /* [K] eigenvalues, ascending */
     double condition_number;
     gonio_i_filter filter;
     size_t *survivors; /* [rows + 1] */
     gonio_i_random random;
+    double *shares; /* [restarts], of all searches: how far each is */
 } search;
 
-/* G, its eigenvectors and eigenvalues, and the chosen rows in that basis. */
+/* What lambda_min of a swap that lowers kappa must exceed. */
+static double bound(const search *s)
+{
+    return s->d[s->problem->components - 2] / s->condition_number;
+}
+
+/* G of the choice, its eigenvectors and eigenvalues, the chosen rows in that basis, and the filter.
+ */
 static gonio_status decompose(search *s)
 {
     const gonio_i_selection_problem *p = s->problem;
@@ -51,32 +58,30 @@ static gonio_status decompose(search *s)
     if (status == GONIO_OK) {
         status = gonio_i_eigen(p->context, s->gram, k, true, s->d);
     }
-    if (status != GONIO_OK) {
-        return status;
+    if (status == GONIO_OK) {
+        status = gonio_i_product_transposed(p->context, s->x, p->count, k, s->gram, k, s->y, k);
     }
-    s->condition_number = gonio_i_condition(s->d, k);
-    return gonio_i_product_transposed(p->context, s->x, p->count, k, s->gram, k, s->y, k);
-}
-
-/* What lambda_min of a swap that lowers kappa must exceed. */
-static double bound(const search *s)
-{
-    return s->d[s->problem->components - 2] / s->condition_number;
-}
-
-/* z = Q'u */
-static void rotate(search *s, size_t row)
-{
-    const size_t k = s->problem->components;
-    const double *u = s->problem->vectors + row * k;
+    s->condition_number = status == GONIO_OK ? gonio_i_condition(s->d, k) : INFINITY;
     for (size_t j = 0; j < k; j++) {
-        const double *q = s->gram + j * k;
-        double sum = 0.0;
-#pragma omp simd reduction(+ : sum)
         for (size_t a = 0; a < k; a++) {
-            sum += q[a] * u[a];
+            s->columns[a * k + j] = s->gram[j * k + a];
         }
-        s->z[j] = sum;
+    }
+    if (status == GONIO_OK && k > 1 && isfinite(s->condition_number)) {
+        status = gonio_i_filter_set(&s->filter, s->gram, s->d, bound(s));
+    }
+    return status;
+}
+
+/* z = Q'u, from the eigenvectors as columns of q[K][K]. */
+GONIO_I_VECTORISED static void rotate(size_t k, const double *restrict q, const double *u,
+                                      double *restrict z)
+{
+    memset(z, 0, k * sizeof *z);
+    for (size_t a = 0; a < k; a++) {
+        for (size_t j = 0; j < k; j++) {
+            z[j] += u[a] * q[a * k + j];
+        }
     }
 }
 
@@ -87,32 +92,15 @@ static bool wins(search *s, size_t position, size_t row)
         return false;
     }
     const size_t k = s->problem->components;
-    rotate(s, row);
+    rotate(k, s->columns, s->problem->vectors + row * k, s->z);
     const gonio_i_exchange exchange = {s->d, s->y + position * k, s->z, k};
     return gonio_i_exchange_beats(&exchange, s->condition_number * (1.0 - least_gain));
 }
 
-static gonio_status refresh(search *s)
-{
-    return gonio_i_filter_refresh(&s->filter, s->gram, s->d, bound(s));
-}
-
 /* The first row in the cyclic order from `from` on that lowers kappa at a position; `rows` if none.
  */
-static gonio_status first_winner(search *s, size_t position, size_t from, size_t *winner)
+static size_t first_winner(search *s, size_t position, size_t from)
 {
-    *winner = s->problem->rows;
-    const double mu = bound(s);
-    gonio_status status = GONIO_OK;
-    if (s->filter.updates > MOST_UPDATES || s->filter.mu > mu || s->filter.mu < 0.97 * mu) {
-        status = refresh(s);
-    }
-    if (status == GONIO_OK) {
-        status = gonio_i_filter_load(&s->filter, s->x, position);
-    }
-    if (status != GONIO_OK) {
-        return status;
-    }
     const size_t count = gonio_i_filter_survivors(&s->filter, s->x, position, s->survivors);
     size_t first = 0;
     while (first < count && s->survivors[first] < from) {
@@ -121,11 +109,10 @@ static gonio_status first_winner(search *s, size_t position, size_t from, size_t
     for (size_t k = 0; k < count; k++) {
         const size_t row = s->survivors[(first + k) % count];
         if (wins(s, position, row)) {
-            *winner = row;
-            return GONIO_OK;
+            return row;
         }
     }
-    return GONIO_OK;
+    return s->problem->rows;
 }
 
 static void put(search *s, size_t position, size_t row)
@@ -140,18 +127,12 @@ static gonio_status make_swap(search *s, size_t position, size_t row, bool *gain
 {
     const double before = s->condition_number;
     const size_t old = s->chosen[position];
-    gonio_status status = gonio_i_filter_swap(&s->filter, s->x, position, row);
     put(s, position, row);
-    if (status == GONIO_OK) {
-        status = decompose(s);
-    }
+    gonio_status status = decompose(s);
     *gained = s->condition_number < before;
     if (status == GONIO_OK && !*gained) {
         put(s, position, old);
         status = decompose(s);
-        if (status == GONIO_OK) {
-            status = refresh(s);
-        }
     }
     return status;
 }
@@ -161,11 +142,10 @@ static gonio_status sweep(search *s, int restart, int *swaps, gonio_i_selection 
 {
     gonio_status status = GONIO_OK;
     for (size_t position = 0; position < s->problem->count && status == GONIO_OK; position++) {
-        size_t row = 0;
+        const size_t from = (size_t)gonio_i_random_below(&s->random, s->problem->rows);
+        const size_t row = first_winner(s, position, from);
         bool gained = false;
-        status =
-            first_winner(s, position, gonio_i_random_below(&s->random, s->problem->rows), &row);
-        if (status == GONIO_OK && row < s->problem->rows) {
+        if (row < s->problem->rows) {
             status = make_swap(s, position, row, &gained);
         }
         if (status == GONIO_OK && gained) {
@@ -174,6 +154,21 @@ static gonio_status sweep(search *s, int restart, int *swaps, gonio_i_selection 
         }
     }
     return status;
+}
+
+/* Progress of all starts together. */
+static gonio_status report(search *s, int restart, double share)
+{
+    double sum = 0.0;
+#pragma omp atomic write
+    s->shares[restart] = share;
+    for (int k = 0; k < s->problem->restarts; k++) {
+        double one;
+#pragma omp atomic read
+        one = s->shares[k];
+        sum += one;
+    }
+    return gonio_i_progress(s->problem->context, "planning", 0.999 * sum / s->problem->restarts);
 }
 
 static gonio_status descend(search *s, int restart, gonio_i_selection *selection)
@@ -185,15 +180,11 @@ static gonio_status descend(search *s, int restart, gonio_i_selection *selection
     bool proved = s->problem->components < 2; /* kappa of one component is 1 */
     for (int turn = 0; status == GONIO_OK && !proved; turn++) {
         const int before = swaps;
-        status = refresh(s);
-        if (status == GONIO_OK) {
-            status = sweep(s, restart, &swaps, selection);
-        }
+        status = sweep(s, restart, &swaps, selection);
         proved = swaps == before;
         if (status == GONIO_OK) {
-            const double share = turn / (turn + 8.0); /* most searches end within 20 turns */
-            status = gonio_i_progress(context, "planning",
-                                      0.999 * (restart + share) / s->problem->restarts);
+            status =
+                report(s, restart, proved ? 1.0 : turn / (turn + 20.0)); /* typically 20 to 40 */
         }
     }
     return status;
@@ -251,59 +242,140 @@ static int compare_rows(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static gonio_status run(search *s, gonio_i_selection *selection)
+static bool allocate_search(const gonio_i_selection_problem *problem, const gonio_i_panels *panels,
+                            double *shares, int threads, search *s)
 {
-    const gonio_i_selection_problem *p = s->problem;
-    gonio_status status = GONIO_OK;
-    selection->condition_number = INFINITY;
-    for (int restart = 0; restart < p->restarts && status == GONIO_OK; restart++) {
-        status = start(s, restart);
-        if (status == GONIO_OK) {
-            status = descend(s, restart, selection);
-        }
-        if (status == GONIO_OK &&
-            (restart == 0 || s->condition_number < selection->condition_number)) {
-            selection->condition_number = s->condition_number;
-            memcpy(selection->chosen, s->chosen, p->count * sizeof *s->chosen);
-        }
+    gonio_context *context = problem->context;
+    const size_t k = problem->components;
+    const size_t n = problem->count;
+    *s = (search){
+        .problem = problem,
+        .shares = shares,
+        .chosen = gonio_i_allocate(context, n, sizeof *s->chosen),
+        .taken = gonio_i_allocate(context, problem->rows, sizeof *s->taken),
+        .x = gonio_i_allocate(context, n * k, sizeof *s->x),
+        .y = gonio_i_allocate(context, n * k, sizeof *s->y),
+        .z = gonio_i_allocate(context, k, sizeof *s->z),
+        .gram = gonio_i_allocate(context, k * k, sizeof *s->gram),
+        .columns = gonio_i_allocate(context, k * k, sizeof *s->columns),
+        .d = gonio_i_allocate(context, k, sizeof *s->d),
+        .survivors = gonio_i_allocate(context, problem->rows + 1, sizeof *s->survivors),
+    };
+    return gonio_i_filter_allocate(problem, panels, threads, &s->filter) && s->chosen != NULL &&
+           s->taken != NULL && s->x != NULL && s->y != NULL && s->z != NULL && s->gram != NULL &&
+           s->columns != NULL && s->d != NULL && s->survivors != NULL;
+}
+
+static void free_search(search *s)
+{
+    free(s->chosen);
+    free(s->taken);
+    free(s->x);
+    free(s->y);
+    free(s->z);
+    free(s->gram);
+    free(s->columns);
+    free(s->d);
+    free(s->survivors);
+    gonio_i_filter_free(&s->filter);
+}
+
+/* One start and its descent, into `selection` (chosen rows in any order). */
+static gonio_status run(const gonio_i_selection_problem *problem, const gonio_i_panels *panels,
+                        double *shares, int threads, int restart, gonio_i_selection *selection)
+{
+    search s;
+    gonio_status status =
+        allocate_search(problem, panels, shares, threads, &s) ? GONIO_OK : GONIO_ERROR_MEMORY;
+    if (status == GONIO_OK) {
+        status = start(&s, restart);
     }
     if (status == GONIO_OK) {
-        qsort(selection->chosen, p->count, sizeof *selection->chosen, compare_rows);
-        status = gonio_i_progress(p->context, "planning", 1.0);
+        status = descend(&s, restart, selection);
     }
+    if (status == GONIO_OK) {
+        selection->condition_number = s.condition_number;
+        memcpy(selection->chosen, s.chosen, problem->count * sizeof *s.chosen);
+    }
+    free_search(&s);
+    return status;
+}
+
+/* All starts, several at a time: they share nothing but the rows, while threads within one start
+ * wait for each other at every step. Those left over go into the starts. */
+static gonio_status run_all(const gonio_i_selection_problem *problem, const gonio_i_panels *panels,
+                            gonio_i_selection *runs)
+{
+    const int threads = gonio_context_threads(problem->context);
+    const int teams = problem->restarts < threads ? problem->restarts : threads;
+    gonio_status result = GONIO_OK;
+    double *shares = gonio_i_allocate(problem->context, (size_t)problem->restarts, sizeof *shares);
+    if (shares == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+#pragma omp parallel for schedule(dynamic) num_threads(teams)
+    for (int restart = 0; restart < problem->restarts; restart++) {
+        const gonio_status mine =
+            run(problem, panels, shares, threads / teams, restart, &runs[restart]);
+        if (mine != GONIO_OK) {
+#pragma omp atomic write
+            result = mine;
+        }
+    }
+    free(shares);
+    return result;
+}
+
+/* The best of the runs, the first on ties, and the history of all. */
+static gonio_status gather(const gonio_i_selection_problem *problem, const gonio_i_selection *runs,
+                           gonio_i_selection *selection)
+{
+    const gonio_i_selection *best = &runs[0];
+    gonio_status status = GONIO_OK;
+    for (int restart = 0; restart < problem->restarts; restart++) {
+        const gonio_i_selection *r = &runs[restart];
+        best = r->condition_number < best->condition_number ? r : best;
+        for (size_t k = 0; k < r->steps && status == GONIO_OK; k++) {
+            const gonio_plan_step *step = &r->history[k];
+            status = gonio_i_selection_record(problem->context, selection, step->restart,
+                                              step->swap, step->condition_number);
+        }
+    }
+    selection->condition_number = best->condition_number;
+    memcpy(selection->chosen, best->chosen, problem->count * sizeof *best->chosen);
+    qsort(selection->chosen, problem->count, sizeof *selection->chosen, compare_rows);
     return status;
 }
 
 static gonio_status select_by_condition(const gonio_i_selection_problem *problem,
                                         gonio_i_selection *selection)
 {
-    const size_t k = problem->components;
-    const size_t n = problem->count;
     gonio_context *context = problem->context;
-    search s = {
-        .problem = problem,
-        .chosen = gonio_i_allocate(context, n, sizeof *s.chosen),
-        .taken = gonio_i_allocate(context, problem->rows, sizeof *s.taken),
-        .x = gonio_i_allocate(context, n * k, sizeof *s.x),
-        .y = gonio_i_allocate(context, n * k, sizeof *s.y),
-        .gram = gonio_i_allocate(context, k * k, sizeof *s.gram),
-        .d = gonio_i_allocate(context, k, sizeof *s.d),
-        .z = gonio_i_allocate(context, k, sizeof *s.z),
-        .survivors = gonio_i_allocate(context, problem->rows + 1, sizeof *s.survivors),
-    };
-    const bool ready = gonio_i_filter_allocate(problem, &s.filter) && s.chosen != NULL &&
-                       s.taken != NULL && s.x != NULL && s.y != NULL && s.z != NULL &&
-                       s.gram != NULL && s.d != NULL && s.survivors != NULL;
-    const gonio_status status = ready ? run(&s, selection) : GONIO_ERROR_MEMORY;
-    free(s.chosen);
-    free(s.taken);
-    free(s.x);
-    free(s.y);
-    free(s.gram);
-    free(s.d);
-    free(s.z);
-    free(s.survivors);
-    gonio_i_filter_free(&s.filter);
+    const size_t restarts = (size_t)problem->restarts;
+    gonio_i_panels panels = {0};
+    gonio_i_selection *runs = gonio_i_allocate(context, restarts, sizeof *runs);
+    size_t *chosen = gonio_i_allocate(context, restarts * problem->count, sizeof *chosen);
+    gonio_status status = GONIO_ERROR_MEMORY;
+    if (runs != NULL && chosen != NULL &&
+        gonio_i_panels_make(context, problem->vectors, problem->rows, problem->components,
+                            &panels)) {
+        for (size_t k = 0; k < restarts; k++) {
+            runs[k].chosen = chosen + k * problem->count;
+        }
+        status = run_all(problem, &panels, runs);
+    }
+    if (status == GONIO_OK) {
+        status = gather(problem, runs, selection);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_progress(context, "planning", 1.0);
+    }
+    for (size_t k = 0; runs != NULL && k < restarts; k++) {
+        free(runs[k].history);
+    }
+    free(runs);
+    free(chosen);
+    gonio_i_panels_free(&panels);
     return status;
 }
 
