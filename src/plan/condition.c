@@ -39,7 +39,7 @@ typedef struct search {
     gonio_i_filter filter;
     size_t *survivors; /* [rows + 1] */
     gonio_i_random random;
-    double *shares; /* [restarts], of all searches: how far each is */
+    _Atomic double *shares; /* [restarts], of all searches: how far each is */
 } search;
 
 /* What lambda_min of a swap that lowers kappa must exceed. */
@@ -160,13 +160,9 @@ static gonio_status sweep(search *s, int restart, int *swaps, gonio_i_selection 
 static gonio_status report(search *s, int restart, double share)
 {
     double sum = 0.0;
-#pragma omp atomic write
     s->shares[restart] = share;
     for (int k = 0; k < s->problem->restarts; k++) {
-        double one;
-#pragma omp atomic read
-        one = s->shares[k];
-        sum += one;
+        sum += s->shares[k];
     }
     return gonio_i_progress(s->problem->context, "planning", 0.999 * sum / s->problem->restarts);
 }
@@ -243,7 +239,7 @@ static int compare_rows(const void *a, const void *b)
 }
 
 static bool allocate_search(const gonio_i_selection_problem *problem, const gonio_i_panels *panels,
-                            double *shares, int threads, search *s)
+                            _Atomic double *shares, int threads, search *s)
 {
     gonio_context *context = problem->context;
     const size_t k = problem->components;
@@ -282,7 +278,8 @@ static void free_search(search *s)
 
 /* One start and its descent, into `selection` (chosen rows in any order). */
 static gonio_status run(const gonio_i_selection_problem *problem, const gonio_i_panels *panels,
-                        double *shares, int threads, int restart, gonio_i_selection *selection)
+                        _Atomic double *shares, int threads, int restart,
+                        gonio_i_selection *selection)
 {
     search s;
     gonio_status status =
@@ -309,7 +306,8 @@ static gonio_status run_all(const gonio_i_selection_problem *problem, const goni
     const int threads = gonio_context_threads(problem->context);
     const int teams = problem->restarts < threads ? problem->restarts : threads;
     gonio_status result = GONIO_OK;
-    double *shares = gonio_i_allocate(problem->context, (size_t)problem->restarts, sizeof *shares);
+    _Atomic double *shares =
+        gonio_i_allocate(problem->context, (size_t)problem->restarts, sizeof *shares);
     if (shares == NULL) {
         return GONIO_ERROR_MEMORY;
     }
