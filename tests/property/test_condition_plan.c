@@ -114,10 +114,163 @@ static void test_local_optimum(void **state)
     }
 }
 
+/* The paper's algorithm with LAPACK for every test, in the order that condition.c documents.
+ * Returns the number of swaps; kappas[swap] as they went. */
+static size_t plain_search(const double *v, size_t rows, size_t k, size_t n, uint64_t seed,
+                           size_t *chosen, double *kappas, size_t most)
+{
+    gonio_i_random random;
+    unsigned char *used = calloc(rows, 1);
+    gonio_i_random_seed(&random, seed, 0);
+    gonio_i_random_subset(&random, rows, n, used, chosen);
+    free(used);
+    gonio_i_random_seed(&random, seed, 1);
+    size_t swaps = 0;
+    kappas[0] = plain_condition(v, k, chosen, n);
+    for (size_t idle = 0, position = 0; idle < n || position != 0; position = (position + 1) % n) {
+        idle = position == 0 ? 0 : idle; /* turns are counted whole */
+        const size_t from = (size_t)gonio_i_random_below(&random, rows);
+        const size_t old = chosen[position];
+        bool won = false;
+        for (size_t j = 0; j < rows && !won; j++) {
+            const size_t row = (from + j) % rows;
+            if (!holds(chosen, n, row)) {
+                chosen[position] = row;
+                const double kappa = plain_condition(v, k, chosen, n);
+                won = kappa < kappas[swaps] * (1.0 - 1e-10);
+                if (won) {
+                    assert_true(swaps + 1 < most);
+                    kappas[++swaps] = kappa;
+                } else {
+                    chosen[position] = old;
+                }
+            }
+        }
+        idle += won ? 0 : 1;
+    }
+    return swaps;
+}
+
+static int compare_rows(const void *a, const void *b)
+{
+    const size_t x = *(const size_t *)a;
+    const size_t y = *(const size_t *)b;
+    return (x > y) - (x < y);
+}
+
+/* The fast search makes the very swaps of the plain one. */
+static void test_same_swaps(void **state)
+{
+    (void)state;
+    static const struct {
+        size_t rows, k, n;
+    } cases[] = {{100, 2, 4}, {150, 4, 6}, {150, 6, 6}, {300, 7, 16}, {200, 12, 24}};
+    enum { MOST = 2000 };
+    double *kappas = malloc(MOST * sizeof *kappas);
+    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+        for (uint64_t seed = 10; seed < 14; seed++) {
+            const size_t rows = cases[c].rows, k = cases[c].k, n = cases[c].n;
+            double *v = make_rows(rows, k, seed);
+            size_t plain[32];
+            size_t fast[32];
+            const size_t swaps = plain_search(v, rows, k, n, seed, plain, kappas, MOST);
+            double kappa = 0.0;
+            gonio_plan_step *history = NULL;
+            size_t steps = 0;
+            gonio_plan_options options;
+            gonio_plan_options_default(&options);
+            options.count = n;
+            options.restarts = 1;
+            options.seed = seed;
+            assert_int_equal(
+                gonio_plan_select(NULL, v, rows, k, &options, fast, &kappa, &history, &steps),
+                GONIO_OK);
+            assert_int_equal(steps, swaps + 1);
+            for (size_t s = 0; s < steps; s++) {
+                assert_true(fabs(history[s].condition_number - kappas[s]) <= 1e-8 * kappas[s]);
+            }
+            qsort(plain, n, sizeof *plain, compare_rows);
+            assert_memory_equal(plain, fast, n * sizeof *plain);
+            free(history);
+            free(v);
+        }
+    }
+    free(kappas);
+}
+
+static void test_any_number_of_threads(void **state)
+{
+    (void)state;
+    enum { ROWS = 3000, K = 10, N = 24, RESTARTS = 3 };
+    double *v = make_rows(ROWS, K, 5);
+    size_t first[N] = {0};
+    gonio_plan_options options;
+    gonio_plan_options_default(&options);
+    options.count = N;
+    options.restarts = RESTARTS;
+    for (int threads = 1; threads <= 5; threads++) {
+        gonio_context *context = NULL;
+        const gonio_context_options settings = {.threads = threads};
+        size_t chosen[N];
+        double kappa = 0.0;
+        assert_int_equal(gonio_context_create(&context, &settings), GONIO_OK);
+        assert_int_equal(gonio_plan_select(context, v, ROWS, K, &options,
+                                           threads == 1 ? first : chosen, &kappa, NULL, NULL),
+                         GONIO_OK);
+        if (threads > 1) {
+            assert_memory_equal(first, chosen, sizeof first);
+        }
+        gonio_context_free(&context);
+    }
+    free(v);
+}
+
+/* The count of eigenvalues above x after an exchange, against LAPACK. */
+static void test_inertia(void **state)
+{
+    (void)state;
+    enum { K = 9 };
+    gonio_i_random random;
+    gonio_i_random_seed(&random, 3, 0);
+    for (int trial = 0; trial < 200; trial++) {
+        double d[K], y[K], z[K], h[K * K], values[K];
+        double level = 0.0;
+        for (int k = 0; k < K; k++) {
+            level += gonio_i_random_uniform(&random);
+            d[k] = level;
+            y[k] = 0.3 * gonio_i_random_normal(&random);
+            z[k] = 0.5 * gonio_i_random_normal(&random);
+        }
+        for (int a = 0; a < K; a++) {
+            for (int b = 0; b < K; b++) {
+                h[a * K + b] = (a == b ? d[a] : 0.0) - y[a] * y[b] + z[a] * z[b];
+            }
+        }
+        assert_int_equal(LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'N', 'U', K, h, K, values), 0);
+        const gonio_i_exchange exchange = {d, y, z, K};
+        for (int step = -2; step < 80; step++) {
+            const double x = 0.1 * step + 1e-3;
+            int above = 0;
+            for (int k = 0; k < K; k++) {
+                above += values[k] > x;
+            }
+            assert_int_equal(gonio_i_exchange_count_above(&exchange, x), above);
+        }
+        if (values[0] > 0.0) {
+            const double kappa = values[K - 1] / values[0];
+            assert_true(gonio_i_exchange_beats(&exchange, kappa * (1.0 + 1e-9)));
+            assert_false(gonio_i_exchange_beats(&exchange, kappa * (1.0 - 1e-9)));
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_inertia),
         cmocka_unit_test(test_local_optimum),
+        cmocka_unit_test(test_same_swaps),
+        cmocka_unit_test(test_any_number_of_threads),
     };
     return cmocka_run_group_tests_name("condition plan", tests, NULL, NULL);
 }
