@@ -39,6 +39,7 @@ typedef struct search {
     gonio_i_filter filter;
     size_t *survivors; /* [rows + 1] */
     gonio_i_random random;
+    uint64_t tests;         /* that a search without the filter would have made */
     _Atomic double *shares; /* [restarts], of all searches: how far each is */
 } search;
 
@@ -106,13 +107,16 @@ static size_t first_winner(search *s, size_t position, size_t from)
     while (first < count && s->survivors[first] < from) {
         first++;
     }
+    const size_t rows = s->problem->rows;
     for (size_t k = 0; k < count; k++) {
         const size_t row = s->survivors[(first + k) % count];
         if (wins(s, position, row)) {
+            s->tests += (row + rows - from) % rows + 1;
             return row;
         }
     }
-    return s->problem->rows;
+    s->tests += rows;
+    return rows;
 }
 
 static void put(search *s, size_t position, size_t row)
@@ -292,6 +296,7 @@ static gonio_status run(const gonio_i_selection_problem *problem, const gonio_i_
     }
     if (status == GONIO_OK) {
         selection->condition_number = s.condition_number;
+        selection->tests = s.tests;
         memcpy(selection->chosen, s.chosen, problem->count * sizeof *s.chosen);
     }
     free_search(&s);
@@ -333,6 +338,7 @@ static gonio_status gather(const gonio_i_selection_problem *problem, const gonio
     for (int restart = 0; restart < problem->restarts; restart++) {
         const gonio_i_selection *r = &runs[restart];
         best = r->condition_number < best->condition_number ? r : best;
+        selection->tests += r->tests;
         for (size_t k = 0; k < r->steps && status == GONIO_OK; k++) {
             const gonio_plan_step *step = &r->history[k];
             status = gonio_i_selection_record(problem->context, selection, step->restart,

@@ -23,6 +23,8 @@ typedef struct gonio_i_selection {
     double condition_number;
     gonio_plan_step *history; /* grown by gonio_i_selection_record; released by the caller */
     size_t steps;
+    uint64_t
+        tests; /* eigenvalue solves that the plain algorithm would have made for the same swaps */
 } gonio_i_selection;
 
 typedef struct gonio_i_method {
