@@ -34,6 +34,8 @@ typedef struct gonio_plan {
     double condition_number;   /* kappa of X'X; infinity if singular */
     uint64_t basis;            /* fingerprint of the basis */
     char method[32];
+    uint64_t
+        tests; /* rows tried at a position, all starts: one eigenvalue solve each in the paper */
     size_t steps;
     gonio_plan_step *history; /* all restarts, in order; not kept in files */
 } gonio_plan;
@@ -63,13 +65,19 @@ GONIO_API gonio_status gonio_plan_create(gonio_context *context, const gonio_bas
 
 GONIO_API void gonio_plan_free(gonio_plan **plan);
 
+/* What gonio_plan_select found besides the rows. */
+typedef struct gonio_selection_report {
+    double condition_number;
+    uint64_t tests; /* see gonio_plan */
+    size_t steps;
+    gonio_plan_step *history; /* the caller's; released with free() */
+} gonio_selection_report;
+
 /* Chooses n of `rows` rows of a matrix V[rows][components], ascending, into chosen[n]; the engine
- * under gonio_plan_create, for rows that come from elsewhere. history and steps may be NULL;
- * *history is then to be released with free(). */
+ * under gonio_plan_create, for rows that come from elsewhere. */
 GONIO_API gonio_status gonio_plan_select(gonio_context *context, const double *vectors, size_t rows,
                                          size_t components, const gonio_plan_options *options,
-                                         size_t *chosen, double *condition_number,
-                                         gonio_plan_step **history, size_t *steps);
+                                         size_t *chosen, gonio_selection_report *report);
 
 /* kappa of X'X for the rows chosen[n] of V[rows][leading]: the first `components` of each row.
  * Infinity if singular to working precision. */

@@ -134,7 +134,7 @@ static gonio_status check_selection(gonio_context *context, size_t rows, size_t 
 
 gonio_status gonio_plan_select(gonio_context *context, const double *vectors, size_t rows,
                                size_t components, const gonio_plan_options *options, size_t *chosen,
-                               double *condition_number, gonio_plan_step **history, size_t *steps)
+                               gonio_selection_report *report)
 {
     gonio_status status = check_selection(context, rows, components, options);
     if (status != GONIO_OK) {
@@ -144,16 +144,13 @@ gonio_status gonio_plan_select(gonio_context *context, const double *vectors, si
         context, vectors, rows, components, options->count, options->restarts, options->seed};
     gonio_i_selection selection = {.chosen = chosen};
     status = find_method(options->method)->select(&problem, &selection);
-    if (status == GONIO_OK) {
-        *condition_number = selection.condition_number;
-    }
-    if (status == GONIO_OK && history != NULL) {
-        *history = selection.history;
-        *steps = selection.steps;
-    } else {
+    if (status != GONIO_OK) {
         free(selection.history);
+        return status;
     }
-    return status;
+    *report = (gonio_selection_report){selection.condition_number, selection.tests, selection.steps,
+                                       selection.history};
+    return GONIO_OK;
 }
 
 /* The first `components` of each row, close together. */
@@ -236,12 +233,17 @@ static gonio_status choose(gonio_context *context, const gonio_basis_view *basis
     double *vectors = leading_components(context, basis->vectors, basis->rows, basis->components,
                                          plan->components);
     size_t *chosen = gonio_i_allocate(context, plan->count, sizeof *chosen);
+    gonio_selection_report report;
     gonio_status status = vectors == NULL || chosen == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
     if (status == GONIO_OK) {
         status = gonio_plan_select(context, vectors, basis->rows, plan->components, options, chosen,
-                                   &plan->condition_number, &plan->history, &plan->steps);
+                                   &report);
     }
     if (status == GONIO_OK) {
+        plan->condition_number = report.condition_number;
+        plan->tests = report.tests;
+        plan->history = report.history;
+        plan->steps = report.steps;
         fill_entries(basis, chosen, options->phi_d, plan);
     }
     free(vectors);

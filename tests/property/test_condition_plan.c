@@ -87,28 +87,27 @@ static void test_local_optimum(void **state)
             const size_t rows = cases[c].rows, k = cases[c].k, n = cases[c].n;
             double *v = make_rows(rows, k, seed);
             size_t chosen[32];
-            double kappa = 0.0;
-            gonio_plan_step *history = NULL;
-            size_t steps = 0;
+            gonio_selection_report report;
             gonio_plan_options options;
             gonio_plan_options_default(&options);
             options.count = n;
             options.restarts = 2;
             options.seed = seed;
-            assert_int_equal(
-                gonio_plan_select(NULL, v, rows, k, &options, chosen, &kappa, &history, &steps),
-                GONIO_OK);
+            assert_int_equal(gonio_plan_select(NULL, v, rows, k, &options, chosen, &report),
+                             GONIO_OK);
+            const double kappa = report.condition_number;
             assert_true(fabs(kappa - plain_condition(v, k, chosen, n)) <= 1e-9 * kappa);
             assert_true(best_single_swap(v, rows, k, chosen, n) >= kappa * (1.0 - 1e-9));
             double lowest = INFINITY;
-            for (size_t s = 0; s < steps; s++) {
-                if (history[s].swap > 0) {
-                    assert_true(history[s].condition_number < history[s - 1].condition_number);
+            for (size_t s = 0; s < report.steps; s++) {
+                if (report.history[s].swap > 0) {
+                    assert_true(report.history[s].condition_number <
+                                report.history[s - 1].condition_number);
                 }
-                lowest = fmin(lowest, history[s].condition_number);
+                lowest = fmin(lowest, report.history[s].condition_number);
             }
             assert_true(lowest == kappa);
-            free(history);
+            free(report.history);
             free(v);
         }
     }
@@ -174,24 +173,22 @@ static void test_same_swaps(void **state)
             size_t plain[32];
             size_t fast[32];
             const size_t swaps = plain_search(v, rows, k, n, seed, plain, kappas, MOST);
-            double kappa = 0.0;
-            gonio_plan_step *history = NULL;
-            size_t steps = 0;
+            gonio_selection_report report;
             gonio_plan_options options;
             gonio_plan_options_default(&options);
             options.count = n;
             options.restarts = 1;
             options.seed = seed;
-            assert_int_equal(
-                gonio_plan_select(NULL, v, rows, k, &options, fast, &kappa, &history, &steps),
-                GONIO_OK);
-            assert_int_equal(steps, swaps + 1);
-            for (size_t s = 0; s < steps; s++) {
-                assert_true(fabs(history[s].condition_number - kappas[s]) <= 1e-8 * kappas[s]);
+            assert_int_equal(gonio_plan_select(NULL, v, rows, k, &options, fast, &report),
+                             GONIO_OK);
+            assert_int_equal(report.steps, swaps + 1);
+            for (size_t s = 0; s < report.steps; s++) {
+                assert_true(fabs(report.history[s].condition_number - kappas[s]) <=
+                            1e-8 * kappas[s]);
             }
             qsort(plain, n, sizeof *plain, compare_rows);
             assert_memory_equal(plain, fast, n * sizeof *plain);
-            free(history);
+            free(report.history);
             free(v);
         }
     }
@@ -212,14 +209,15 @@ static void test_any_number_of_threads(void **state)
         gonio_context *context = NULL;
         const gonio_context_options settings = {.threads = threads};
         size_t chosen[N];
-        double kappa = 0.0;
+        gonio_selection_report report;
         assert_int_equal(gonio_context_create(&context, &settings), GONIO_OK);
         assert_int_equal(gonio_plan_select(context, v, ROWS, K, &options,
-                                           threads == 1 ? first : chosen, &kappa, NULL, NULL),
+                                           threads == 1 ? first : chosen, &report),
                          GONIO_OK);
         if (threads > 1) {
             assert_memory_equal(first, chosen, sizeof first);
         }
+        free(report.history);
         gonio_context_free(&context);
     }
     free(v);
