@@ -46,6 +46,7 @@ typedef struct gonio_plan_options {
     size_t count;       /* n, rows to choose; 80 by default */
     int restarts;       /* starts, of which the best is kept; 5 by default */
     uint64_t seed;      /* same seed, same plan, on any number of threads */
+    bool keep_history;  /* true by default; a search of very many starts may do without */
     double phi_d;       /* where on the free angle to measure a bivariate cell; pi/2 by default */
 } gonio_plan_options;
 

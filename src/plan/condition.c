@@ -39,8 +39,9 @@ typedef struct search {
     gonio_i_filter filter;
     size_t *survivors; /* [rows + 1] */
     gonio_i_random random;
-    uint64_t tests;         /* that a search without the filter would have made */
-    _Atomic double *shares; /* [restarts], of all searches: how far each is */
+    uint64_t tests;   /* that a search without the filter would have made */
+    double share;     /* how far this search is, 0 to 1 */
+    double *progress; /* the sum of all searches' shares */
 } search;
 
 /* What lambda_min of a swap that lowers kappa must exceed. */
@@ -153,7 +154,7 @@ static gonio_status sweep(search *s, int restart, int *swaps, gonio_i_selection 
             status = make_swap(s, position, row, &gained);
         }
         if (status == GONIO_OK && gained) {
-            status = gonio_i_selection_record(s->problem->context, selection, restart, ++*swaps,
+            status = gonio_i_selection_record(s->problem, selection, restart, ++*swaps,
                                               s->condition_number);
         }
     }
@@ -161,30 +162,31 @@ static gonio_status sweep(search *s, int restart, int *swaps, gonio_i_selection 
 }
 
 /* Progress of all starts together. */
-static gonio_status report(search *s, int restart, double share)
+static gonio_status report(search *s, double share)
 {
+    const double gained = share - s->share;
+    s->share = share;
     double sum = 0.0;
-    s->shares[restart] = share;
-    for (int k = 0; k < s->problem->restarts; k++) {
-        sum += s->shares[k];
+#pragma omp atomic capture
+    {
+        *s->progress += gained;
+        sum = *s->progress;
     }
     return gonio_i_progress(s->problem->context, "planning", 0.999 * sum / s->problem->restarts);
 }
 
 static gonio_status descend(search *s, int restart, gonio_i_selection *selection)
 {
-    gonio_context *context = s->problem->context;
     int swaps = 0;
     gonio_status status =
-        gonio_i_selection_record(context, selection, restart, swaps, s->condition_number);
+        gonio_i_selection_record(s->problem, selection, restart, swaps, s->condition_number);
     bool proved = s->problem->components < 2; /* kappa of one component is 1 */
     for (int turn = 0; status == GONIO_OK && !proved; turn++) {
         const int before = swaps;
         status = sweep(s, restart, &swaps, selection);
         proved = swaps == before;
         if (status == GONIO_OK) {
-            status =
-                report(s, restart, proved ? 1.0 : turn / (turn + 20.0)); /* typically 20 to 40 */
+            status = report(s, proved ? 1.0 : turn / (turn + 20.0)); /* typically 20 to 40 */
         }
     }
     return status;
@@ -243,14 +245,14 @@ static int compare_rows(const void *a, const void *b)
 }
 
 static bool allocate_search(const gonio_i_selection_problem *problem, const gonio_i_panels *panels,
-                            _Atomic double *shares, int threads, search *s)
+                            double *progress, int threads, search *s)
 {
     gonio_context *context = problem->context;
     const size_t k = problem->components;
     const size_t n = problem->count;
     *s = (search){
         .problem = problem,
-        .shares = shares,
+        .progress = progress,
         .chosen = gonio_i_allocate(context, n, sizeof *s->chosen),
         .taken = gonio_i_allocate(context, problem->rows, sizeof *s->taken),
         .x = gonio_i_allocate(context, n * k, sizeof *s->x),
@@ -280,74 +282,85 @@ static void free_search(search *s)
     gonio_i_filter_free(&s->filter);
 }
 
-/* One start and its descent, into `selection` (chosen rows in any order). */
-static gonio_status run(const gonio_i_selection_problem *problem, const gonio_i_panels *panels,
-                        _Atomic double *shares, int threads, int restart,
-                        gonio_i_selection *selection)
+/* All starts, with what they share. */
+typedef struct starts {
+    const gonio_i_selection_problem *problem;
+    const gonio_i_panels *panels;
+    double progress;              /* the sum of the starts' shares */
+    gonio_i_selection *histories; /* [restarts]: only the history of each */
+    int threads;                  /* within a start */
+    _Atomic gonio_status status;
+    int best; /* the start with the lowest kappa, the first on ties; its result is in `selection` */
+    gonio_i_selection *selection;
+} starts;
+
+/* Keeps the result of a start if it is the best so far. */
+static void keep_best(starts *all, const search *s, int restart)
+{
+#pragma omp critical(gonio_condition_best)
+    {
+        gonio_i_selection *kept = all->selection;
+        const bool better = s->condition_number < kept->condition_number ||
+                            (s->condition_number == kept->condition_number && restart < all->best);
+        if (all->best < 0 || better) {
+            all->best = restart;
+            kept->condition_number = s->condition_number;
+            memcpy(kept->chosen, s->chosen, s->problem->count * sizeof *s->chosen);
+        }
+        kept->tests += s->tests;
+    }
+}
+
+/* One start and its descent. */
+static void run(starts *all, int restart)
 {
     search s;
     gonio_status status =
-        allocate_search(problem, panels, shares, threads, &s) ? GONIO_OK : GONIO_ERROR_MEMORY;
+        allocate_search(all->problem, all->panels, &all->progress, all->threads, &s)
+            ? GONIO_OK
+            : GONIO_ERROR_MEMORY;
     if (status == GONIO_OK) {
         status = start(&s, restart);
     }
     if (status == GONIO_OK) {
-        status = descend(&s, restart, selection);
+        status = descend(&s, restart, &all->histories[restart]);
     }
     if (status == GONIO_OK) {
-        selection->condition_number = s.condition_number;
-        selection->tests = s.tests;
-        memcpy(selection->chosen, s.chosen, problem->count * sizeof *s.chosen);
+        keep_best(all, &s, restart);
+    } else {
+        all->status = status;
     }
     free_search(&s);
-    return status;
 }
 
-/* All starts, several at a time: they share nothing but the rows, while threads within one start
- * wait for each other at every step. Those left over go into the starts. */
-static gonio_status run_all(const gonio_i_selection_problem *problem, const gonio_i_panels *panels,
-                            gonio_i_selection *runs)
+/* Several starts at a time: they share nothing but the rows, while threads within one start wait
+ * for each other at every step. Threads left over go into the starts. */
+static void run_all(starts *all)
 {
-    const int threads = gonio_context_threads(problem->context);
-    const int teams = problem->restarts < threads ? problem->restarts : threads;
-    gonio_status result = GONIO_OK;
-    _Atomic double *shares =
-        gonio_i_allocate(problem->context, (size_t)problem->restarts, sizeof *shares);
-    if (shares == NULL) {
-        return GONIO_ERROR_MEMORY;
-    }
+    const int restarts = all->problem->restarts;
+    const int threads = gonio_context_threads(all->problem->context);
+    const int teams = restarts < threads ? restarts : threads;
+    all->threads = threads / teams;
 #pragma omp parallel for schedule(dynamic) num_threads(teams)
-    for (int restart = 0; restart < problem->restarts; restart++) {
-        const gonio_status mine =
-            run(problem, panels, shares, threads / teams, restart, &runs[restart]);
-        if (mine != GONIO_OK) {
-#pragma omp atomic write
-            result = mine;
+    for (int restart = 0; restart < restarts; restart++) {
+        if (all->status == GONIO_OK) {
+            run(all, restart);
         }
     }
-    free(shares);
-    return result;
 }
 
-/* The best of the runs, the first on ties, and the history of all. */
-static gonio_status gather(const gonio_i_selection_problem *problem, const gonio_i_selection *runs,
-                           gonio_i_selection *selection)
+/* The histories of all starts, in order. */
+static gonio_status join_histories(const starts *all)
 {
-    const gonio_i_selection *best = &runs[0];
     gonio_status status = GONIO_OK;
-    for (int restart = 0; restart < problem->restarts; restart++) {
-        const gonio_i_selection *r = &runs[restart];
-        best = r->condition_number < best->condition_number ? r : best;
-        selection->tests += r->tests;
-        for (size_t k = 0; k < r->steps && status == GONIO_OK; k++) {
-            const gonio_plan_step *step = &r->history[k];
-            status = gonio_i_selection_record(problem->context, selection, step->restart,
+    for (int restart = 0; restart < all->problem->restarts; restart++) {
+        const gonio_i_selection *one = &all->histories[restart];
+        for (size_t k = 0; k < one->steps && status == GONIO_OK; k++) {
+            const gonio_plan_step *step = &one->history[k];
+            status = gonio_i_selection_record(all->problem, all->selection, step->restart,
                                               step->swap, step->condition_number);
         }
     }
-    selection->condition_number = best->condition_number;
-    memcpy(selection->chosen, best->chosen, problem->count * sizeof *best->chosen);
-    qsort(selection->chosen, problem->count, sizeof *selection->chosen, compare_rows);
     return status;
 }
 
@@ -357,28 +370,28 @@ static gonio_status select_by_condition(const gonio_i_selection_problem *problem
     gonio_context *context = problem->context;
     const size_t restarts = (size_t)problem->restarts;
     gonio_i_panels panels = {0};
-    gonio_i_selection *runs = gonio_i_allocate(context, restarts, sizeof *runs);
-    size_t *chosen = gonio_i_allocate(context, restarts * problem->count, sizeof *chosen);
+    starts all = {.problem = problem,
+                  .panels = &panels,
+                  .histories = gonio_i_allocate(context, restarts, sizeof *all.histories),
+                  .best = -1,
+                  .selection = selection};
     gonio_status status = GONIO_ERROR_MEMORY;
-    if (runs != NULL && chosen != NULL &&
-        gonio_i_panels_make(context, problem->vectors, problem->rows, problem->components,
-                            &panels)) {
-        for (size_t k = 0; k < restarts; k++) {
-            runs[k].chosen = chosen + k * problem->count;
-        }
-        status = run_all(problem, &panels, runs);
+    if (all.histories != NULL && gonio_i_panels_make(context, problem->vectors, problem->rows,
+                                                     problem->components, &panels)) {
+        run_all(&all);
+        status = all.status;
     }
     if (status == GONIO_OK) {
-        status = gather(problem, runs, selection);
+        qsort(selection->chosen, problem->count, sizeof *selection->chosen, compare_rows);
+        status = join_histories(&all);
     }
     if (status == GONIO_OK) {
         status = gonio_i_progress(context, "planning", 1.0);
     }
-    for (size_t k = 0; runs != NULL && k < restarts; k++) {
-        free(runs[k].history);
+    for (size_t k = 0; all.histories != NULL && k < restarts; k++) {
+        free(all.histories[k].history);
     }
-    free(runs);
-    free(chosen);
+    free(all.histories);
     gonio_i_panels_free(&panels);
     return status;
 }

@@ -16,6 +16,7 @@ typedef struct gonio_i_selection_problem {
     size_t count;
     int restarts;
     uint64_t seed;
+    bool keep_history;
 } gonio_i_selection_problem;
 
 typedef struct gonio_i_selection {
@@ -37,9 +38,10 @@ typedef struct gonio_i_method {
 extern const gonio_i_method gonio_i_condition_method;
 extern const gonio_i_method gonio_i_random_method;
 
-/* Appends to the history. */
-gonio_status gonio_i_selection_record(gonio_context *context, gonio_i_selection *selection,
-                                      int restart, int swap, double condition_number);
+/* Appends to the history, if it is kept. */
+gonio_status gonio_i_selection_record(const gonio_i_selection_problem *problem,
+                                      gonio_i_selection *selection, int restart, int swap,
+                                      double condition_number);
 
 /* kappa = largest/smallest eigenvalue; infinity where the smallest is not above rounding. */
 double gonio_i_condition(const double *eigenvalues, size_t n);

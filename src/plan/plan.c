@@ -30,20 +30,27 @@ const char *gonio_plan_method_summary(int index)
 
 void gonio_plan_options_default(gonio_plan_options *options)
 {
-    *options = (gonio_plan_options){
-        .method = methods[0]->name, .count = 80, .restarts = 5, .phi_d = M_PI / 2.0};
+    *options = (gonio_plan_options){.method = methods[0]->name,
+                                    .count = 80,
+                                    .restarts = 5,
+                                    .keep_history = true,
+                                    .phi_d = M_PI / 2.0};
 }
 
 /* ---- what the methods share ---- */
 
-gonio_status gonio_i_selection_record(gonio_context *context, gonio_i_selection *selection,
-                                      int restart, int swap, double condition_number)
+gonio_status gonio_i_selection_record(const gonio_i_selection_problem *problem,
+                                      gonio_i_selection *selection, int restart, int swap,
+                                      double condition_number)
 {
     const size_t n = selection->steps;
+    if (!problem->keep_history) {
+        return GONIO_OK;
+    }
     if ((n & (n - 1)) == 0) {
         void *more = reallocarray(selection->history, n > 0 ? 2 * n : 1, sizeof(gonio_plan_step));
         if (more == NULL) {
-            return gonio_i_fail(context, GONIO_ERROR_MEMORY, "out of memory");
+            return gonio_i_fail(problem->context, GONIO_ERROR_MEMORY, "out of memory");
         }
         selection->history = more;
     }
@@ -141,7 +148,8 @@ gonio_status gonio_plan_select(gonio_context *context, const double *vectors, si
         return status;
     }
     const gonio_i_selection_problem problem = {
-        context, vectors, rows, components, options->count, options->restarts, options->seed};
+        context,        vectors,           rows,          components,
+        options->count, options->restarts, options->seed, options->keep_history};
     gonio_i_selection selection = {.chosen = chosen};
     status = find_method(options->method)->select(&problem, &selection);
     if (status != GONIO_OK) {
@@ -176,7 +184,8 @@ gonio_status gonio_condition_number(gonio_context *context, const double *vector
         all[j] = j;
     }
     if (status == GONIO_OK) {
-        const gonio_i_selection_problem problem = {context, rows, count, components, count, 1, 0};
+        const gonio_i_selection_problem problem = {context, rows, count, components,
+                                                   count,   1,    0,     false};
         status = gonio_i_chosen_condition(&problem, all, condition_number);
     }
     free(rows);

@@ -26,8 +26,7 @@ static gonio_status select_random(const gonio_i_selection_problem *problem,
         status = gonio_i_chosen_condition(problem, selection->chosen, &selection->condition_number);
     }
     if (status == GONIO_OK) {
-        status = gonio_i_selection_record(problem->context, selection, 0, 0,
-                                          selection->condition_number);
+        status = gonio_i_selection_record(problem, selection, 0, 0, selection->condition_number);
     }
     return status;
 }
