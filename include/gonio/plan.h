@@ -42,6 +42,7 @@ typedef struct gonio_plan {
 
 typedef struct gonio_plan_options {
     const char *method; /* "condition" (default) or "random": gonio_plan_method_name */
+    const char *start;  /* of the swaps: "random" (default): gonio_plan_start_name */
     size_t components;  /* K; 0 for all of the basis */
     size_t count;       /* n, rows to choose; 80 by default */
     int restarts;       /* starts, of which the best is kept; 5 by default */
@@ -55,6 +56,10 @@ GONIO_API void gonio_plan_options_default(gonio_plan_options *options);
 /* Names and one-line descriptions of the methods; NULL past the last. */
 GONIO_API const char *gonio_plan_method_name(int index);
 GONIO_API const char *gonio_plan_method_summary(int index);
+
+/* The same of the starts that the condition method's swaps may begin with. */
+GONIO_API const char *gonio_plan_start_name(int index);
+GONIO_API const char *gonio_plan_start_summary(int index);
 
 /* Makes a plan. A chosen cell becomes the pair at its centre with phi_h = 0 and the given phi_d (of
  * a full basis, the bin's own phi_d); where that pair would be at or below the horizon, the valid

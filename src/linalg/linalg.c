@@ -116,6 +116,34 @@ gonio_status gonio_i_cholesky(gonio_context *context, double *c, size_t n)
     return status;
 }
 
+gonio_status gonio_i_inverse_gram(gonio_context *context, const double *v, size_t n,
+                                  const size_t *rows, size_t count, double *inverse)
+{
+    double *x = gonio_i_allocate(context, count * n, sizeof *x);
+    if (x == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    for (size_t j = 0; j < count; j++) {
+        memcpy(x + j * n, v + rows[j] * n, n * sizeof *x);
+    }
+    gonio_status status = gonio_i_gram_rows(context, x, count, n, n, inverse);
+    free(x);
+    if (status == GONIO_OK) {
+        status = gonio_i_cholesky(context, inverse, n);
+    }
+    if (status == GONIO_OK) {
+        status = check_info(context, "dpotri",
+                            LAPACKE_dpotri(LAPACK_COL_MAJOR, 'U', (int)n, inverse, (int)n));
+    }
+    /* The upper triangle in column-major is the lower one in row-major. */
+    for (size_t i = 0; i < n; i++) {
+        for (size_t j = i + 1; j < n; j++) {
+            inverse[i * n + j] = inverse[j * n + i];
+        }
+    }
+    return status;
+}
+
 gonio_status gonio_i_divide_cholesky(gonio_context *context, double *a, size_t rows, size_t n,
                                      double *c)
 {

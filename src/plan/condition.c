@@ -21,6 +21,7 @@
 #include "filter.h"
 #include "inertia.h"
 #include "method.h"
+#include "start.h"
 
 /* A swap has to lower kappa by more than this share: less is rounding. */
 static const double least_gain = 1e-10;
@@ -194,47 +195,30 @@ static gonio_status descend(search *s, int restart, gonio_i_selection *selection
 
 /* ---- starts ---- */
 
-/* Rows that span all K dimensions: each the one farthest from the span of those before it (QR with
- * pivoting). Replaces the first K of the choice, keeping it free of repeats. */
-static gonio_status span_start(search *s)
+static gonio_status begin_with(search *s, const gonio_i_start *start, int restart)
 {
-    const gonio_i_selection_problem *p = s->problem;
-    const size_t k = p->components;
-    double *rest = gonio_i_allocate(p->context, p->rows * k, sizeof *rest);
-    if (rest == NULL) {
-        return GONIO_ERROR_MEMORY;
-    }
-    memcpy(rest, p->vectors, p->rows * k * sizeof *rest);
-    memset(s->taken, 0, p->rows);
-    gonio_status status = GONIO_OK;
-    for (size_t j = 0; j < k && status == GONIO_OK; j++) {
-        status = gonio_i_take_farthest(p->context, rest, p->rows, k, j, &s->chosen[j]);
+    gonio_status status = start->choose(s->problem, restart, s->chosen);
+    memset(s->taken, 0, s->problem->rows);
+    for (size_t j = 0; j < s->problem->count && status == GONIO_OK; j++) {
         s->taken[s->chosen[j]] = 1;
     }
-    for (size_t j = k, row = 0; j < p->count && status == GONIO_OK; row++) {
-        if (!s->taken[row]) {
-            s->taken[row] = 1;
-            s->chosen[j++] = row;
-        }
-    }
-    free(rest);
-    return status;
+    return status == GONIO_OK ? decompose(s) : status;
 }
 
-/* A random start (step 1), or where the rows drawn do not span K dimensions one that does. */
+/* The start asked for, or where its rows do not span K dimensions one whose rows do. */
 static gonio_status start(search *s, int restart)
 {
-    const gonio_i_selection_problem *p = s->problem;
-    gonio_status status = gonio_i_random_choice(p, 2 * (uint64_t)restart, s->chosen);
-    gonio_i_random_seed(&s->random, p->seed, 2 * (uint64_t)restart + 1);
-    memset(s->taken, 0, p->rows);
-    for (size_t j = 0; j < p->count; j++) {
-        s->taken[s->chosen[j]] = 1;
+    gonio_i_random_seed(&s->random, s->problem->seed, 2 * (uint64_t)restart + 1);
+    gonio_status status = begin_with(s, gonio_i_find_start(s->problem->start), restart);
+    if (status == GONIO_OK && isinf(s->condition_number)) {
+        status = begin_with(s, gonio_i_find_start("qr"), restart);
     }
-    if (status == GONIO_OK) {
-        status = decompose(s);
+    if (status == GONIO_OK && isinf(s->condition_number)) {
+        status = gonio_i_fail(s->problem->context, GONIO_ERROR_DATA,
+                              "the rows of the basis do not span %zu dimensions",
+                              s->problem->components);
     }
-    return status == GONIO_OK && isinf(s->condition_number) ? span_start(s) : status;
+    return status;
 }
 
 static int compare_rows(const void *a, const void *b)

@@ -17,6 +17,7 @@ typedef struct gonio_i_selection_problem {
     int restarts;
     uint64_t seed;
     bool keep_history;
+    const char *start; /* a name that start.h knows */
 } gonio_i_selection_problem;
 
 typedef struct gonio_i_selection {

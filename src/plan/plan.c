@@ -10,6 +10,7 @@
 #include "../direction/grid.h"
 #include "../linalg/linalg.h"
 #include "method.h"
+#include "start.h"
 
 static const gonio_i_method *const methods[] = {
     &gonio_i_condition_method,
@@ -34,7 +35,18 @@ void gonio_plan_options_default(gonio_plan_options *options)
                                     .count = 80,
                                     .restarts = 5,
                                     .keep_history = true,
+                                    .start = "random",
                                     .phi_d = M_PI / 2.0};
+}
+
+const char *gonio_plan_start_name(int index)
+{
+    return gonio_i_start_at(index) != NULL ? gonio_i_start_at(index)->name : NULL;
+}
+
+const char *gonio_plan_start_summary(int index)
+{
+    return gonio_i_start_at(index) != NULL ? gonio_i_start_at(index)->summary : NULL;
 }
 
 /* ---- what the methods share ---- */
@@ -118,6 +130,10 @@ static gonio_status check_selection(gonio_context *context, size_t rows, size_t 
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "no selection method is called '%s'",
                             options->method);
     }
+    if (gonio_i_find_start(options->start) == NULL) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "no start is called '%s'",
+                            options->start);
+    }
     if (n == 0) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "a plan needs at least 1 reading");
     }
@@ -149,7 +165,8 @@ gonio_status gonio_plan_select(gonio_context *context, const double *vectors, si
     }
     const gonio_i_selection_problem problem = {
         context,        vectors,           rows,          components,
-        options->count, options->restarts, options->seed, options->keep_history};
+        options->count, options->restarts, options->seed, options->keep_history,
+        options->start};
     gonio_i_selection selection = {.chosen = chosen};
     status = find_method(options->method)->select(&problem, &selection);
     if (status != GONIO_OK) {
@@ -184,8 +201,11 @@ gonio_status gonio_condition_number(gonio_context *context, const double *vector
         all[j] = j;
     }
     if (status == GONIO_OK) {
-        const gonio_i_selection_problem problem = {context, rows, count, components,
-                                                   count,   1,    0,     false};
+        const gonio_i_selection_problem problem = {.context = context,
+                                                   .vectors = rows,
+                                                   .rows = count,
+                                                   .components = components,
+                                                   .count = count};
         status = gonio_i_chosen_condition(&problem, all, condition_number);
     }
     free(rows);

@@ -1,0 +1,19 @@
+/* Starts of the condition-number search: the choice that the swaps begin with. To add one, write a
+ * function and add a line to the table in start.c. */
+#ifndef GONIO_START_H
+#define GONIO_START_H
+
+#include "method.h"
+
+typedef struct gonio_i_start {
+    const char *name;
+    const char *summary;
+    /* Fills chosen[count], in any order, without repeats. */
+    gonio_status (*choose)(const gonio_i_selection_problem *problem, int restart, size_t *chosen);
+} gonio_i_start;
+
+/* By name; NULL if there is none. By index from 0; NULL past the last. */
+const gonio_i_start *gonio_i_find_start(const char *name);
+const gonio_i_start *gonio_i_start_at(int index);
+
+#endif
