@@ -38,6 +38,12 @@ style: check-tools
 check-tools:
 	scripts/install-dependencies.sh $(INSTALL) check
 
+# MATERIALS: a folder of at least 81 materials, the built-in ones by default.
+MATERIALS ?= atlas:
+bench: all
+	cmake --build --preset release --target gonio-bench -j $(JOBS)
+	cd build && release/bench/gonio-bench $(MATERIALS) $(SECTIONS)
+
 coverage: check-tools
 	cmake --preset coverage >/dev/null
 	cmake --build --preset coverage -j $(JOBS)

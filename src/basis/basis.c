@@ -67,85 +67,96 @@ void gonio_basis_free(gonio_basis **basis)
     *basis = NULL;
 }
 
-/* Integer coordinates of a cell of the grid. */
-static gonio_bin coordinates_of(const gonio_basis *basis, int32_t cell)
-{
-    return gonio_bin_from_index(basis->representation == GONIO_BIVARIATE ? cell * GONIO_PHI_D_BINS
-                                                                         : cell);
-}
-
 static int32_t cell_of(const gonio_basis *basis, gonio_bin bin)
 {
     const int32_t index = gonio_bin_index(bin);
     return basis->representation == GONIO_BIVARIATE ? index / GONIO_PHI_D_BINS : index;
 }
 
+/* The cell of the basis nearest to a cell of the grid, as far as it is known. */
 typedef struct nearest {
     int32_t position; /* -1: none yet */
-    int distance;     /* squared, in index space */
+    int32_t distance; /* squared, in index space */
 } nearest;
 
-/* Looks at the cell h, d, p steps away from the centre. */
-static void consider(const gonio_basis *basis, const int32_t *own, gonio_bin centre, int h, int d,
-                     int p, nearest *best)
+/* One direction of the grid. */
+typedef struct axis {
+    size_t length;
+    size_t stride;
+    bool periodic;
+} axis;
+
+static void consider(nearest candidate, size_t step, nearest *best)
 {
-    const gonio_bin bin = {centre.theta_h + h, centre.theta_d + d,
-                           (centre.phi_d + p + GONIO_PHI_D_BINS) % GONIO_PHI_D_BINS};
-    if (bin.theta_h < 0 || bin.theta_h >= GONIO_THETA_H_BINS || bin.theta_d < 0 ||
-        bin.theta_d >= GONIO_THETA_D_BINS) {
-        return;
-    }
-    const int32_t found = own[cell_of(basis, bin)];
-    const int distance = h * h + d * d + p * p;
+    const int32_t distance = candidate.distance + (int32_t)(step * step);
     const bool nearer = best->position < 0 || distance < best->distance ||
-                        (distance == best->distance && found < best->position);
-    if (found >= 0 && nearer) {
-        *best = (nearest){found, distance};
+                        (distance == best->distance && candidate.position < best->position);
+    if (candidate.position >= 0 && nearer) {
+        *best = (nearest){candidate.position, distance};
     }
 }
 
-/* Goes outwards in cubic shells until no farther shell can hold a nearer cell. */
-static int32_t nearest_position(const gonio_basis *basis, const int32_t *own, int32_t cell)
+/* Goes outwards from k until nothing farther can be nearer. */
+static nearest nearest_in_line(const nearest *line, const axis *a, size_t k)
 {
-    const gonio_bin centre = coordinates_of(basis, cell);
-    const int deepest = basis->representation == GONIO_BIVARIATE ? 0 : GONIO_PHI_D_BINS / 2;
     nearest best = {-1, 0};
-    for (int shell = 0; best.position < 0 || shell * shell <= best.distance; shell++) {
-        const int deep = shell < deepest ? shell : deepest;
-        for (int h = -shell; h <= shell; h++) {
-            for (int d = -shell; d <= shell; d++) {
-                for (int p = -deep; p <= deep; p++) {
-                    if (abs(h) == shell || abs(d) == shell || abs(p) == shell) {
-                        consider(basis, own, centre, h, d, p, &best);
-                    }
-                }
-            }
+    for (size_t step = 0;
+         step < a->length && (best.position < 0 || step * step <= (size_t)best.distance); step++) {
+        if (a->periodic || k >= step) {
+            consider(line[(k + a->length - step) % a->length], step, &best);
+        }
+        if (a->periodic || k + step < a->length) {
+            consider(line[(k + step) % a->length], step, &best);
         }
     }
-    return best.position;
+    return best;
 }
 
-/* Invalid bins of the full grid get a neighbour too: interpolation may touch them. */
+/* Looks along one axis for nearer cells than those known so far. */
+static void search_axis(gonio_context *context, const axis *a, nearest *cells, size_t count)
+{
+#pragma omp parallel for schedule(static) num_threads(gonio_context_threads(context))
+    for (size_t l = 0; l < count / a->length; l++) {
+        nearest line[GONIO_PHI_D_BINS];
+        nearest *first = cells + l / a->stride * a->stride * a->length + l % a->stride;
+        for (size_t k = 0; k < a->length; k++) {
+            line[k] = first[k * a->stride];
+        }
+        for (size_t k = 0; k < a->length; k++) {
+            first[k * a->stride] = nearest_in_line(line, a, k);
+        }
+    }
+}
+
+/* Squared distances add up over the axes, so the nearest cell is found one axis after another.
+ * Invalid bins of the full grid get a neighbour too: interpolation may touch them. */
 static gonio_status map_cells(gonio_context *context, gonio_basis *basis)
 {
+    const bool full = basis->representation == GONIO_FULL;
+    const size_t depth = full ? GONIO_PHI_D_BINS : 1;
+    const axis axes[] = {{depth, 1, true},
+                         {GONIO_THETA_D_BINS, depth, false},
+                         {GONIO_THETA_H_BINS, GONIO_THETA_D_BINS * depth, false}};
     const size_t all = grid_cells(basis);
-    int32_t *own = gonio_i_allocate(context, all, sizeof *own);
+    nearest *cells = gonio_i_allocate(context, all, sizeof *cells);
     basis->position = gonio_i_allocate(context, all, sizeof *basis->position);
-    if (own == NULL || basis->position == NULL) {
-        free(own);
+    if (cells == NULL || basis->position == NULL) {
+        free(cells);
         return GONIO_ERROR_MEMORY;
     }
     for (size_t k = 0; k < all; k++) {
-        own[k] = -1;
+        cells[k].position = -1;
     }
     for (size_t k = 0; k < basis->cells; k++) {
-        own[basis->cell[k]] = (int32_t)k;
+        cells[basis->cell[k]].position = (int32_t)k;
     }
-#pragma omp parallel for schedule(dynamic, 1024) num_threads(gonio_context_threads(context))
+    for (size_t k = 0; k < sizeof axes / sizeof *axes; k++) {
+        search_axis(context, &axes[k], cells, all);
+    }
     for (size_t k = 0; k < all; k++) {
-        basis->position[k] = own[k] >= 0 ? own[k] : nearest_position(basis, own, (int32_t)k);
+        basis->position[k] = cells[k].position;
     }
-    free(own);
+    free(cells);
     return GONIO_OK;
 }
 

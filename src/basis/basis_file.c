@@ -77,35 +77,39 @@ static bool write_contents(hid_t file, const gonio_basis *basis, const char *com
                                    H5T_IEEE_F64LE, basis->variances);
 }
 
-static bool write_file(const char *path, const gonio_basis *basis, const char *command)
+/* The file is made in memory and then written like any other output: HDF5 does not survive a disk
+ * that fills up while it writes. */
+static gonio_status write_image(gonio_context *context, const gonio_basis *basis,
+                                const char *command, gonio_i_output *output)
 {
-    const hid_t creation = H5Pcreate(H5P_FILE_CREATE);
-    H5Pset_obj_track_times(creation, false);
-    const hid_t file = H5Fcreate(path, H5F_ACC_TRUNC, creation, H5P_DEFAULT);
-    bool done = file >= 0 && write_contents(file, basis, command);
-    done = file >= 0 && H5Fclose(file) >= 0 && done;
-    H5Pclose(creation);
-    return done;
+    const hid_t file = gonio_i_hdf_create_image();
+    const void *image = NULL;
+    size_t size = 0;
+    gonio_status status = GONIO_OK;
+    if (file >= 0 && write_contents(file, basis, command) &&
+        gonio_i_hdf_read_image(file, &image, &size)) {
+        status = gonio_i_output_write(context, output, image, size);
+    } else {
+        status = gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", output->path);
+    }
+    if (file >= 0) {
+        H5Fclose(file);
+    }
+    return status;
 }
 
 gonio_status gonio_basis_write(gonio_context *context, const gonio_basis *basis,
                                const char *command, const char *path)
 {
     gonio_i_output output;
-    gonio_status status = gonio_i_output_reserve(context, path, &output);
+    gonio_status status = gonio_i_output_open(context, path, &output);
     if (status != GONIO_OK) {
         return status;
     }
     gonio_i_hdf_session session;
     gonio_i_hdf_enter(&session);
-    errno = 0;
-    const bool done = write_file(output.temporary, basis, command);
-    const int reason = errno;
+    status = write_image(context, basis, command, &output);
     gonio_i_hdf_leave(&session);
-    if (!done) {
-        status = gonio_i_fail(context, GONIO_ERROR_IO, "%s: cannot write: %s", path,
-                              reason != 0 ? strerror(reason) : "HDF5 failed");
-    }
     return gonio_i_output_close(context, &output, status);
 }
 
@@ -212,9 +216,8 @@ static gonio_status read_numbers(contents *c)
                                          H5T_NATIVE_DOUBLE, &c->vectors, shape);
         c->components = shape[1];
     }
-    if (problem == NULL &&
-        (c->rows != rows || shape[0] != c->rows || c->components == 0 || c->cells == 0 ||
-         c->components > c->variance_count)) {
+    if (problem == NULL && (c->rows != rows || shape[0] != c->rows || c->components == 0 ||
+                            c->cells == 0 || c->components > c->variance_count)) {
         what = "components";
         problem = "has a shape that does not fit the grid and the mean";
     }

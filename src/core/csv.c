@@ -398,6 +398,16 @@ static bool take_comment(source *s, const char *line, size_t length)
     return gonio_i_csv_add_comment(s->csv, "%.*s", (int)(length - skip), line + skip);
 }
 
+/* Whether a line holds what no text does: control characters other than blanks. */
+static bool is_binary(const char *line, size_t length)
+{
+    size_t k = 0;
+    while (k < length && (!iscntrl((unsigned char)line[k]) || isspace((unsigned char)line[k]))) {
+        k++;
+    }
+    return k < length;
+}
+
 static bool is_blank(const char *line, size_t length)
 {
     size_t k = 0;
@@ -417,7 +427,7 @@ static gonio_status take_text(source *s, const char *text, size_t size)
         const char *end = memchr(line, '\n', size - at);
         const size_t length = end != NULL ? (size_t)(end - line) + 1 : size - at;
         s->line++;
-        if (memchr(line, '\0', length) != NULL) {
+        if (is_binary(line, length)) {
             status = bad_line(s, "binary data; a text table (CSV) is expected");
         } else if (line[0] == '#') {
             status = take_comment(s, line, length) ? GONIO_OK : GONIO_ERROR_MEMORY;

@@ -17,6 +17,8 @@ void gonio_i_hdf_enter(gonio_i_hdf_session *session)
 
 void gonio_i_hdf_leave(gonio_i_hdf_session *session)
 {
+    /* Errors are kept by thread; HDF5 cannot end while a thread that is gone holds any. */
+    H5Eclear2(H5E_DEFAULT);
     H5Eset_auto2(H5E_DEFAULT, session->handler, session->data);
     pthread_mutex_unlock(&hdf_lock);
 }
@@ -162,6 +164,32 @@ const char *gonio_i_hdf_read_array(hid_t parent, const char *name, int rank, siz
     const char *problem = read_dataset(set, rank, limit, type, data, dimensions);
     H5Dclose(set);
     return problem;
+}
+
+hid_t gonio_i_hdf_create_image(void)
+{
+    const size_t growth = 1 << 24;
+    const hid_t creation = H5Pcreate(H5P_FILE_CREATE);
+    const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+    H5Pset_obj_track_times(creation, false);
+    H5Pset_fapl_core(access, growth, false);
+    const hid_t file = H5Fcreate("gonio image", H5F_ACC_TRUNC, creation, access);
+    H5Pclose(access);
+    H5Pclose(creation);
+    return file;
+}
+
+bool gonio_i_hdf_read_image(hid_t file, const void **image, size_t *size)
+{
+    void **memory = NULL; /* this driver's handle is the address of its block */
+    if (H5Fflush(file, H5F_SCOPE_GLOBAL) < 0 ||
+        H5Fget_vfd_handle(file, H5P_DEFAULT, (void **)&memory) < 0 || memory == NULL) {
+        return false;
+    }
+    const ssize_t length = H5Fget_file_image(file, NULL, 0);
+    *image = *memory;
+    *size = length > 0 ? (size_t)length : 0;
+    return *image != NULL && length > 0;
 }
 
 bool gonio_i_hdf_write_string(hid_t parent, const char *name, const char *text)

@@ -28,6 +28,10 @@ bool gonio_i_hdf_read_strings(hid_t parent, const char *name, bool dataset, char
 const char *gonio_i_hdf_read_array(hid_t parent, const char *name, int rank, size_t limit,
                                    hid_t type, void **data, size_t *dimensions);
 
+/* A new file in memory; what it holds so far as bytes, which last until it is changed or closed. */
+hid_t gonio_i_hdf_create_image(void);
+bool gonio_i_hdf_read_image(hid_t file, const void **image, size_t *size);
+
 /* Writing: false if HDF5 fails. */
 bool gonio_i_hdf_write_string(hid_t parent, const char *name, const char *text);
 bool gonio_i_hdf_write_strings(hid_t parent, const char *name, size_t count,

@@ -40,7 +40,8 @@ static gonio_status open_target(gonio_context *context, const char *path, gonio_
 {
     struct stat status;
     const bool exists = stat(path, &status) == 0;
-    char *resolved = exists ? realpath(path, NULL) : strdup(path);
+    const bool special = exists && !S_ISREG(status.st_mode); /* a device or a pipe */
+    char *resolved = exists && !special ? realpath(path, NULL) : strdup(path);
     *output = (gonio_i_output){.path = resolved, .descriptor = -1};
     if (resolved == NULL) {
         return cannot_write(context, path);
@@ -52,7 +53,7 @@ static gonio_status open_target(gonio_context *context, const char *path, gonio_
     if (exists && access(path, W_OK) != 0) {
         return cannot_write(context, path);
     }
-    if (exists && !S_ISREG(status.st_mode)) {
+    if (special) {
         output->descriptor = open(path, O_WRONLY | O_CLOEXEC);
     } else {
         output->descriptor = create_beside(resolved, &output->temporary);
@@ -65,22 +66,6 @@ gonio_status gonio_i_output_open(gonio_context *context, const char *path, gonio
     const gonio_status status = open_target(context, path, output);
     if (status != GONIO_OK) {
         free(output->path);
-    }
-    return status;
-}
-
-gonio_status gonio_i_output_reserve(gonio_context *context, const char *path,
-                                    gonio_i_output *output)
-{
-    gonio_status status = gonio_i_output_open(context, path, output);
-    if (status == GONIO_OK && output->temporary == NULL) {
-        status = gonio_i_fail(context, GONIO_ERROR_IO,
-                              "%s: cannot write: this kind of file needs a regular file", path);
-        return gonio_i_output_close(context, output, status);
-    }
-    if (status == GONIO_OK) {
-        close(output->descriptor);
-        output->descriptor = -1;
     }
     return status;
 }
@@ -128,13 +113,7 @@ static gonio_status put_in_place(gonio_context *context, gonio_i_output *output)
     if (output->temporary == NULL) {
         return GONIO_OK;
     }
-    const int descriptor =
-        output->descriptor >= 0 ? dup(output->descriptor) : open(output->temporary, O_RDONLY);
-    const bool synced = descriptor >= 0 && fsync(descriptor) == 0;
-    if (descriptor >= 0) {
-        close(descriptor);
-    }
-    if (!synced || rename(output->temporary, output->path) != 0) {
+    if (fsync(output->descriptor) != 0 || rename(output->temporary, output->path) != 0) {
         return cannot_write(context, output->path);
     }
     return GONIO_OK;

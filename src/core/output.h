@@ -10,17 +10,12 @@
 typedef struct gonio_i_output {
     char *path;      /* the target, links resolved */
     char *temporary; /* what is written; NULL when writing to a device or pipe directly */
-    int descriptor;  /* -1 if another library writes the temporary file */
+    int descriptor;
 } gonio_i_output;
 
 /* Starts an output. Errors: _IO if the target is a folder, is write-protected or its folder cannot
  * be written. */
 gonio_status gonio_i_output_open(gonio_context *context, const char *path, gonio_i_output *output);
-
-/* The same, but leaves it to the caller to write output->temporary (closed and empty). Errors: also
- * _IO if the target is not a regular file. */
-gonio_status gonio_i_output_reserve(gonio_context *context, const char *path,
-                                    gonio_i_output *output);
 
 gonio_status gonio_i_output_write(gonio_context *context, gonio_i_output *output, const void *data,
                                   size_t size);

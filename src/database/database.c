@@ -137,8 +137,7 @@ static void full_rows(int theta_h, const reader *r)
  * the material's cells with data. */
 static gonio_status read_slab(gonio_context *context, const gonio_database *database, size_t column,
                               const gonio_material *material, int theta_h, const reader *r,
-                              gonio_fingerprint *fingerprint, uint32_t *present,
-                              size_t *with_data)
+                              gonio_fingerprint *fingerprint, uint32_t *present, size_t *with_data)
 {
     gonio_status status = gonio_material_read_slab(material, context, theta_h, r->rho);
     if (status != GONIO_OK) {

@@ -54,7 +54,8 @@ gonio_status gonio_measure(gonio_context *context, gonio_readings *readings,
     options = options != NULL ? options : &defaults;
     if (!(options->noise >= 0.0 && isfinite(options->noise)) ||
         !(options->floor >= 0.0 && isfinite(options->floor))) {
-        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "noise and floor cannot be negative");
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "noise and floor are finite numbers from 0");
     }
     gonio_status status = GONIO_OK;
     for (size_t k = 0; k < readings->count && status == GONIO_OK; k++) {

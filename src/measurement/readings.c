@@ -272,10 +272,11 @@ static gonio_status read_note(gonio_context *context, const gonio_readings *read
     errno = 0;
     *number = strtoull(text, &end, base);
     if (!isxdigit((unsigned char)*text) || *end != '\0' || errno != 0 || *number == 0) {
-        return gonio_i_fail(context, GONIO_ERROR_FORMAT,
-                            "%s: '# %s: %.60s' is not what gonio plan writes; restore it, or delete "
-                            "the line",
-                            readings->path, key, text);
+        return gonio_i_fail(
+            context, GONIO_ERROR_FORMAT,
+            "%s: '# %s: %.60s' is not what gonio plan writes; restore it, or delete "
+            "the line",
+            readings->path, key, text);
     }
     return GONIO_OK;
 }

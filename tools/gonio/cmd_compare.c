@@ -15,8 +15,9 @@ static void print_row(const char *name, const gonio_error *error)
 
 static json_t *error_json(const gonio_error *error)
 {
-    return json_pack("{s:f, s:f, s:f}", "e6_percent", error->e6, "cube_root_percent",
-                     error->cube_root, "log_relative", error->log_relative);
+    return json_pack("{s:o, s:o, s:o}", "e6_percent", tool_json_number(error->e6),
+                     "cube_root_percent", tool_json_number(error->cube_root), "log_relative",
+                     tool_json_number(error->log_relative));
 }
 
 static json_t *comparison_json(const char *path, const gonio_comparison *c)
@@ -79,7 +80,7 @@ static int run(tool *t, const options *o)
     gonio_material_free(&reference);
     if (status == GONIO_OK && o->json) {
         return tool_print_json(
-            json_pack("{s:s, s:o}", "reference", arguments[0], "comparisons", results));
+            t, json_pack("{s:s, s:o}", "reference", arguments[0], "comparisons", results));
     }
     json_decref(results);
     return tool_exit_code(status);

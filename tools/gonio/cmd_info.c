@@ -85,16 +85,19 @@ static json_t *material_json(const char *path, const gonio_material *material,
     snprintf(fingerprint, sizeof fingerprint, "%016" PRIx64, facts->fingerprint);
     json_t *albedo = json_array();
     for (int k = 0; k < INCIDENCES; k++) {
-        json_array_append_new(albedo, json_pack("{s:f, s:[f, f, f]}", "theta_i_deg",
-                                                incidence_deg[k], "albedo_rgb", facts->albedo[k][0],
-                                                facts->albedo[k][1], facts->albedo[k][2]));
+        const double *rgb = facts->albedo[k];
+        json_array_append_new(albedo,
+                              json_pack("{s:f, s:[o, o, o]}", "theta_i_deg", incidence_deg[k],
+                                        "albedo_rgb", tool_json_number(rgb[0]),
+                                        tool_json_number(rgb[1]), tool_json_number(rgb[2])));
     }
-    return json_pack("{s:s, s:s, s:s, s:s, s:I, s:f, s:f, s:f, s:o, s:b, s:s}", "file", path,
+    return json_pack("{s:s, s:s, s:s, s:s, s:I, s:f, s:o, s:o, s:o, s:b, s:s}", "file", path,
                      "kind", "material", "name", gonio_material_name(material), "format",
                      gonio_material_format(material), "valid_bins", (json_int_t)facts->bins,
-                     "valid_share", (double)facts->bins / VALID_BINS, "peak_per_sr", facts->peak,
-                     "mirror_asymmetry_percent", facts->asymmetry, "albedo", albedo,
-                     "conserves_energy", facts->largest_albedo <= 1.0, "fingerprint", fingerprint);
+                     "valid_share", (double)facts->bins / VALID_BINS, "peak_per_sr",
+                     tool_json_number(facts->peak), "mirror_asymmetry_percent",
+                     tool_json_number(facts->asymmetry), "albedo", albedo, "conserves_energy",
+                     facts->largest_albedo <= 1.0, "fingerprint", fingerprint);
 }
 
 static void print_material(const char *path, const gonio_material *material,
@@ -292,7 +295,7 @@ static int run(const tool *t, int json)
         code = one != 0 ? one : code;
     }
     if (results != NULL && code == 0) {
-        return tool_print_json(results);
+        return tool_print_json(t, results);
     }
     json_decref(results);
     return code;

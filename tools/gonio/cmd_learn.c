@@ -2,6 +2,7 @@
 #include "tool.h"
 
 #include <dirent.h>
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -65,6 +66,7 @@ static int add_folder(const tool *t, path_list *list, const char *folder)
 {
     struct dirent **entries = NULL;
     const int count = scandir(folder, &entries, only_materials, alphasort);
+    const int reason = errno;
     bool done = true;
     for (int k = 0; k < count; k++) {
         char *path = NULL;
@@ -73,7 +75,11 @@ static int add_folder(const tool *t, path_list *list, const char *folder)
         free(entries[k]);
     }
     free(entries);
-    if (count <= 0) {
+    if (count < 0) {
+        fprintf(stderr, "gonio %s: %s: cannot read: %s\n", t->name, folder, strerror(reason));
+        return EXIT_DATA;
+    }
+    if (count == 0) {
         fprintf(stderr, "gonio %s: %s: no materials (*.binary, *.h5) in this folder\n", t->name,
                 folder);
         return EXIT_DATA;
@@ -145,15 +151,15 @@ static int choose(const tool *t, const char *option, const char *text, const cha
                             words[1]);
 }
 
-static int report(const gonio_basis *basis, const options *o)
+static int report(const tool *t, const gonio_basis *basis, const options *o)
 {
     const gonio_basis_view view = gonio_basis_describe(basis);
     const double share = gonio_basis_cumulative_variance(basis, view.components);
     if (o->json) {
-        return tool_print_json(json_pack("{s:s, s:I, s:I, s:I, s:f}", "basis", o->output,
-                                         "materials", (json_int_t)view.materials, "components",
-                                         (json_int_t)view.components, "cells",
-                                         (json_int_t)view.cells, "explained_variance", share));
+        return tool_print_json(t, json_pack("{s:s, s:I, s:I, s:I, s:f}", "basis", o->output,
+                                            "materials", (json_int_t)view.materials, "components",
+                                            (json_int_t)view.components, "cells",
+                                            (json_int_t)view.cells, "explained_variance", share));
     }
     if (!tool_quiet) {
         printf("%s: %zu components from %zu materials on %zu cells, %.2f %% of the variance\n",
@@ -176,7 +182,7 @@ static int learn(tool *t, const options *o, const path_list *list,
     if (status == GONIO_OK) {
         status = gonio_basis_write(t->context, basis, t->command_line, o->output);
     }
-    const int code = status == GONIO_OK ? report(basis, o) : tool_exit_code(status);
+    const int code = status == GONIO_OK ? report(t, basis, o) : tool_exit_code(status);
     gonio_basis_free(&basis);
     gonio_database_free(&database);
     return code;

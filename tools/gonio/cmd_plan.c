@@ -9,6 +9,7 @@ typedef struct options {
     const char *output;
     const char *history;
     const char *method;
+    const char *start;
     int components;
     int count;
     int restarts;
@@ -17,15 +18,14 @@ typedef struct options {
     int json;
 } options;
 
-static int report(const gonio_plan *plan, const options *o)
+static int report(const tool *t, const gonio_plan *plan, const options *o)
 {
     if (o->json) {
-        json_t *kappa =
-            isfinite(plan->condition_number) ? json_real(plan->condition_number) : json_null();
-        return tool_print_json(json_pack("{s:s, s:s, s:I, s:I, s:o}", "plan", o->output, "method",
-                                         plan->method, "readings", (json_int_t)plan->count,
-                                         "components", (json_int_t)plan->components,
-                                         "condition_number", kappa));
+        return tool_print_json(t, json_pack("{s:s, s:s, s:I, s:I, s:o}", "plan", o->output,
+                                            "method", plan->method, "readings",
+                                            (json_int_t)plan->count, "components",
+                                            (json_int_t)plan->components, "condition_number",
+                                            tool_json_number(plan->condition_number)));
     }
     if (!tool_quiet) {
         printf("%s: %zu readings for %zu components, condition number %.3f\n", o->output,
@@ -40,10 +40,12 @@ static gonio_status make_plan(tool *t, const options *o, const char *basis_path,
     gonio_plan_options how;
     gonio_plan_options_default(&how);
     how.method = o->method;
+    how.start = o->start;
     how.components = (size_t)o->components;
     how.count = (size_t)o->count;
     how.restarts = o->restarts;
     how.seed = (uint64_t)o->seed;
+    how.keep_history = o->history != NULL;
     how.phi_d = o->phi_d * M_PI / 180.0;
     gonio_status status = tool_basis(t, basis_path, &basis);
     if (status == GONIO_OK) {
@@ -90,14 +92,15 @@ static int run(tool *t, const options *o)
     if (status == GONIO_OK) {
         status = gonio_plan_write(t->context, plan, t->command_line, o->output);
     }
-    const int result = status == GONIO_OK ? report(plan, o) : tool_exit_code(status);
+    const int result = status == GONIO_OK ? report(t, plan, o) : tool_exit_code(status);
     gonio_plan_free(&plan);
     return result;
 }
 
 int cmd_plan(int argc, const char **argv)
 {
-    options o = {.method = "condition", .count = 80, .restarts = 5, .phi_d = 90.0};
+    options o = {
+        .method = "condition", .start = "random", .count = 80, .restarts = 5, .phi_d = 90.0};
     const struct poptOption table[] = {
         {"output", 'o', POPT_ARG_STRING, &o.output, 0, "The plan to write (CSV)", "PLAN"},
         {"number", 'n', POPT_ARG_INT, &o.count, 0, "How many readings (default: 80)", "N"},
@@ -105,6 +108,8 @@ int cmd_plan(int argc, const char **argv)
          "Use the first K components (default: all of the basis)", "K"},
         {"method", '\0', POPT_ARG_STRING, &o.method, 0,
          "condition (lowest condition number; the default) or random", "METHOD"},
+        {"start", '\0', POPT_ARG_STRING, &o.start, 0,
+         "What the swaps begin with: random (default), qr or volume", "START"},
         {"restarts", '\0', POPT_ARG_INT, &o.restarts, 0,
          "Random starts, of which the best is kept (default: 5)", "N"},
         {"seed", '\0', POPT_ARG_LONG, &o.seed, 0, "Same seed, same plan (default: 0)", "N"},

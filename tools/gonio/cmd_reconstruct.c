@@ -13,13 +13,14 @@ typedef struct options {
     int json;
 } options;
 
-static int report(const gonio_reconstruction *r, const options *o)
+static int report(const tool *t, const gonio_reconstruction *r, const options *o)
 {
     if (o->json) {
-        return tool_print_json(json_pack("{s:s, s:I, s:I, s:f, s:f}", "output", o->output,
-                                         "components", (json_int_t)r->components, "readings",
-                                         (json_int_t)r->readings, "condition_number",
-                                         r->condition_number, "residual_log", r->residual));
+        return tool_print_json(t, json_pack("{s:s, s:I, s:I, s:o, s:o}", "output", o->output,
+                                            "components", (json_int_t)r->components, "readings",
+                                            (json_int_t)r->readings, "condition_number",
+                                            tool_json_number(r->condition_number), "residual_log",
+                                            tool_json_number(r->residual)));
     }
     if (!tool_quiet) {
         printf("%s: %zu coefficients from %zu readings, condition number %.3f, residual %.4f "
@@ -63,7 +64,7 @@ static int reconstruct(tool *t, const options *o, const char *basis_path, const 
     if (status == GONIO_OK) {
         status = write_result(t, o, basis, reconstruction);
     }
-    const int code = status == GONIO_OK ? report(reconstruction, o) : tool_exit_code(status);
+    const int code = status == GONIO_OK ? report(t, reconstruction, o) : tool_exit_code(status);
     gonio_reconstruction_free(&reconstruction);
     gonio_basis_free(&basis);
     gonio_readings_free(&readings);

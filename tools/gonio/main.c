@@ -1,6 +1,8 @@
 /* gonio: a table of commands. */
 #include "tool.h"
 
+#include <errno.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -30,6 +32,20 @@ static void print_help(FILE *stream)
           stream);
 }
 
+/* What was printed must have arrived: a full disk makes a command fail. */
+static int finish_output(const char *name, int code)
+{
+    const bool flushed = fflush(stdout) == 0;
+    if (flushed && ferror(stdout) == 0) {
+        return code;
+    }
+    if (flushed || errno != EPIPE) { /* a reader that has seen enough needs no message */
+        fprintf(stderr, "gonio %s: cannot write to standard output: %s\n", name,
+                flushed ? "some of it was lost" : strerror(errno));
+    }
+    return code != 0 ? code : EXIT_DATA;
+}
+
 int main(int argc, char **argv)
 {
     const char *name = argc > 1 ? argv[1] : "";
@@ -44,7 +60,7 @@ int main(int argc, char **argv)
     for (int k = 0; k < COMMANDS; k++) {
         if (strcmp(commands[k].name, name) == 0) {
             const int code = commands[k].run(argc - 1, (const char **)(argv + 1));
-            return fflush(stdout) == 0 ? code : EXIT_DATA;
+            return finish_output(name, code);
         }
     }
     if (argc > 1) {

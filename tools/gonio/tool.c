@@ -2,6 +2,7 @@
 #include "tool.h"
 
 #include <errno.h>
+#include <math.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -166,12 +167,12 @@ int tool_begin(tool *t, int argc, const char **argv, const struct poptOption *ta
                const char *usage, const char *text)
 {
     *t = (tool){.name = argv[0], .command_line = join(argc, argv)};
-    char *name = NULL;
-    if (asprintf(&name, "gonio %s", argv[0]) < 0) {
+    if (asprintf(&t->title, "gonio %s", argv[0]) < 0) {
+        t->title = NULL;
         return EXIT_DATA;
     }
-    t->options = poptGetContext(name, argc, argv, table, 0);
-    free(name);
+    argv[0] = t->title; /* what the help calls the program */
+    t->options = poptGetContext(t->title, argc, argv, table, 0);
     poptSetOtherOptionHelp(t->options, usage);
     const int code = parse(t, text);
     if (code >= 0) {
@@ -190,6 +191,7 @@ void tool_end(tool *t)
     clear_progress(t);
     gonio_context_free(&t->context);
     poptFreeContext(t->options);
+    free(t->title);
     free(t->command_line);
 }
 
@@ -211,7 +213,7 @@ int tool_exit_code(gonio_status status)
 int tool_check_output(const tool *t, const char *output, const char *const *inputs, size_t count)
 {
     struct stat out;
-    if (output == NULL) {
+    if (output == NULL || *output == '\0') {
         return tool_usage_error(t, "no output: give -o FILE");
     }
     for (size_t k = 0; stat(output, &out) == 0 && k < count; k++) {
@@ -344,13 +346,19 @@ gonio_status tool_basis(tool *t, const char *path, gonio_basis **basis)
     return status;
 }
 
-int tool_print_json(json_t *json)
+json_t *tool_json_number(double value)
+{
+    return isfinite(value) ? json_real(value) : json_null();
+}
+
+int tool_print_json(const tool *t, json_t *json)
 {
     if (json == NULL) {
+        fprintf(stderr, "gonio %s: no JSON: a name is not UTF-8, or out of memory\n", t->name);
         return EXIT_DATA;
     }
     json_dumpf(json, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(10));
     putchar('\n');
     json_decref(json);
-    return fflush(stdout) == 0 ? 0 : EXIT_DATA;
+    return 0;
 }

@@ -30,10 +30,9 @@ int cmd_demo(int argc, const char **argv);
 typedef struct tool {
     gonio_context *context;
     poptContext options;
-    char *command_line; /* for the record in output files */
-    const char *name;   /* of the command */
-    int threads;
-    int quiet;
+    char *command_line;    /* for the record in output files */
+    const char *name;      /* of the command */
+    char *title;           /* "gonio NAME" */
     double progress_start; /* seconds */
     double progress_shown;
     bool progress_visible;
@@ -75,7 +74,11 @@ gonio_status tool_basis(tool *t, const char *path, gonio_basis **basis);
 /* The built-in basis's path, made if need be; to be released with free(). */
 gonio_status tool_builtin_basis(tool *t, char **path);
 
-/* Prints JSON to standard output and releases it. */
-int tool_print_json(json_t *json);
+/* A JSON number; null if it is infinite or NaN, which JSON lacks. */
+json_t *tool_json_number(double value);
+
+/* Prints JSON to standard output and releases it; NULL, from a json_pack that failed, is an error.
+ */
+int tool_print_json(const tool *t, json_t *json);
 
 #endif

@@ -1,0 +1,518 @@
+/* How fast gonio is, as ratios to what it is compared with, measured side by side in one run.
+ *
+ *   gonio-bench [MATERIALS] [SECTION...]     sections: plan starts growth learn reconstruct
+ *
+ * MATERIALS is a folder of at least 81 materials (default: the built-in ones). Prints a table and
+ * writes bench.json in the working directory. docs/performance.md explains each line. */
+#include <gonio/gonio.h>
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <cblas.h>
+#include <jansson.h>
+#include <lapacke.h>
+
+#include "core/random.h"
+
+enum { RUNS = 5, BASIS_MATERIALS = 80, TABLES = 100 };
+
+typedef struct bench {
+    json_t *results;
+    char **paths; /* of the materials */
+    size_t count;
+    int processors;
+} bench;
+
+static double now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static void check(bool fine, const char *what)
+{
+    if (!fine) {
+        fprintf(stderr, "gonio-bench: %s failed\n", what);
+        exit(1);
+    }
+}
+
+static int compare_doubles(const void *a, const void *b)
+{
+    const double x = *(const double *)a;
+    const double y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double median(double *values, size_t count)
+{
+    qsort(values, count, sizeof *values, compare_doubles);
+    return count % 2 == 1 ? values[count / 2] : 0.5 * (values[count / 2 - 1] + values[count / 2]);
+}
+
+/* One line of the table and of the JSON. */
+static void report(bench *b, const char *name, double value, const char *unit)
+{
+    printf("%-52s %12.4g %s\n", name, value, unit);
+    fflush(stdout);
+    json_object_set_new(b->results, name, json_pack("{s:f, s:s}", "value", value, "unit", unit));
+}
+
+static gonio_context *make_context(int threads)
+{
+    gonio_context *context = NULL;
+    const gonio_context_options options = {.threads = threads};
+    check(gonio_context_create(&context, &options) == GONIO_OK, "making a context");
+    return context;
+}
+
+/* ---- materials ---- */
+
+static int is_material(const struct dirent *entry)
+{
+    const char *dot = strrchr(entry->d_name, '.');
+    return dot != NULL && (strcmp(dot, ".h5") == 0 || strcmp(dot, ".binary") == 0);
+}
+
+static void find_materials(bench *b, const char *folder)
+{
+    struct dirent **entries = NULL;
+    const int count =
+        folder != NULL ? scandir(folder, &entries, is_material, alphasort) : gonio_atlas_count();
+    check(count > BASIS_MATERIALS, "finding 81 materials");
+    b->count = (size_t)count;
+    b->paths = calloc(b->count, sizeof *b->paths);
+    for (size_t k = 0; k < b->count; k++) {
+        check((folder != NULL ? asprintf(&b->paths[k], "%s/%s", folder, entries[k]->d_name)
+                              : asprintf(&b->paths[k], "atlas:%s", gonio_atlas_name((int)k))) > 0,
+              "memory");
+        if (folder != NULL) {
+            free(entries[k]);
+        }
+    }
+    free(entries);
+}
+
+static gonio_basis *learn(gonio_context *context, char *const *paths, size_t count,
+                          size_t components, const gonio_database_options *how)
+{
+    gonio_database *database = NULL;
+    gonio_basis *basis = NULL;
+    const gonio_basis_options options = {.components = components};
+    check(gonio_database_create(context, (const char *const *)paths, count, how, &database) ==
+              GONIO_OK,
+          "reading materials");
+    check(gonio_basis_learn(context, database, &options, &basis) == GONIO_OK, "learning");
+    gonio_database_free(&database);
+    return basis;
+}
+
+/* ---- planning ---- */
+
+/* Seconds for one test of the plain algorithm: exchange two rows in G and solve for its
+ * eigenvalues. */
+static double plain_test_seconds(const gonio_basis_view *basis, size_t k, size_t n)
+{
+    enum { SOLVES = 20000 };
+    double *g = calloc(2 * k * k + k, sizeof *g);
+    double *h = g + k * k;
+    gonio_i_random random;
+    gonio_i_random_seed(&random, 1, 1);
+    for (size_t j = 0; j < n; j++) {
+        const double *x =
+            basis->vectors + gonio_i_random_below(&random, basis->rows) * basis->components;
+        cblas_dsyr(CblasRowMajor, CblasUpper, (int)k, 1.0, x, 1, g, (int)k);
+    }
+    const double *old = basis->vectors;
+    double sum = 0.0;
+    const double start = now();
+    for (int solve = 0; solve < SOLVES; solve++) {
+        const double *u =
+            basis->vectors + gonio_i_random_below(&random, basis->rows) * basis->components;
+        memcpy(h, g, k * k * sizeof *h);
+        cblas_dsyr(CblasRowMajor, CblasUpper, (int)k, -1.0, old, 1, h, (int)k);
+        cblas_dsyr(CblasRowMajor, CblasUpper, (int)k, 1.0, u, 1, h, (int)k);
+        check(LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'N', 'L', (int)k, h, (int)k, h + k * k) == 0,
+              "dsyevd");
+        sum += h[k * k];
+    }
+    const double seconds = (now() - start) / SOLVES;
+    check(isfinite(sum), "solving");
+    free(g);
+    return seconds;
+}
+
+typedef struct planned {
+    double seconds;
+    double tests;
+    double condition_number;
+} planned;
+
+static planned plan_once(const gonio_basis *basis, gonio_context *context, size_t k, size_t n,
+                         uint64_t seed, int restarts, const char *start)
+{
+    gonio_plan_options options;
+    gonio_plan_options_default(&options);
+    options.components = k;
+    options.count = n;
+    options.seed = seed;
+    options.restarts = restarts;
+    options.start = start;
+    gonio_plan *plan = NULL;
+    const double from = now();
+    check(gonio_plan_create(context, basis, &options, &plan) == GONIO_OK, "planning");
+    const planned result = {now() - from, (double)plan->tests, plan->condition_number};
+    gonio_plan_free(&plan);
+    return result;
+}
+
+static void bench_plan_size(bench *b, const gonio_basis *basis, size_t k, size_t n)
+{
+    char name[128];
+    const gonio_basis_view view = gonio_basis_describe(basis);
+    gonio_context *one = make_context(1);
+    gonio_context *all = make_context(0);
+    double ratio[RUNS];
+    double seconds[RUNS];
+    double speedup[RUNS];
+    for (int run = 0; run < RUNS; run++) {
+        const double test = plain_test_seconds(&view, k, n);
+        const planned single = plan_once(basis, one, k, n, (uint64_t)run, 1, "random");
+        const planned multiple = plan_once(basis, all, k, n, (uint64_t)run, 1, "random");
+        seconds[run] = single.seconds;
+        ratio[run] = single.tests * test / single.seconds;
+        speedup[run] = single.seconds / multiple.seconds;
+        if (run == 0) {
+            snprintf(name, sizeof name, "plan (%zu, %zu): one eigenvalue solve", k, n);
+            report(b, name, 1e6 * test, "us");
+        }
+    }
+    snprintf(name, sizeof name, "plan (%zu, %zu): one start, one thread", k, n);
+    report(b, name, median(seconds, RUNS), "s");
+    snprintf(name, sizeof name, "plan (%zu, %zu): times faster than the solves", k, n);
+    report(b, name, median(ratio, RUNS), "x");
+    snprintf(name, sizeof name, "plan (%zu, %zu): %d threads over one", k, n, b->processors);
+    report(b, name, median(speedup, RUNS), "x");
+    gonio_context_free(&one);
+    gonio_context_free(&all);
+}
+
+static void bench_plan(bench *b)
+{
+    gonio_context *all = make_context(0);
+    gonio_basis *basis = learn(all, b->paths, BASIS_MATERIALS, 45, NULL);
+    bench_plan_size(b, basis, 35, 80);
+    bench_plan_size(b, basis, 45, 170);
+    double seconds[RUNS];
+    for (int run = 0; run < RUNS; run++) {
+        seconds[run] = plan_once(basis, all, 35, 80, (uint64_t)run, 10, "random").seconds;
+    }
+    report(b, "plan (35, 80): ten starts, all threads", median(seconds, RUNS), "s");
+    gonio_basis_free(&basis);
+    gonio_context_free(&all);
+}
+
+static void bench_starts(bench *b)
+{
+    enum { SEEDS = 20 };
+    char name[128];
+    gonio_context *all = make_context(0);
+    gonio_basis *basis = learn(all, b->paths, BASIS_MATERIALS, 35, NULL);
+    for (int start = 0; gonio_plan_start_name(start) != NULL; start++) {
+        static const int restarts[] = {1, 5, 20};
+        for (size_t r = 0; r < sizeof restarts / sizeof *restarts; r++) {
+            const int seeds = SEEDS / restarts[r];
+            double kappa = 0.0;
+            double seconds = 0.0;
+            for (int seed = 0; seed < seeds; seed++) {
+                const planned p = plan_once(basis, all, 35, 80, (uint64_t)seed, restarts[r],
+                                            gonio_plan_start_name(start));
+                kappa += p.condition_number / seeds;
+                seconds += p.seconds / seeds;
+            }
+            snprintf(name, sizeof name, "start %s, %d of them: condition number",
+                     gonio_plan_start_name(start), restarts[r]);
+            report(b, name, kappa, "");
+            snprintf(name, sizeof name, "start %s, %d of them: time", gonio_plan_start_name(start),
+                     restarts[r]);
+            report(b, name, seconds, "s");
+        }
+    }
+    gonio_basis_free(&basis);
+    gonio_context_free(&all);
+}
+
+/* ---- growth ---- */
+
+/* Rows like a basis's: lengths over three decades, leading components stronger. */
+static double *synthetic_rows(size_t rows, size_t k)
+{
+    gonio_i_random random;
+    gonio_i_random_seed(&random, 7, 7);
+    double *v = malloc(rows * k * sizeof *v);
+    check(v != NULL, "memory");
+    for (size_t i = 0; i < rows; i++) {
+        const double length = exp(-3.0 * gonio_i_random_uniform(&random));
+        for (size_t j = 0; j < k; j++) {
+            v[i * k + j] = length * gonio_i_random_normal(&random) / sqrt(1.0 + (double)j);
+        }
+    }
+    return v;
+}
+
+static double synthetic_plan_seconds(size_t rows, size_t k, size_t n)
+{
+    gonio_context *one = make_context(1);
+    double *v = synthetic_rows(rows, k);
+    size_t *chosen = malloc(n * sizeof *chosen);
+    double seconds[3];
+    for (int run = 0; run < 3; run++) {
+        gonio_plan_options options;
+        gonio_selection_report found;
+        gonio_plan_options_default(&options);
+        options.count = n;
+        options.restarts = 1;
+        options.seed = (uint64_t)run;
+        options.keep_history = false;
+        const double start = now();
+        check(gonio_plan_select(one, v, rows, k, &options, chosen, &found) == GONIO_OK, "planning");
+        seconds[run] = now() - start;
+    }
+    free(chosen);
+    free(v);
+    gonio_context_free(&one);
+    return median(seconds, 3);
+}
+
+/* The slope of log y against log x, by least squares. */
+static double exponent(const double *x, const double *y, size_t count)
+{
+    double sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0;
+    for (size_t k = 0; k < count; k++) {
+        sx += log(x[k]);
+        sy += log(y[k]);
+        sxx += log(x[k]) * log(x[k]);
+        sxy += log(x[k]) * log(y[k]);
+    }
+    const double n = (double)count;
+    return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
+static void bench_growth_axis(bench *b, const char *axis, const size_t sizes[][3], size_t count,
+                              int which)
+{
+    double x[8];
+    double y[8];
+    char name[128];
+    for (size_t k = 0; k < count; k++) {
+        x[k] = (double)sizes[k][which];
+        y[k] = synthetic_plan_seconds(sizes[k][0], sizes[k][1], sizes[k][2]);
+        snprintf(name, sizeof name, "growth: M = %zu, K = %zu, L = %zu", sizes[k][0], sizes[k][1],
+                 sizes[k][2]);
+        report(b, name, y[k], "s");
+    }
+    snprintf(name, sizeof name, "growth: exponent of the time in %s", axis);
+    report(b, name, exponent(x, y, count), "");
+}
+
+static void bench_growth(bench *b)
+{
+    static const size_t rows[][3] = {{24000, 20, 40}, {96000, 20, 40}, {480000, 20, 40}};
+    static const size_t components[][3] = {{24000, 10, 100}, {24000, 20, 100}, {24000, 40, 100}};
+    static const size_t counts[][3] = {{24000, 20, 40}, {24000, 20, 80}, {24000, 20, 160}};
+    bench_growth_axis(b, "M", rows, 3, 0);
+    bench_growth_axis(b, "K", components, 3, 1);
+    bench_growth_axis(b, "L", counts, 3, 2);
+}
+
+/* ---- learning ---- */
+
+static char *scratch_folder(void)
+{
+    char *folder = NULL;
+    const char *base = getenv("TMPDIR");
+    check(asprintf(&folder, "%s/gonio-bench-XXXXXX", base != NULL ? base : "/tmp") > 0 &&
+              mkdtemp(folder) != NULL,
+          "making a scratch folder");
+    return folder;
+}
+
+static void write_tables(const bench *b, gonio_context *context, const char *folder, char **tables)
+{
+    for (size_t k = 0; k < TABLES; k++) {
+        gonio_material *material = NULL;
+        check(asprintf(&tables[k], "%s/%03zu.binary", folder, k) > 0, "memory");
+        check(gonio_material_open(context, b->paths[k % b->count], &material) == GONIO_OK &&
+                  gonio_material_write_merl(context, material, tables[k]) == GONIO_OK,
+              "writing tables");
+        gonio_material_free(&material);
+    }
+}
+
+static double cat_seconds(const char *folder)
+{
+    char *command = NULL;
+    check(asprintf(&command, "cat %s/*.binary > /dev/null", folder) > 0, "memory");
+    const double start = now();
+    check(system(command) == 0, "cat");
+    const double seconds = now() - start;
+    free(command);
+    return seconds;
+}
+
+static void bench_learn(bench *b)
+{
+    gonio_context *all = make_context(0);
+    char *folder = scratch_folder();
+    char *tables[TABLES];
+    write_tables(b, all, folder, tables);
+    double ratio[RUNS];
+    double seconds[RUNS];
+    cat_seconds(folder);
+    for (int run = 0; run < RUNS; run++) {
+        const double cat = cat_seconds(folder);
+        const double start = now();
+        gonio_basis *basis = learn(all, tables, TABLES, 45, NULL);
+        seconds[run] = now() - start;
+        ratio[run] = seconds[run] / cat;
+        gonio_basis_free(&basis);
+    }
+    report(b, "learn 100 MERL tables, bivariate", median(seconds, RUNS), "s");
+    report(b, "learn 100 MERL tables, bivariate: over cat", median(ratio, RUNS), "x");
+    struct rusage usage;
+    getrusage(RUSAGE_SELF, &usage);
+    report(b, "learn 100 MERL tables, bivariate: peak memory", (double)usage.ru_maxrss / 1024.0,
+           "MiB");
+    for (size_t k = 0; k < TABLES; k++) {
+        unlink(tables[k]);
+        free(tables[k]);
+    }
+    rmdir(folder);
+    free(folder);
+    gonio_context_free(&all);
+}
+
+/* ---- reconstructing ---- */
+
+/* write(2) of a MERL table's bytes, with fsync and rename as gonio does. */
+static double plain_write_seconds(const char *path, const char *data, size_t size)
+{
+    char *part = NULL;
+    check(asprintf(&part, "%s.part", path) > 0, "memory");
+    const double start = now();
+    const int descriptor = open(part, O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    size_t done = 0;
+    while (descriptor >= 0 && done < size) {
+        const ssize_t written = write(descriptor, data + done, size - done);
+        check(written > 0, "write");
+        done += (size_t)written;
+    }
+    check(fsync(descriptor) == 0 && close(descriptor) == 0 && rename(part, path) == 0, "write");
+    free(part);
+    return now() - start;
+}
+
+static double reconstruct_seconds(gonio_context *context, const gonio_basis *basis,
+                                  const size_t *rows, size_t n, const double *readings,
+                                  const char *path)
+{
+    gonio_reconstruction *reconstruction = NULL;
+    gonio_material *material = NULL;
+    const double start = now();
+    check(gonio_reconstruct_rows(context, basis, 35, rows, n, readings, &reconstruction) ==
+                  GONIO_OK &&
+              gonio_reconstruction_material(context, basis, reconstruction, "bench", &material) ==
+                  GONIO_OK &&
+              gonio_material_write_merl(context, material, path) == GONIO_OK,
+          "reconstructing");
+    const double seconds = now() - start;
+    gonio_material_free(&material);
+    gonio_reconstruction_free(&reconstruction);
+    return seconds;
+}
+
+static void bench_reconstruct(bench *b)
+{
+    enum { N = 80, TIMES = 15 };
+    const size_t size = 12 + sizeof(double) * GONIO_CHANNELS * GONIO_BINS;
+    gonio_context *all = make_context(0);
+    gonio_basis *basis = learn(all, b->paths, BASIS_MATERIALS, 35, NULL);
+    const gonio_basis_view view = gonio_basis_describe(basis);
+    size_t rows[N];
+    double readings[N];
+    for (size_t k = 0; k < N; k++) {
+        rows[k] = k * (view.rows / N);
+        readings[k] = view.mean[rows[k]] + 0.01 * (double)(k % 7);
+    }
+    char *folder = scratch_folder();
+    char *path = NULL;
+    check(asprintf(&path, "%s/table.binary", folder) > 0, "memory");
+    char *data = calloc(size, 1);
+    double ratio[TIMES];
+    double seconds[TIMES];
+    for (int run = 0; run < TIMES; run++) {
+        const double plain = plain_write_seconds(path, data, size);
+        seconds[run] = reconstruct_seconds(all, basis, rows, N, readings, path);
+        ratio[run] = seconds[run] / plain;
+    }
+    report(b, "reconstruct one material to a MERL table", median(seconds, TIMES), "s");
+    report(b, "reconstruct one material: over plain write(2)", median(ratio, TIMES), "x");
+    unlink(path);
+    rmdir(folder);
+    free(data);
+    free(path);
+    free(folder);
+    gonio_basis_free(&basis);
+    gonio_context_free(&all);
+}
+
+/* ---- */
+
+static const struct {
+    const char *name;
+    void (*run)(bench *b);
+} sections[] = {
+    {"learn", bench_learn}, /* first: its peak memory is the process's */
+    {"plan", bench_plan},     {"starts", bench_starts}, {"reconstruct", bench_reconstruct},
+    {"growth", bench_growth},
+};
+
+static bool wanted(const char *name, int argc, char **argv)
+{
+    for (int k = 2; k < argc; k++) {
+        if (strcmp(argv[k], name) == 0) {
+            return true;
+        }
+    }
+    return argc <= 2;
+}
+
+int main(int argc, char **argv)
+{
+    bench b = {.results = json_object(), .processors = (int)sysconf(_SC_NPROCESSORS_ONLN)};
+    find_materials(&b, argc > 1 && strcmp(argv[1], "atlas:") != 0 ? argv[1] : NULL);
+    printf("%zu materials, %d processors\n", b.count, b.processors);
+    for (size_t k = 0; k < sizeof sections / sizeof *sections; k++) {
+        if (wanted(sections[k].name, argc, argv)) {
+            sections[k].run(&b);
+        }
+    }
+    check(json_dump_file(b.results, "bench.json", JSON_INDENT(2)) == 0, "writing bench.json");
+    json_decref(b.results);
+    for (size_t k = 0; k < b.count; k++) {
+        free(b.paths[k]);
+    }
+    free(b.paths);
+    return 0;
+}

@@ -1,0 +1,79 @@
+# bash completion for gonio: commands, options, their values and the built-in materials.
+# File names are left to bash. Installed as bash-completion/completions/gonio; to try it:
+#   . completions/gonio.bash
+
+_gonio_options()
+{
+    local common="--threads --quiet --help -q -h"
+    case $1 in
+        info)        echo "--json $common" ;;
+        convert)     echo "$common" ;;
+        learn)       echo "--output --basis --grid --channels --without --json -o -K $common" ;;
+        plan)        echo "--output --number --basis --method --restarts --seed --phi-d --history" \
+                          "--json -o -n -K $common" ;;
+        measure)     echo "--output --noise --floor --seed -o $common" ;;
+        reconstruct) echo "--output --basis --all-channels --average-repeats --negative-to-zero" \
+                          "--other-basis --json -o -K $common" ;;
+        compare)     echo "--verbose --json -v $common" ;;
+        demo)        echo "--output -o $common" ;;
+    esac
+}
+
+# Words for the value of an option; fails if there is nothing to say (a file, or no option).
+_gonio_values()
+{
+    case $1 in
+        --grid)     echo "bivariate full" ;;
+        --channels) echo "joint separate" ;;
+        --method)   echo "condition random" ;;
+        --basis|--number|--restarts|--seed|--phi-d|--noise|--floor|--threads|--without|-K|-n) echo "" ;;
+        *)          return 1 ;;
+    esac
+}
+
+_gonio_atlas()
+{
+    "${COMP_WORDS[0]}" info atlas: 2>/dev/null | cut -d ' ' -f 1
+}
+
+_gonio()
+{
+    local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
+    local command=${COMP_WORDS[1]} values
+    COMPREPLY=()
+
+    if [[ $COMP_CWORD -eq 1 ]]; then
+        mapfile -t COMPREPLY < <(compgen -W "info convert learn plan measure reconstruct compare \
+                                             demo help --help --version" -- "$current")
+        return
+    fi
+
+    # bash takes --grid=full and atlas:gold-leaf apart at = and :.
+    if [[ $current == "=" ]]; then
+        current=
+    elif [[ $previous == "=" ]]; then
+        previous=${COMP_WORDS[COMP_CWORD - 2]}
+    elif [[ $current == ":" && $previous == atlas ]]; then
+        mapfile -t COMPREPLY < <(_gonio_atlas | cut -c 7-)
+        return
+    elif [[ $previous == ":" && ${COMP_WORDS[COMP_CWORD - 2]} == atlas ]]; then
+        mapfile -t COMPREPLY < <(compgen -W "$(_gonio_atlas | cut -c 7-)" -- "$current")
+        return
+    fi
+
+    if values=$(_gonio_values "$previous"); then
+        mapfile -t COMPREPLY < <(compgen -W "$values" -- "$current")
+        compopt +o default +o bashdefault 2>/dev/null
+    elif [[ $current == -* ]]; then
+        mapfile -t COMPREPLY < <(compgen -W "$(_gonio_options "$command")" -- "$current")
+    elif [[ $current == atlas:* ]]; then
+        mapfile -t COMPREPLY < <(compgen -W "$(_gonio_atlas)" -- "$current")
+    elif [[ -n $current && atlas: == "$current"* && $previous != -o && $previous != --output ]]; then
+        mapfile -t COMPREPLY < <(compgen -f -- "$current")
+        [[ ${#COMPREPLY[@]} -eq 0 ]] || compopt -o filenames 2>/dev/null
+        COMPREPLY+=(atlas:)
+        compopt -o nospace 2>/dev/null
+    fi
+}
+
+complete -o default -o bashdefault -F _gonio gonio

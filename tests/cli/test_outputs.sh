@@ -1,0 +1,152 @@
+#!/bin/bash
+# Outputs appear whole or not at all, and inputs stay as they are: places that cannot be written,
+# full disks, outputs that are inputs, interrupts.
+. "$(dirname "$0")/lib.sh"
+
+materials='atlas:oak-sawn atlas:gold-polished atlas:plaster-cast'
+# shellcheck disable=SC2086
+expect_ok learn $materials -o b.gonio
+expect_ok plan b.gonio -n 4 -o p.csv
+expect_ok measure p.csv atlas:white-linen -o r.csv
+expect_ok convert atlas:white-linen m.binary
+expect_ok plan b.gonio -n 100 --restarts 1 -o long.csv
+
+# every_writer CODE PART OUTPUT: what each command says of an output.
+every_writer() {
+    # shellcheck disable=SC2086
+    expect_fail "$1" "$2" learn $materials -o "$3"
+    expect_fail "$1" "$2" plan b.gonio -n 4 -o "$3"
+    expect_fail "$1" "$2" plan b.gonio -n 4 --history "$3" -o x.csv
+    expect_fail "$1" "$2" measure p.csv m.binary -o "$3"
+    expect_fail "$1" "$2" reconstruct b.gonio r.csv -o "$3"
+    expect_fail "$1" "$2" convert m.binary "$3"
+}
+
+# ---- places that cannot be written ----
+
+mkdir folder closed
+: >closed/old
+: >protected
+chmod 555 closed
+chmod 444 protected
+every_writer 1 'nowhere/x: cannot write: No such file or directory' nowhere/x
+every_writer 1 'm.binary/x: cannot write: Not a directory' m.binary/x
+every_writer 1 'folder: cannot write: Is a directory' folder
+every_writer 1 '/dev/full: cannot write: No space left on device' /dev/full
+if permissions_apply; then
+    runner=as_other_user
+    chmod a+rwx .
+    every_writer 1 'closed/x: cannot write: Permission denied' closed/x
+    every_writer 1 'closed/old: cannot write: Permission denied' closed/old
+    every_writer 1 'protected: cannot write: Permission denied' protected
+    runner=gonio
+else
+    skip 'read-only files and folders: no other user to run as'
+fi
+
+# ---- a full disk, for which a limit on the size of files stands in ----
+
+limited() (ulimit -f "$kilobytes" && exec "$GONIO" "$@")
+runner=limited
+kilobytes=1000
+expect_fail 1 'x.binary: cannot write: File too large' convert m.binary x.binary
+expect_fail 1 'm-old.binary: cannot write: File too large' \
+    convert atlas:red-cotton m-old.binary --threads 4
+expect_fail 1 'x.binary: cannot write: File too large' reconstruct b.gonio r.csv -o x.binary
+kilobytes=580 # room for what learn keeps in its scratch file, but not for the basis
+# shellcheck disable=SC2086
+expect_fail 1 'x.gonio: cannot write: File too large' learn $materials -o x.gonio
+kilobytes=300
+# shellcheck disable=SC2086
+expect_fail 1 'cannot write the scratch file: File too large; set TMPDIR' \
+    learn $materials -o x.gonio
+kilobytes=1
+expect_fail 1 'x.csv: cannot write: File too large' plan b.gonio -n 100 --restarts 1 -o x.csv
+expect_fail 1 'x.csv: cannot write: File too large' measure long.csv m.binary -o x.csv
+runner=gonio
+no_scratch() (export TMPDIR=$root/nowhere && exec "$GONIO" "$@")
+# shellcheck disable=SC2086
+runner=no_scratch expect_fail 1 'nowhere: cannot make a scratch file' learn $materials -o x.gonio
+
+# An old output survives a failure.
+cp r.csv old.csv
+runner=limited expect_fail 1 'old.csv: cannot write: File too large' \
+    measure long.csv m.binary -o old.csv
+expect_same r.csv old.csv
+
+# ---- standard output ----
+
+to_full() { "$GONIO" "$@" >/dev/full; }
+to_closed() { "$GONIO" "$@" >&-; }
+runner=to_full expect_fail 1 'cannot write to standard output: No space left' info m.binary
+runner=to_full expect_fail 1 'cannot write to standard output: No space left' info atlas: --json
+runner=to_full expect_fail 1 'cannot write to standard output: No space left' \
+    compare m.binary m.binary
+runner=to_full expect_fail 1 'cannot write to standard output: No space left' learn -h
+runner=to_closed expect_fail 1 'cannot write to standard output: Bad file' info p.csv
+"$GONIO" plan b.gonio -n 4 -qo /dev/stdout 2>&1 | grep -v '^# command' >piped.csv
+expect_same piped.csv <(grep -v '^# command' p.csv)
+expect_ok measure p.csv m.binary -o /dev/null
+
+# ---- outputs that are inputs ----
+
+ln -s m.binary soft.binary
+ln m.binary hard.binary
+ln -s p.csv soft.csv
+ln r.csv hard.csv
+ln -s b.gonio soft.gonio
+for name in m.binary ./m.binary "$PWD/m.binary" soft.binary hard.binary; do
+    expect_fail 2 "$name is an input: give another name" convert m.binary "$name"
+    expect_fail 2 "$name is an input" measure p.csv m.binary -o "$name"
+    expect_fail 2 "$name is an input" learn atlas:oak-sawn m.binary -o "$name"
+done
+expect_fail 2 'm.binary is an input' convert soft.binary m.binary
+expect_fail 2 'm.binary is an input' learn . atlas:oak-sawn -o m.binary
+expect_fail 2 'soft.csv is an input' measure p.csv m.binary -o soft.csv
+expect_fail 2 'soft.gonio is an input' plan b.gonio -n 4 -o soft.gonio
+expect_fail 2 'soft.gonio is an input' plan b.gonio -n 4 --history soft.gonio -o x.csv
+expect_fail 2 'hard.csv is an input' reconstruct b.gonio r.csv -o hard.csv
+expect_fail 2 'b.gonio is an input' reconstruct b.gonio r.csv -o b.gonio
+
+# ---- outputs that exist ----
+
+printf 'old' >target.csv
+ln -s target.csv link.csv
+expect_ok measure p.csv m.binary -o link.csv
+expect_true 'a link stays a link' test -L link.csv
+expect_true 'what it points to is written' grep -q '^theta_i_deg' target.csv
+
+# ---- the folder for the built-in basis ----
+
+no_cache() (
+    unset XDG_CACHE_HOME
+    export HOME=$root/files/m.binary
+    exec "$GONIO" "$@"
+)
+runner=no_cache expect_fail 1 'no cache folder for the built-in basis: set XDG_CACHE_HOME' \
+    plan -n 4 -o x.csv
+expect_fail 1 'm.binary: cannot use this folder' demo -o m.binary
+expect_fail 1 'nowhere/demo: cannot use this folder' demo -o nowhere/demo
+
+# ---- interrupts ----
+
+# interrupted SIGNAL ARGUMENTS...: stops the program a moment after its start.
+interrupted() {
+    local signal=$1
+    shift
+    "$GONIO" "$@" >"$root/work/stdout" 2>"$root/work/stderr" &
+    local job=$!
+    sleep 0.4
+    kill -s "$signal" $job
+    wait $job
+}
+set -m # so that background jobs take SIGINT
+for signal in INT TERM; do
+    before=$(snapshot)
+    interrupted $signal plan b.gonio -n 400 --restarts 1000000 -o x.csv
+    code=$?
+    expect_true "an interrupted plan fails" test $code -ne 0
+    expect_true "an interrupted plan leaves nothing" test "$(snapshot)" = "$before"
+done
+
+finish
