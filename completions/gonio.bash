@@ -9,7 +9,7 @@ _gonio_options()
         info)        echo "--json $common" ;;
         convert)     echo "$common" ;;
         learn)       echo "--output --basis --grid --channels --without --json -o -K $common" ;;
-        plan)        echo "--output --number --basis --method --restarts --seed --phi-d --history" \
+        plan)        echo "--output --number --basis --method --start --restarts --seed --phi-d --history" \
                           "--json -o -n -K $common" ;;
         measure)     echo "--output --noise --floor --seed -o $common" ;;
         reconstruct) echo "--output --basis --all-channels --average-repeats --negative-to-zero" \
@@ -26,6 +26,7 @@ _gonio_values()
         --grid)     echo "bivariate full" ;;
         --channels) echo "joint separate" ;;
         --method)   echo "condition random" ;;
+        --start)    echo "random qr volume" ;;
         --basis|--number|--restarts|--seed|--phi-d|--noise|--floor|--threads|--without|-K|-n) echo "" ;;
         *)          return 1 ;;
     esac

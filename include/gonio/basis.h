@@ -61,9 +61,12 @@ typedef struct gonio_basis_view {
     const double *vectors;   /* V, [rows][components] */
     size_t variance_count;   /* all of them, not only the first `components` */
     const double *variances; /* lambda_k = S_k^2/(columns - 1), descending */
-    uint64_t fingerprint;    /* of cells, mean and vectors */
-    const char *program;     /* "gonio 0.1.0" that learned it */
-    const char *command;     /* "" if unknown */
+    uint64_t
+        fingerprint; /* which basis it is: its cells, materials' names and leading variances to six
+                      * digits, so that the same one learned on another processor is the same */
+    uint64_t checksum;   /* of every bit of cells, mean, vectors and variances */
+    const char *program; /* "gonio 0.1.0" that learned it */
+    const char *command; /* "" if unknown */
 } gonio_basis_view;
 
 GONIO_API gonio_basis_view gonio_basis_describe(const gonio_basis *basis);

@@ -60,8 +60,8 @@ GONIO_API gonio_status gonio_material_read_slab(const gonio_material *material,
                                                 gonio_context *context, int theta_h, double *rho);
 
 /* A 64-bit fingerprint of a material's values: XXH3 over the slabs in order, as little-endian
- * doubles in 1/sr. The same values have the same fingerprint whatever file they are kept in. Feed
- * all 90 slabs in order. */
+ * doubles in 1/sr. Copies of a MERL table have the same fingerprint; a neural BRDF and the table
+ * made from it may differ in a last digit, and so in this. Feed all 90 slabs in order. */
 typedef struct gonio_fingerprint gonio_fingerprint;
 GONIO_API gonio_status gonio_fingerprint_create(gonio_fingerprint **fingerprint);
 GONIO_API void gonio_fingerprint_add(gonio_fingerprint *fingerprint, const void *data, size_t size);

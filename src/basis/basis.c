@@ -2,6 +2,7 @@
 #include "basis.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -160,22 +161,60 @@ static gonio_status map_cells(gonio_context *context, gonio_basis *basis)
     return GONIO_OK;
 }
 
-gonio_status gonio_i_basis_finish(gonio_context *context, gonio_basis *basis)
+static void add_kind(const gonio_basis *basis, gonio_fingerprint *fingerprint)
 {
-    gonio_fingerprint *fingerprint = NULL;
-    const gonio_status status = gonio_fingerprint_create(&fingerprint);
-    if (status != GONIO_OK) {
-        return status;
-    }
     const int32_t kind[2] = {basis->representation, basis->channels};
     gonio_fingerprint_add(fingerprint, kind, sizeof kind);
     gonio_fingerprint_add(fingerprint, basis->cell, basis->cells * sizeof *basis->cell);
+}
+
+/* Processors round differently, so the identity of a basis is in its materials' names and in the
+ * leading variances to six digits; those of a different database differ in the first. */
+static void add_identity(const gonio_basis *basis, gonio_fingerprint *fingerprint)
+{
+    add_kind(basis, fingerprint);
+    for (size_t k = 0; k < basis->materials; k++) {
+        gonio_fingerprint_add(fingerprint, basis->names[k], strlen(basis->names[k]) + 1);
+    }
+    for (size_t k = 0; k < basis->components; k++) {
+        char text[32] = "";
+        if (basis->variances[k] > 1e-6 * basis->variances[0]) {
+            snprintf(text, sizeof text, "%.5e", basis->variances[k]);
+        }
+        gonio_fingerprint_add(fingerprint, text, sizeof text);
+    }
+}
+
+static void add_everything(const gonio_basis *basis, gonio_fingerprint *fingerprint)
+{
+    add_kind(basis, fingerprint);
     gonio_fingerprint_add(fingerprint, basis->mean, basis->rows * sizeof *basis->mean);
     gonio_fingerprint_add(fingerprint, basis->vectors,
                           basis->rows * basis->components * sizeof *basis->vectors);
-    basis->fingerprint = gonio_fingerprint_value(fingerprint);
+    gonio_fingerprint_add(fingerprint, basis->variances,
+                          basis->variance_count * sizeof *basis->variances);
+}
+
+static gonio_status hash(const gonio_basis *basis,
+                         void (*add)(const gonio_basis *, gonio_fingerprint *), uint64_t *value)
+{
+    gonio_fingerprint *fingerprint = NULL;
+    const gonio_status status = gonio_fingerprint_create(&fingerprint);
+    if (status == GONIO_OK) {
+        add(basis, fingerprint);
+        *value = gonio_fingerprint_value(fingerprint);
+    }
     gonio_fingerprint_free(&fingerprint);
-    return map_cells(context, basis);
+    return status;
+}
+
+gonio_status gonio_i_basis_finish(gonio_context *context, gonio_basis *basis)
+{
+    gonio_status status = hash(basis, add_identity, &basis->fingerprint);
+    if (status == GONIO_OK) {
+        status = hash(basis, add_everything, &basis->checksum);
+    }
+    return status == GONIO_OK ? map_cells(context, basis) : status;
 }
 
 gonio_basis_view gonio_basis_describe(const gonio_basis *basis)
@@ -195,6 +234,7 @@ gonio_basis_view gonio_basis_describe(const gonio_basis *basis)
         .variance_count = basis->variance_count,
         .variances = basis->variances,
         .fingerprint = basis->fingerprint,
+        .checksum = basis->checksum,
         .program = basis->program != NULL ? basis->program : "",
         .command = basis->command != NULL ? basis->command : "",
     };

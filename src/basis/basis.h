@@ -20,7 +20,8 @@ struct gonio_basis {
     double *vectors;
     size_t variance_count;
     double *variances;
-    uint64_t fingerprint;
+    uint64_t fingerprint; /* what it is, the same on every processor */
+    uint64_t checksum;    /* of every bit of it, against damage */
     char *program;
     char *command;
     int32_t *position; /* of the whole grid: which of `cell` stands for it */
@@ -31,7 +32,7 @@ gonio_basis *gonio_i_basis_allocate(gonio_context *context, size_t materials, si
                                     gonio_channel_model channels, size_t components,
                                     size_t variance_count);
 
-/* The last step of making one: its fingerprint and the map of nearest cells. */
+/* The last step of making one: its fingerprint, its checksum and the map of nearest cells. */
 gonio_status gonio_i_basis_finish(gonio_context *context, gonio_basis *basis);
 
 size_t gonio_i_basis_rows(size_t cells, gonio_channel_model channels);

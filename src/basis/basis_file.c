@@ -60,12 +60,15 @@ static bool write_contents(hid_t file, const gonio_basis *basis, const char *com
                                           gonio_log_scale(2)};
     const size_t shape[2] = {basis->rows, basis->components};
     char fingerprint[32];
+    char checksum[32];
     snprintf(fingerprint, sizeof fingerprint, "%016" PRIx64, basis->fingerprint);
+    snprintf(checksum, sizeof checksum, "%016" PRIx64, basis->checksum);
     return gonio_i_hdf_write_string(file, "format", format_name) &&
            gonio_i_hdf_write_number(file, "format_version", FORMAT_VERSION) &&
            gonio_i_hdf_write_string(file, "program", basis->program) &&
            gonio_i_hdf_write_string(file, "command", command != NULL ? command : "") &&
-           gonio_i_hdf_write_string(file, "fingerprint", fingerprint) && write_grid(file, basis) &&
+           gonio_i_hdf_write_string(file, "fingerprint", fingerprint) &&
+           gonio_i_hdf_write_string(file, "checksum", checksum) && write_grid(file, basis) &&
            write_materials(file, basis) &&
            gonio_i_hdf_write_array(file, "log_scale", 1, &scales, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE,
                                    scale) &&
@@ -124,7 +127,7 @@ typedef struct contents {
     void *cell, *mean, *vectors, *variances, *fingerprints;
     size_t cells, rows, components, variance_count, materials;
     char **names;
-    char *program, *command, *fingerprint;
+    char *program, *command, *fingerprint, *checksum;
 } contents;
 
 static gonio_status damaged(const contents *c, const char *what, const char *problem)
@@ -195,6 +198,26 @@ static gonio_status read_materials(contents *c)
         problem = "has a wrong shape";
     }
     return problem != NULL ? damaged(c, "materials/fingerprint", problem) : GONIO_OK;
+}
+
+/* Another scale would be another log space. */
+static gonio_status check_log_scale(const contents *c)
+{
+    void *scale = NULL;
+    size_t count = 0;
+    const char *problem =
+        gonio_i_hdf_read_array(c->file, "log_scale", 1, 64, H5T_NATIVE_DOUBLE, &scale, &count);
+    if (problem == NULL && count != GONIO_CHANNELS) {
+        problem = "has a wrong shape";
+    }
+    for (int k = 0; k < GONIO_CHANNELS && problem == NULL; k++) {
+        const double ours = gonio_log_scale(k);
+        if (!(fabs(((const double *)scale)[k] - ours) <= 1e-12 * ours)) {
+            problem = "is not this program's";
+        }
+    }
+    free(scale);
+    return problem != NULL ? damaged(c, "log_scale", problem) : GONIO_OK;
 }
 
 static gonio_status read_numbers(contents *c)
@@ -269,6 +292,9 @@ static gonio_status read_contents(contents *c)
         status = read_materials(c);
     }
     if (status == GONIO_OK) {
+        status = check_log_scale(c);
+    }
+    if (status == GONIO_OK) {
         status = read_numbers(c);
     }
     if (status == GONIO_OK) {
@@ -279,6 +305,9 @@ static gonio_status read_contents(contents *c)
     }
     if (status == GONIO_OK) {
         status = read_text(c, "fingerprint", &c->fingerprint);
+    }
+    if (status == GONIO_OK) {
+        status = read_text(c, "checksum", &c->checksum);
     }
     return status;
 }
@@ -294,6 +323,7 @@ static void free_contents(contents *c)
     free(c->program);
     free(c->command);
     free(c->fingerprint);
+    free(c->checksum);
 }
 
 static bool all_finite(const double *values, size_t count)
@@ -357,6 +387,14 @@ static void *take(void **from)
     return taken;
 }
 
+static gonio_status check_hash(const contents *c, const char *name, const char *text,
+                               uint64_t value)
+{
+    return strtoull(text, NULL, 16) == (unsigned long long)value
+               ? GONIO_OK
+               : damaged(c, name, "does not fit the contents (the file was changed)");
+}
+
 /* Moves what was read into a basis. */
 static gonio_status assemble(contents *c, gonio_basis **basis)
 {
@@ -389,9 +427,11 @@ static gonio_status assemble(contents *c, gonio_basis **basis)
         done = made->names[k] != NULL;
     }
     gonio_status status = done ? gonio_i_basis_finish(c->context, made) : GONIO_ERROR_MEMORY;
-    if (status == GONIO_OK &&
-        strtoull(c->fingerprint, NULL, 16) != (unsigned long long)made->fingerprint) {
-        status = damaged(c, "fingerprint", "does not fit the contents (the file was changed)");
+    if (status == GONIO_OK) {
+        status = check_hash(c, "checksum", c->checksum, made->checksum);
+    }
+    if (status == GONIO_OK) {
+        status = check_hash(c, "fingerprint", c->fingerprint, made->fingerprint);
     }
     if (status != GONIO_OK) {
         gonio_basis_free(&made);

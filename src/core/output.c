@@ -36,6 +36,12 @@ static int create_beside(const char *path, char **temporary)
     return -1;
 }
 
+/* Standard output goes where the shell sent it, also if that is a file with other things in it. */
+static bool is_standard_output(const char *path)
+{
+    return strcmp(path, "/dev/stdout") == 0 || strcmp(path, "/dev/fd/1") == 0;
+}
+
 static gonio_status open_target(gonio_context *context, const char *path, gonio_i_output *output)
 {
     struct stat status;
@@ -53,7 +59,9 @@ static gonio_status open_target(gonio_context *context, const char *path, gonio_
     if (exists && access(path, W_OK) != 0) {
         return cannot_write(context, path);
     }
-    if (special) {
+    if (is_standard_output(path)) {
+        output->descriptor = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0);
+    } else if (special) {
         output->descriptor = open(path, O_WRONLY | O_CLOEXEC);
     } else {
         output->descriptor = create_beside(resolved, &output->temporary);

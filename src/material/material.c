@@ -140,9 +140,15 @@ static gonio_status not_recognised(gonio_context *context, const gonio_i_file *f
     if (file->size == 0) {
         return gonio_i_fail(context, GONIO_ERROR_FORMAT, "%s: the file is empty", file->path);
     }
+    char known[256] = "";
+    for (int k = 0; k < READERS; k++) {
+        const size_t length = strlen(known);
+        snprintf(known + length, sizeof known - length, "%s%s", k > 0 ? ", " : "",
+                 readers[k]->name);
+    }
     return gonio_i_fail(context, GONIO_ERROR_FORMAT,
-                        "%s: not a material that gonio reads (%s, %s), judged by its content",
-                        file->path, readers[0]->name, readers[1]->name);
+                        "%s: not a material that gonio reads (%s), judged by its content",
+                        file->path, known);
 }
 
 static gonio_status open_file(gonio_context *context, const gonio_i_file *file,

@@ -92,7 +92,8 @@ static bool channels_overlap(int a, int b)
 
 /* A direction may be listed once for each channel. `seen` holds, for each group, the last reading
  * of each channel plus one. */
-static gonio_status refuse_repeats(gonio_context *context, const gonio_readings *readings)
+static gonio_status refuse_repeats(gonio_context *context, const gonio_readings *readings,
+                                   bool measured)
 {
     size_t(*seen)[GONIO_CHANNELS + 1] = gonio_i_allocate(context, readings->count, sizeof *seen);
     if (seen == NULL) {
@@ -107,9 +108,9 @@ static gonio_status refuse_repeats(gonio_context *context, const gonio_readings 
             if (earlier > 0 && channels_overlap(channel, other) && status == GONIO_OK) {
                 status = gonio_i_fail(
                     context, GONIO_ERROR_DATA,
-                    "%s:%zu: the same directions and channel as line %zu; delete one, or accept "
-                    "repeats with --average-repeats",
-                    readings->path, readings->reading[k].line, readings->reading[earlier - 1].line);
+                    "%s:%zu: the same directions and channel as line %zu; delete one%s",
+                    readings->path, readings->reading[k].line, readings->reading[earlier - 1].line,
+                    measured ? ", or accept repeats with --average-repeats" : "");
             }
         }
         group[channel + 1] = k + 1;
@@ -324,7 +325,7 @@ static gonio_status read_rows(gonio_context *context, gonio_readings *readings,
                                         readings->first_same);
     }
     if (status == GONIO_OK && !options->average_repeats) {
-        status = refuse_repeats(context, readings);
+        status = refuse_repeats(context, readings, options->values_needed);
     }
     return status;
 }

@@ -128,8 +128,9 @@ typedef struct task {
     const gonio_reconstruct_options *options;
 } task;
 
-/* Whether a reading's channel makes an equation, given what was planned. A direction listed once
- * for each channel was read once: with all channels only its first line counts. */
+/* Whether a reading's channel makes an equation, given what was planned. A direction that is listed
+ * once for each channel was read once: with all channels, a line that says again what the first
+ * line of the same directions says does not count again. */
 static bool is_used(const task *t, size_t index, int channel)
 {
     const gonio_reading *reading = &t->readings->reading[index];
@@ -137,7 +138,7 @@ static bool is_used(const task *t, size_t index, int channel)
         return reading->channel == GONIO_ALL_CHANNELS || reading->channel == channel;
     }
     const size_t first = t->readings->first_same[index];
-    return first == index || isnan(t->readings->reading[first].value[channel]);
+    return first == index || reading->value[channel] != t->readings->reading[first].value[channel];
 }
 
 static gonio_status add_reading(const task *t, const gonio_reading *reading, int channel,

@@ -46,6 +46,18 @@ static int finish_output(const char *name, int code)
     return code != 0 ? code : EXIT_DATA;
 }
 
+static int run_command(const char *name, int argc, const char **argv)
+{
+    for (int k = 0; k < COMMANDS; k++) {
+        if (strcmp(commands[k].name, name) == 0) {
+            return finish_output(name, commands[k].run(argc, argv));
+        }
+    }
+    fprintf(stderr, "gonio: no command is called '%s'\n\n", name);
+    print_help(stderr);
+    return EXIT_USAGE;
+}
+
 int main(int argc, char **argv)
 {
     const char *name = argc > 1 ? argv[1] : "";
@@ -53,19 +65,17 @@ int main(int argc, char **argv)
         printf("gonio %s\n", gonio_version());
         return 0;
     }
+    if (strcmp(name, "help") == 0 && argc > 2) {
+        const char *words[] = {argv[2], "-h", NULL};
+        return run_command(argv[2], 2, words);
+    }
     if (strcmp(name, "-h") == 0 || strcmp(name, "--help") == 0 || strcmp(name, "help") == 0) {
         print_help(stdout);
         return 0;
     }
-    for (int k = 0; k < COMMANDS; k++) {
-        if (strcmp(commands[k].name, name) == 0) {
-            const int code = commands[k].run(argc - 1, (const char **)(argv + 1));
-            return finish_output(name, code);
-        }
+    if (argc < 2) {
+        print_help(stderr);
+        return EXIT_USAGE;
     }
-    if (argc > 1) {
-        fprintf(stderr, "gonio: no command is called '%s'\n\n", name);
-    }
-    print_help(stderr);
-    return EXIT_USAGE;
+    return run_command(name, argc - 1, (const char **)(argv + 1));
 }
