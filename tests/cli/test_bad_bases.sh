@@ -77,7 +77,7 @@ expect_fail 1 "bad.gonio: 'variances' is missing" info bad.gonio
 # A bit in the last third of the file is one of the components; a NaN there; a text fingerprint.
 fingerprint=$(gonio info good.gonio | sed -n 's/^ *fingerprint *//p')
 with "$fingerprint" 0123456789abcdef
-every_reader 1 "bad.gonio: 'checksum' does not fit the contents" bad.gonio
+every_reader 1 "bad.gonio: 'fingerprint' does not fit the contents" bad.gonio
 for place in $((size / 2)) $((size * 3 / 4)); do
     cp good.gonio bad.gonio
     patch bad.gonio $((place / 8 * 8)) '\x00\x00\x00\x00\x00\x00\xf8\x7f'
