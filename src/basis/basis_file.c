@@ -127,7 +127,8 @@ typedef struct contents {
     void *cell, *mean, *vectors, *variances, *fingerprints;
     size_t cells, rows, components, variance_count, materials;
     char **names;
-    char *program, *command, *fingerprint, *checksum;
+    char *program, *command;
+    uint64_t fingerprint, checksum;
 } contents;
 
 static gonio_status damaged(const contents *c, const char *what, const char *problem)
@@ -282,6 +283,16 @@ static gonio_status read_text(const contents *c, const char *name, char **text)
     return *text != NULL ? GONIO_OK : damaged(c, name, "is missing");
 }
 
+/* An attribute of hexadecimal digits. */
+static gonio_status read_hash(const contents *c, const char *name, uint64_t *value)
+{
+    char *text = NULL;
+    const gonio_status status = read_text(c, name, &text);
+    *value = text != NULL ? strtoull(text, NULL, 16) : 0;
+    free(text);
+    return status;
+}
+
 static gonio_status read_contents(contents *c)
 {
     gonio_status status = check_kind(c);
@@ -304,10 +315,10 @@ static gonio_status read_contents(contents *c)
         status = read_text(c, "command", &c->command);
     }
     if (status == GONIO_OK) {
-        status = read_text(c, "fingerprint", &c->fingerprint);
+        status = read_hash(c, "fingerprint", &c->fingerprint);
     }
     if (status == GONIO_OK) {
-        status = read_text(c, "checksum", &c->checksum);
+        status = read_hash(c, "checksum", &c->checksum);
     }
     return status;
 }
@@ -322,8 +333,6 @@ static void free_contents(contents *c)
     free(c->names);
     free(c->program);
     free(c->command);
-    free(c->fingerprint);
-    free(c->checksum);
 }
 
 static bool all_finite(const double *values, size_t count)
@@ -387,12 +396,10 @@ static void *take(void **from)
     return taken;
 }
 
-static gonio_status check_hash(const contents *c, const char *name, const char *text,
-                               uint64_t value)
+static gonio_status check_hash(const contents *c, const char *name, uint64_t stored, uint64_t value)
 {
-    return strtoull(text, NULL, 16) == (unsigned long long)value
-               ? GONIO_OK
-               : damaged(c, name, "does not fit the contents (the file was changed)");
+    return stored == value ? GONIO_OK
+                           : damaged(c, name, "does not fit the contents (the file was changed)");
 }
 
 /* Moves what was read into a basis. */
