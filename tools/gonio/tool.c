@@ -163,10 +163,43 @@ static int parse(tool *t, const char *text)
     return -1;
 }
 
+/* Whether an option's value is a string, which popt gives as a copy that is the caller's to free.
+ */
+static bool holds_string(const struct poptOption *option)
+{
+    return (option->argInfo & POPT_ARG_MASK) == POPT_ARG_STRING && option->arg != NULL;
+}
+
+static bool is_end(const struct poptOption *option)
+{
+    return option->longName == NULL && option->shortName == '\0' && option->arg == NULL;
+}
+
+static void remember_defaults(tool *t)
+{
+    for (int k = 0; k < TOOL_MOST_OPTIONS && !is_end(&t->table[k]); k++) {
+        t->defaults[k] = holds_string(&t->table[k]) ? *(const char **)t->table[k].arg : NULL;
+    }
+}
+
+static void free_strings(tool *t)
+{
+    for (int k = 0; k < TOOL_MOST_OPTIONS && !is_end(&t->table[k]); k++) {
+        if (holds_string(&t->table[k])) {
+            char **value = t->table[k].arg;
+            if (*value != t->defaults[k]) {
+                free(*value);
+                *value = NULL;
+            }
+        }
+    }
+}
+
 int tool_begin(tool *t, int argc, const char **argv, const struct poptOption *table,
                const char *usage, const char *text)
 {
-    *t = (tool){.name = argv[0], .command_line = join(argc, argv)};
+    *t = (tool){.table = table, .name = argv[0], .command_line = join(argc, argv)};
+    remember_defaults(t);
     if (asprintf(&t->title, "gonio %s", argv[0]) < 0) {
         t->title = NULL;
         return EXIT_DATA;
@@ -191,6 +224,7 @@ void tool_end(tool *t)
     clear_progress(t);
     gonio_context_free(&t->context);
     poptFreeContext(t->options);
+    free_strings(t);
     free(t->title);
     free(t->command_line);
 }

@@ -26,14 +26,19 @@ int cmd_reconstruct(int argc, const char **argv);
 int cmd_compare(int argc, const char **argv);
 int cmd_demo(int argc, const char **argv);
 
+enum { TOOL_MOST_OPTIONS = 32 };
+
 /* What every command has. */
 typedef struct tool {
     gonio_context *context;
     poptContext options;
-    char *command_line;    /* for the record in output files */
-    const char *name;      /* of the command */
-    char *title;           /* "gonio NAME" */
-    double progress_start; /* seconds */
+    const struct poptOption *table;
+    const char
+        *defaults[TOOL_MOST_OPTIONS]; /* of the table's strings, which are not popt's copies */
+    char *command_line;               /* for the record in output files */
+    const char *name;                 /* of the command */
+    char *title;                      /* "gonio NAME" */
+    double progress_start;            /* seconds */
     double progress_shown;
     bool progress_visible;
 } tool;
