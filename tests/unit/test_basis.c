@@ -1,0 +1,359 @@
+/* Bases by certificates: orthonormality, projection of what was learned from, variances; the file;
+ * the map of nearest cells. */
+#include "../support.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <gonio/gonio.h>
+
+#include "core/random.h"
+#include "made_material.h"
+
+enum { MATERIALS = 6 };
+
+static const char *const paths[MATERIALS] = {"atlas:gold-polished",   "atlas:red-glossy-plastic",
+                                             "atlas:burgundy-velvet", "atlas:oak-sawn",
+                                             "atlas:plaster-cast",    "atlas:steel-brushed"};
+
+static void assert_close(double value, double expected, double tolerance)
+{
+    if (!(fabs(value - expected) <= tolerance)) {
+        fail_msg("%.17g where %.17g is expected (within %g)", value, expected, tolerance);
+    }
+}
+
+static gonio_database *make_database(gonio_context *context, size_t count,
+                                     gonio_representation representation,
+                                     gonio_channel_model channels)
+{
+    const gonio_database_options options = {representation, channels, NULL};
+    gonio_database *database = NULL;
+    assert_int_equal(gonio_database_create(context, paths, count, &options, &database), GONIO_OK);
+    return database;
+}
+
+static gonio_basis *learn(gonio_context *context, const gonio_database *database, size_t components)
+{
+    const gonio_basis_options options = {.components = components};
+    gonio_basis *basis = NULL;
+    assert_int_equal(gonio_basis_learn(context, database, &options, &basis), GONIO_OK);
+    return basis;
+}
+
+static void assert_orthonormal(const gonio_basis_view *view)
+{
+    const size_t k = view->components;
+    for (size_t a = 0; a < k; a++) {
+        double largest = 0.0;
+        for (size_t b = 0; b <= a; b++) {
+            double sum = 0.0;
+            for (size_t i = 0; i < view->rows; i++) {
+                sum += view->vectors[i * k + a] * view->vectors[i * k + b];
+            }
+            assert_close(sum, a == b ? 1.0 : 0.0, 1e-12);
+        }
+        for (size_t i = 0; i < view->rows; i++) {
+            const double v = view->vectors[i * k + a];
+            largest = fabs(v) > fabs(largest) ? v : largest;
+        }
+        assert_true(largest > 0.0);
+    }
+}
+
+/* With all components, what was learned from lies in the span: V V'(h - m) = h - m; and the scatter
+ * along component k is its variance. */
+static void assert_projection(const gonio_database *database, const gonio_basis_view *view)
+{
+    const gonio_database_view data = gonio_database_describe(database);
+    const size_t k = view->components;
+    double *h = malloc(data.rows * data.columns * sizeof *h);
+    double *c = calloc(k, sizeof *c);
+    double *variance = calloc(k, sizeof *variance);
+    assert_true(h != NULL && c != NULL && variance != NULL);
+    assert_int_equal(gonio_database_read_rows(database, NULL, 0, data.rows, NULL, 0, h), GONIO_OK);
+    for (size_t column = 0; column < data.columns; column++) {
+        double *x = h + column * data.rows;
+        double scatter = 0.0;
+        double rest = 0.0;
+        memset(c, 0, k * sizeof *c);
+        for (size_t i = 0; i < data.rows; i++) {
+            x[i] -= view->mean[i];
+            scatter += x[i] * x[i];
+            for (size_t j = 0; j < k; j++) {
+                c[j] += view->vectors[i * k + j] * x[i];
+            }
+        }
+        for (size_t i = 0; i < data.rows; i++) {
+            double residual = x[i];
+            for (size_t j = 0; j < k; j++) {
+                residual -= view->vectors[i * k + j] * c[j];
+            }
+            rest += residual * residual;
+        }
+        assert_true(scatter > 0.0);
+        assert_true(sqrt(rest / scatter) < 1e-7);
+        for (size_t j = 0; j < k; j++) {
+            variance[j] += c[j] * c[j] / (double)(data.columns - 1);
+        }
+    }
+    for (size_t j = 0; j < k; j++) {
+        assert_true(j == 0 || view->variances[j] <= view->variances[j - 1]);
+        assert_close(variance[j] / view->variances[0], view->variances[j] / view->variances[0],
+                     1e-11);
+    }
+    free(h);
+    free(c);
+    free(variance);
+}
+
+static void test_joint(void **state)
+{
+    (void)state;
+    gonio_database *database = make_database(NULL, MATERIALS, GONIO_BIVARIATE, GONIO_JOINT);
+    gonio_basis *basis = learn(NULL, database, 0);
+    const gonio_basis_view view = gonio_basis_describe(basis);
+    assert_int_equal(view.components, MATERIALS - 1);
+    assert_int_equal(view.rows, 3 * view.cells);
+    assert_int_equal(view.variance_count, MATERIALS - 1);
+    assert_string_equal(view.names[1], "red-glossy-plastic");
+    assert_close(gonio_basis_cumulative_variance(basis, MATERIALS - 1), 1.0, 1e-15);
+    assert_true(gonio_basis_cumulative_variance(basis, 1) < 1.0);
+    assert_orthonormal(&view);
+    assert_projection(database, &view);
+    gonio_basis_free(&basis);
+    assert_null(basis);
+    gonio_database_free(&database);
+}
+
+static void test_separate(void **state)
+{
+    (void)state;
+    gonio_database *database = make_database(NULL, MATERIALS, GONIO_BIVARIATE, GONIO_SEPARATE);
+    gonio_basis *basis = learn(NULL, database, 3 * MATERIALS - 1);
+    const gonio_basis_view view = gonio_basis_describe(basis);
+    assert_int_equal(view.rows, view.cells);
+    assert_int_equal(view.materials, MATERIALS);
+    assert_orthonormal(&view);
+    assert_projection(database, &view);
+    gonio_basis_free(&basis);
+    gonio_database_free(&database);
+}
+
+static void test_threads_and_subsets_do_not_matter(void **state)
+{
+    (void)state;
+    uint64_t fingerprint = 0;
+    for (int threads = 1; threads <= 3; threads++) {
+        const gonio_context_options options = {.threads = threads};
+        gonio_context *context = NULL;
+        assert_int_equal(gonio_context_create(&context, &options), GONIO_OK);
+        gonio_database *database = make_database(context, 4, GONIO_BIVARIATE, GONIO_JOINT);
+        gonio_basis *basis = learn(context, database, 3);
+        const gonio_basis_view view = gonio_basis_describe(basis);
+        fingerprint = threads == 1 ? view.fingerprint : fingerprint;
+        assert_true(view.fingerprint == fingerprint);
+        gonio_basis_free(&basis);
+        gonio_database_free(&database);
+        gonio_context_free(&context);
+    }
+    const size_t subset[] = {0, 1, 2, 3};
+    const gonio_basis_options some = {.components = 3, .subset = subset, .subset_count = 4};
+    gonio_database *database = make_database(NULL, MATERIALS, GONIO_BIVARIATE, GONIO_JOINT);
+    gonio_basis *basis = NULL;
+    assert_int_equal(gonio_basis_learn(NULL, database, &some, &basis), GONIO_OK);
+    assert_true(gonio_basis_describe(basis).fingerprint == fingerprint);
+    gonio_basis_free(&basis);
+    gonio_database_free(&database);
+}
+
+static void test_what_cannot_be_learned(void **state)
+{
+    (void)state;
+    static const size_t twice[] = {0, 1, 0, 1};
+    const struct {
+        gonio_basis_options options;
+        gonio_status status;
+        const char *message;
+    } cases[] = {
+        {{.components = MATERIALS}, GONIO_ERROR_ARGUMENT, "give at most 5"},
+        {{.subset = twice, .subset_count = 1}, GONIO_ERROR_ARGUMENT, "at least 2 materials"},
+        {{.subset = twice, .subset_count = 4}, GONIO_ERROR_DATA, "span only 1 dimensions"},
+    };
+    gonio_context *context = support_context();
+    gonio_database *database = make_database(NULL, MATERIALS, GONIO_BIVARIATE, GONIO_JOINT);
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        gonio_basis *basis = NULL;
+        assert_int_equal(gonio_basis_learn(context, database, &cases[k].options, &basis),
+                         cases[k].status);
+        assert_null(basis);
+        assert_non_null(strstr(support_message(), cases[k].message));
+    }
+    gonio_database_free(&database);
+    gonio_context_free(&context);
+}
+
+static void test_the_file_keeps_everything(void **state)
+{
+    (void)state;
+    static const gonio_channel_model models[] = {GONIO_JOINT, GONIO_SEPARATE};
+    char *folder = support_folder();
+    char path[256];
+    snprintf(path, sizeof path, "%s/basis.gonio", folder);
+    for (size_t m = 0; m < 2; m++) {
+        gonio_database *database = make_database(NULL, 3, GONIO_BIVARIATE, models[m]);
+        gonio_basis *basis = learn(NULL, database, 2);
+        gonio_basis *again = NULL;
+        assert_int_equal(gonio_basis_write(NULL, basis, "a 'command'", path), GONIO_OK);
+        assert_int_equal(gonio_basis_read(NULL, path, &again), GONIO_OK);
+        const gonio_basis_view a = gonio_basis_describe(basis);
+        const gonio_basis_view b = gonio_basis_describe(again);
+        assert_true(a.fingerprint == b.fingerprint);
+        assert_int_equal(a.channels, b.channels);
+        assert_int_equal(a.rows, b.rows);
+        assert_int_equal(a.components, b.components);
+        assert_int_equal(a.materials, b.materials);
+        assert_memory_equal(a.cell, b.cell, a.cells * sizeof *a.cell);
+        assert_memory_equal(a.mean, b.mean, a.rows * sizeof *a.mean);
+        assert_memory_equal(a.vectors, b.vectors, a.rows * a.components * sizeof *a.vectors);
+        assert_memory_equal(a.variances, b.variances, a.variance_count * sizeof *a.variances);
+        assert_memory_equal(a.fingerprints, b.fingerprints, 3 * sizeof *a.fingerprints);
+        assert_string_equal(a.names[2], b.names[2]);
+        assert_string_equal(b.command, "a 'command'");
+        gonio_basis_free(&basis);
+        gonio_basis_free(&again);
+        gonio_database_free(&database);
+    }
+    support_remove(folder);
+}
+
+/* ---- look-ups ---- */
+
+static void test_row_at_a_centre_is_the_cells_own(void **state)
+{
+    (void)state;
+    gonio_database *database = make_database(NULL, 3, GONIO_BIVARIATE, GONIO_JOINT);
+    gonio_basis *basis = learn(NULL, database, 2);
+    const gonio_basis_view view = gonio_basis_describe(basis);
+    for (size_t position = 0; position < view.cells; position += 17) {
+        const int32_t cell = view.cell[position];
+        const gonio_bin bin = {cell / GONIO_THETA_D_BINS, cell % GONIO_THETA_D_BINS, 50};
+        assert_int_equal(gonio_basis_position(basis, cell), position);
+        for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
+            const size_t row = 3 * position + (size_t)channel;
+            double mean = 0.0;
+            double found[2];
+            gonio_basis_row_at(basis, gonio_bin_centre(bin), channel, 2, &mean, found);
+            assert_close(mean, view.mean[row], 1e-11);
+            assert_close(found[0], view.vectors[2 * row], 1e-13);
+            assert_close(found[1], view.vectors[2 * row + 1], 1e-13);
+        }
+    }
+    /* Half way between two centres: their average. */
+    const gonio_half_difference a = gonio_bin_centre((gonio_bin){20, 30, 0});
+    const gonio_half_difference b = gonio_bin_centre((gonio_bin){20, 31, 0});
+    double mean[3], rows[3];
+    gonio_basis_row_at(basis, a, 1, 1, &mean[0], &rows[0]);
+    gonio_basis_row_at(basis, b, 1, 1, &mean[1], &rows[1]);
+    gonio_basis_row_at(basis,
+                       (gonio_half_difference){a.theta_h, 0.5 * (a.theta_d + b.theta_d), 1.0}, 1, 1,
+                       &mean[2], &rows[2]);
+    assert_close(mean[2], 0.5 * (mean[0] + mean[1]), 1e-12);
+    assert_close(rows[2], 0.5 * (rows[0] + rows[1]), 1e-14);
+    gonio_basis_free(&basis);
+    gonio_database_free(&database);
+}
+
+/* Squared distance in index space, phi_d periodic. */
+static int distance(gonio_bin a, gonio_bin b)
+{
+    const int h = a.theta_h - b.theta_h;
+    const int d = a.theta_d - b.theta_d;
+    const int p = abs(a.phi_d - b.phi_d);
+    const int turn = p < GONIO_PHI_D_BINS - p ? p : GONIO_PHI_D_BINS - p;
+    return h * h + d * d + turn * turn;
+}
+
+/* The nearest cell, lowest position first, by looking at all of them. */
+static size_t nearest(const gonio_basis_view *view, gonio_bin bin)
+{
+    const int depth = view->representation == GONIO_FULL ? 1 : GONIO_PHI_D_BINS;
+    size_t best = 0;
+    int least = 1 << 30;
+    for (size_t k = 0; k < view->cells; k++) {
+        const int found = distance(bin, gonio_bin_from_index(view->cell[k] * depth));
+        if (found < least) {
+            best = k;
+            least = found;
+        }
+    }
+    return best;
+}
+
+/* Looks at cells without data: there the nearest with data stands in. */
+static void assert_nearest(gonio_representation representation, const char *const *files,
+                           int trials)
+{
+    const bool full = representation == GONIO_FULL;
+    const gonio_database_options options = {representation, GONIO_JOINT, NULL};
+    gonio_database *database = NULL;
+    assert_int_equal(gonio_database_create(NULL, files, 2, &options, &database), GONIO_OK);
+    gonio_basis *basis = learn(NULL, database, 1);
+    const gonio_basis_view view = gonio_basis_describe(basis);
+    const int depth = full ? 1 : GONIO_PHI_D_BINS;
+    gonio_i_random random;
+    gonio_i_random_seed(&random, 9, 0);
+    while (trials > 0) {
+        const int32_t cell =
+            (int32_t)gonio_i_random_below(&random, full ? GONIO_BINS : GONIO_CELLS);
+        const size_t found = gonio_basis_position(basis, cell);
+        if (view.cell[found] != cell) {
+            assert_int_equal(found, nearest(&view, gonio_bin_from_index(cell * depth)));
+            trials--;
+        }
+    }
+    gonio_basis_free(&basis);
+    gonio_database_free(&database);
+}
+
+static bool is_scattered_hole(gonio_bin bin)
+{
+    return bin.phi_d < 3 || bin.phi_d > 120 || (bin.theta_h + 3 * bin.theta_d) % 5 > 1;
+}
+
+static void test_cells_without_data_have_the_nearest(void **state)
+{
+    (void)state;
+    char *folder = support_folder();
+    char a[256], b[256];
+    const char *const holes[2] = {a, b};
+    snprintf(a, sizeof a, "%s/a.binary", folder);
+    snprintf(b, sizeof b, "%s/b.binary", folder);
+    for (int k = 0; k < 2; k++) {
+        gonio_material *material =
+            made_material((made_constant){{1.0 + k, 1.0, 1.0}, is_scattered_hole});
+        assert_int_equal(gonio_material_write_merl(NULL, material, holes[k]), GONIO_OK);
+        gonio_material_free(&material);
+    }
+    assert_nearest(GONIO_BIVARIATE, paths, 60);
+    assert_nearest(GONIO_FULL, paths, 60);
+    assert_nearest(GONIO_BIVARIATE, holes, 500);
+    assert_nearest(GONIO_FULL, holes, 200);
+    support_remove(folder);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_joint),
+        cmocka_unit_test(test_separate),
+        cmocka_unit_test(test_threads_and_subsets_do_not_matter),
+        cmocka_unit_test(test_what_cannot_be_learned),
+        cmocka_unit_test(test_the_file_keeps_everything),
+        cmocka_unit_test(test_row_at_a_centre_is_the_cells_own),
+        cmocka_unit_test(test_cells_without_data_have_the_nearest),
+    };
+    return cmocka_run_group_tests_name("basis", tests, NULL, NULL);
+}

@@ -1,0 +1,316 @@
+/* The context's messages, outputs that appear whole or not at all, random numbers. */
+#include "../support.h"
+
+#include <dirent.h>
+#include <math.h>
+#include <omp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "core/core.h"
+#include "core/output.h"
+#include "core/random.h"
+
+/* ---- context ---- */
+
+static int messages = 0;
+
+static void count_message(void *user, gonio_message_level level, const char *text)
+{
+    (void)user;
+    (void)level;
+    (void)text;
+    messages++;
+}
+
+static void test_a_message_is_one_line(void **state)
+{
+    (void)state;
+    gonio_context *context = support_context();
+    assert_int_equal(gonio_i_fail(context, GONIO_ERROR_DATA, "a\nb\r\x1b[31mc\xc3\xa9"),
+                     GONIO_ERROR_DATA);
+    assert_string_equal(support_message(), "a?b??[31mc\xc3\xa9");
+    assert_int_equal(gonio_i_fail(NULL, GONIO_ERROR_IO, "nobody listens"), GONIO_ERROR_IO);
+    gonio_context_free(&context);
+    assert_null(context);
+}
+
+static void test_a_team_tells_its_first_error_only(void **state)
+{
+    (void)state;
+    gonio_context *context = NULL;
+    const gonio_context_options options = {.message = count_message, .threads = 2};
+    assert_int_equal(gonio_context_create(&context, &options), GONIO_OK);
+    for (int time = 1; time <= 2; time++) {
+        gonio_context *team = gonio_i_team_begin(context);
+        gonio_context *inner = gonio_i_team_begin(team);
+        messages = 0;
+#pragma omp parallel for num_threads(4)
+        for (int k = 0; k < 100; k++) {
+            gonio_i_fail(k % 2 ? inner : team, GONIO_ERROR_IO, "error %d", k);
+        }
+        assert_int_equal(messages, 1);
+        gonio_i_warn(inner, "warnings all come through");
+        gonio_i_note(team, "and notes");
+        assert_int_equal(messages, 3);
+        assert_int_equal(gonio_context_threads(team), gonio_context_threads(context));
+        gonio_i_team_end(inner, team);
+        gonio_i_team_end(team, context);
+    }
+    assert_null(gonio_i_team_begin(NULL));
+    gonio_context_free(&context);
+}
+
+static int stop_at_half(void *user, const char *task, double fraction)
+{
+    (void)user;
+    (void)task;
+    return fraction >= 0.5;
+}
+
+static void test_a_team_can_be_cancelled(void **state)
+{
+    (void)state;
+    gonio_context *context = NULL;
+    const gonio_context_options options = {.progress = stop_at_half};
+    assert_int_equal(gonio_context_create(&context, &options), GONIO_OK);
+    gonio_context *team = gonio_i_team_begin(context);
+    assert_int_equal(gonio_i_progress(team, "work", 0.2), GONIO_OK);
+    assert_int_equal(gonio_i_progress(team, "work", 0.7), GONIO_ERROR_CANCELLED);
+    assert_int_equal(gonio_i_progress(context, "work", 0.3), GONIO_ERROR_CANCELLED);
+    gonio_i_team_end(team, context);
+    gonio_context_free(&context);
+}
+
+static void test_threads(void **state)
+{
+    (void)state;
+    gonio_context *context = NULL;
+    gonio_context_options options = {.threads = 1000000};
+    assert_int_equal(gonio_context_create(&context, &options), GONIO_OK);
+    assert_true(gonio_context_threads(context) <= 16 * omp_get_num_procs());
+    gonio_context_free(&context);
+    options.threads = 2;
+    assert_int_equal(gonio_context_create(&context, &options), GONIO_OK);
+    assert_int_equal(gonio_context_threads(context), 2);
+    gonio_context_free(&context);
+    options.threads = -1;
+    assert_int_equal(gonio_context_create(&context, &options), GONIO_ERROR_ARGUMENT);
+    assert_int_equal(gonio_context_threads(NULL), omp_get_num_procs());
+}
+
+static void test_names(void **state)
+{
+    (void)state;
+    static const char *const cases[][2] = {
+        {"gold.binary", "gold"}, {"a/b.c/gold.v2.h5", "gold.v2"}, {"/.hidden", ".hidden"}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        char *name = gonio_i_base_name(cases[k][0], false);
+        assert_string_equal(name, cases[k][1]);
+        free(name);
+    }
+    assert_string_equal(gonio_status_text(GONIO_ERROR_MEMORY), "out of memory");
+    assert_string_equal(gonio_status_text(-1), "unknown status");
+    assert_string_equal(gonio_status_text(1000), "unknown status");
+}
+
+/* ---- outputs ---- */
+
+static int entries_in(const char *folder)
+{
+    int count = 0;
+    DIR *directory = opendir(folder);
+    assert_non_null(directory);
+    while (readdir(directory) != NULL) {
+        count++;
+    }
+    closedir(directory);
+    return count - 2; /* . and .. */
+}
+
+static void assert_contents(const char *path, const char *expected)
+{
+    char text[64] = "";
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    const size_t size = fread(text, 1, sizeof text - 1, file);
+    fclose(file);
+    text[size] = '\0';
+    assert_string_equal(text, expected);
+}
+
+static gonio_status write_output(const char *path, const char *text, gonio_status status)
+{
+    gonio_i_output output;
+    const gonio_status opened = gonio_i_output_open(NULL, path, &output);
+    if (opened != GONIO_OK) {
+        return opened;
+    }
+    assert_int_equal(gonio_i_output_write(NULL, &output, text, strlen(text)), GONIO_OK);
+    return gonio_i_output_close(NULL, &output, status);
+}
+
+static void test_an_output_appears_whole_or_not_at_all(void **state)
+{
+    (void)state;
+    char *folder = support_folder();
+    char path[256], link[256];
+    snprintf(path, sizeof path, "%s/file", folder);
+    snprintf(link, sizeof link, "%s/link", folder);
+
+    gonio_i_output output;
+    assert_int_equal(gonio_i_output_open(NULL, path, &output), GONIO_OK);
+    assert_int_equal(gonio_i_output_write(NULL, &output, "ab..ef", 6), GONIO_OK);
+    assert_int_equal(gonio_i_output_write_at(NULL, &output, "cd", 2, 2), GONIO_OK);
+    assert_int_equal(access(path, F_OK), -1); /* not before it is whole */
+    assert_int_equal(gonio_i_output_close(NULL, &output, GONIO_OK), GONIO_OK);
+    assert_contents(path, "abcdef");
+    assert_int_equal(entries_in(folder), 1);
+
+    assert_int_equal(write_output(path, "half", GONIO_ERROR_DATA), GONIO_ERROR_DATA);
+    assert_contents(path, "abcdef");
+    assert_int_equal(entries_in(folder), 1);
+
+    assert_int_equal(write_output(path, "new", GONIO_OK), GONIO_OK);
+    assert_contents(path, "new");
+
+    assert_int_equal(symlink("file", link), 0);
+    assert_int_equal(write_output(link, "through", GONIO_OK), GONIO_OK);
+    assert_contents(path, "through");
+    assert_int_equal(entries_in(folder), 2);
+    support_remove(folder);
+}
+
+static void test_outputs_that_cannot_be(void **state)
+{
+    (void)state;
+    char *folder = support_folder();
+    char nowhere[256];
+    gonio_i_output output;
+    gonio_context *context = support_context();
+    snprintf(nowhere, sizeof nowhere, "%s/nowhere/file", folder);
+    assert_int_equal(gonio_i_output_open(context, nowhere, &output), GONIO_ERROR_IO);
+    assert_non_null(strstr(support_message(), nowhere));
+    assert_int_equal(gonio_i_output_open(context, folder, &output), GONIO_ERROR_IO);
+    assert_non_null(strstr(support_message(), "Is a directory"));
+    if (access("/dev/full", W_OK) == 0) {
+        assert_int_equal(gonio_i_output_open(context, "/dev/full", &output), GONIO_OK);
+        assert_int_equal(gonio_i_output_write(context, &output, "x", 1), GONIO_ERROR_IO);
+        assert_int_equal(gonio_i_output_close(context, &output, GONIO_ERROR_IO), GONIO_ERROR_IO);
+    }
+    assert_int_equal(entries_in(folder), 0);
+    gonio_context_free(&context);
+    support_remove(folder);
+}
+
+/* ---- random numbers ---- */
+
+/* The generator's published answers, and those of an independent implementation of the seeding. */
+static void test_known_random_numbers(void **state)
+{
+    (void)state;
+    gonio_i_random random = {{1, 2, 3, 4}};
+    assert_true(gonio_i_random_next(&random) == UINT64_C(11520));
+    assert_true(gonio_i_random_next(&random) == UINT64_C(0));
+    assert_true(gonio_i_random_next(&random) == UINT64_C(1509978240));
+    assert_true(gonio_i_random_next(&random) == UINT64_C(1215971899390074240));
+    static const struct {
+        uint64_t seed, stream, first;
+    } seeds[] = {{0, 0, UINT64_C(0xfb5405f7bd79c540)},
+                 {2023, 0, UINT64_C(0x81e94ca48a7ef3b4)},
+                 {2023, 1, UINT64_C(0x1ee853ff7d6b7544)}};
+    for (size_t k = 0; k < sizeof seeds / sizeof *seeds; k++) {
+        gonio_i_random_seed(&random, seeds[k].seed, seeds[k].stream);
+        assert_true(gonio_i_random_next(&random) == seeds[k].first);
+    }
+}
+
+/* Mean and variance of a million numbers, within five standard errors. */
+static void test_moments(void **state)
+{
+    (void)state;
+    enum { COUNT = 1000000 };
+    gonio_i_random random;
+    double uniform[2] = {0.0, 0.0};
+    double normal[2] = {0.0, 0.0};
+    gonio_i_random_seed(&random, 11, 0);
+    for (int k = 0; k < COUNT; k++) {
+        const double u = gonio_i_random_uniform(&random);
+        const double z = gonio_i_random_normal(&random);
+        assert_true(u > 0.0 && u < 1.0);
+        assert_true(isfinite(z));
+        uniform[0] += u / COUNT;
+        uniform[1] += (u - 0.5) * (u - 0.5) / COUNT;
+        normal[0] += z / COUNT;
+        normal[1] += z * z / COUNT;
+    }
+    assert_true(fabs(uniform[0] - 0.5) < 5.0 * 0.289 / 1000.0);
+    assert_true(fabs(uniform[1] - 1.0 / 12.0) < 5.0 * 0.0745 / 1000.0);
+    assert_true(fabs(normal[0]) < 5.0 / 1000.0);
+    assert_true(fabs(normal[1] - 1.0) < 5.0 * 1.414 / 1000.0);
+}
+
+/* Each number is drawn as often as any other: chi-squared with 6 degrees of freedom, of which one
+ * in a million is above 38. */
+static void test_below_is_unbiased(void **state)
+{
+    (void)state;
+    enum { COUNT = 700000 };
+    gonio_i_random random;
+    double drawn[7] = {0};
+    double chi_squared = 0.0;
+    gonio_i_random_seed(&random, 12, 0);
+    for (int k = 0; k < COUNT; k++) {
+        drawn[gonio_i_random_below(&random, 7)]++;
+    }
+    for (int k = 0; k < 7; k++) {
+        chi_squared += (drawn[k] - COUNT / 7.0) * (drawn[k] - COUNT / 7.0) / (COUNT / 7.0);
+    }
+    assert_true(chi_squared < 38.0);
+    assert_true(gonio_i_random_below(&random, 1) == 0);
+}
+
+static void test_subsets(void **state)
+{
+    (void)state;
+    enum { N = 12, TRIALS = 60000 };
+    gonio_i_random random;
+    gonio_i_random_seed(&random, 13, 0);
+    for (size_t count = 0; count <= N; count++) {
+        double chosen[N] = {0};
+        for (int trial = 0; trial < TRIALS; trial++) {
+            unsigned char used[N] = {0};
+            size_t subset[N];
+            gonio_i_random_subset(&random, N, count, used, subset);
+            for (size_t k = 0; k < count; k++) {
+                assert_true(subset[k] < N && (k == 0 || subset[k] > subset[k - 1]));
+                chosen[subset[k]]++;
+            }
+        }
+        for (size_t k = 0; k < N; k++) { /* within five standard errors */
+            const double share = (double)count / N;
+            assert_true(fabs(chosen[k] / TRIALS - share) <=
+                        5.0 * sqrt(share * (1.0 - share) / TRIALS));
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_message_is_one_line),
+        cmocka_unit_test(test_a_team_tells_its_first_error_only),
+        cmocka_unit_test(test_a_team_can_be_cancelled),
+        cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_names),
+        cmocka_unit_test(test_an_output_appears_whole_or_not_at_all),
+        cmocka_unit_test(test_outputs_that_cannot_be),
+        cmocka_unit_test(test_known_random_numbers),
+        cmocka_unit_test(test_moments),
+        cmocka_unit_test(test_below_is_unbiased),
+        cmocka_unit_test(test_subsets),
+    };
+    return cmocka_run_group_tests_name("core", tests, NULL, NULL);
+}
