@@ -111,6 +111,19 @@ else
     skip 'tables of 360 phi_d bins: no $REPEAT_ROWS'
 fi
 
+# ---- several materials at once ----
+
+mkdir many
+cp one/r.csv other.csv
+cp other.csv again.csv
+expect_ok reconstruct b.gonio other.csv again.csv -o many
+expect_same many/other.binary many/again.binary
+expect_same many/other.binary one/out.binary
+expect_fail 2 'several READINGS need a folder that exists' reconstruct b.gonio other.csv again.csv -o new
+cp other.csv many/again.csv
+expect_fail 2 'would both become many/again.binary' \
+    reconstruct b.gonio again.csv many/again.csv -o many
+
 # ---- JSON ----
 
 json() { # FIELD ARGUMENTS...: valid JSON in which the field is not null
