@@ -31,7 +31,15 @@ chmod 555 closed
 chmod 444 protected
 every_writer 1 'nowhere/x: cannot write: No such file or directory' nowhere/x
 every_writer 1 'm.binary/x: cannot write: Not a directory' m.binary/x
-every_writer 1 'folder: cannot write: Is a directory' folder
+# A reconstruction goes into the folder, under its readings' name; the others want a file.
+mkdir folder/r.binary
+expect_fail 1 'folder/r.binary: cannot write: Is a directory' reconstruct b.gonio r.csv -o folder
+rmdir folder/r.binary
+expect_ok reconstruct b.gonio r.csv -o folder
+rm folder/r.binary
+mkdir folder/r.binary
+every_writer 1 ': cannot write: Is a directory' folder
+rmdir folder/r.binary
 every_writer 1 '/dev/full: cannot write: No space left on device' /dev/full
 if permissions_apply; then
     runner=as_other_user

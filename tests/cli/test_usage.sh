@@ -38,7 +38,7 @@ expect_fail 2 'one BASIS at most, not 2' plan b.gonio b.gonio -o x.csv
 expect_fail 2 'PLAN and MATERIAL are needed' measure p.csv -o x.csv
 expect_fail 2 'PLAN and MATERIAL are needed' measure p.csv a b -o x.csv
 expect_fail 2 'READINGS, and before it a BASIS' reconstruct -o x.binary
-expect_fail 2 'READINGS, and before it a BASIS' reconstruct a b c -o x.binary
+expect_fail 2 'several READINGS need a folder that exists' reconstruct a b c -o x.binary
 expect_fail 2 'REFERENCE and at least one OTHER are needed' compare
 expect_fail 2 'REFERENCE and at least one OTHER are needed' compare atlas:white-linen
 expect_fail 2 'no arguments are needed' demo all
