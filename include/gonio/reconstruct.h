@@ -30,8 +30,9 @@ typedef struct gonio_reconstruction {
 
 /* Solves for the coefficients.
  * Errors: _UNDETERMINED if the readings have fewer than K independent rows (the message says how
- * many and what to do); _MISMATCH if they were planned with another basis; _ARGUMENT (K more than
- * the basis has); _DATA (a planned channel was not read). */
+ * many and what to do); _MISMATCH if they were planned with another basis, or for more components
+ * than the basis has; _ARGUMENT (options->components more than the basis has); _DATA (a planned
+ * channel was not read). */
 GONIO_API gonio_status gonio_reconstruct(gonio_context *context, const gonio_basis *basis,
                                          const gonio_readings *readings,
                                          const gonio_reconstruct_options *options,

@@ -71,7 +71,7 @@ static gonio_status decompose(search *s)
         }
     }
     if (status == GONIO_OK && k > 1 && isfinite(s->condition_number)) {
-        status = gonio_i_filter_set(&s->filter, s->gram, s->d, bound(s));
+        gonio_i_filter_set(&s->filter, s->gram, s->d, bound(s));
     }
     return status;
 }

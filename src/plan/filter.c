@@ -76,16 +76,17 @@ GONIO_I_VECTORISED static void fill_resolvent(size_t k, const double *restrict q
     }
 }
 
-gonio_status gonio_i_filter_set(gonio_i_filter *f, const double *q, const double *d, double mu)
+void gonio_i_filter_set(gonio_i_filter *f, const double *q, const double *d, double mu)
 {
     const size_t k = f->problem->components;
     const size_t padded = f->panels->components;
     /* Close to the pole single precision would decide little; a smaller mu only lets more pass. */
     fill_resolvent(k, q, d, fmin(mu, d[0] * (1.0 - 1e-3)), f->resolvent);
     memcpy(f->factor, f->resolvent, k * k * sizeof *f->factor);
-    const gonio_status status = gonio_i_cholesky(f->problem->context, f->factor, k);
-    if (status != GONIO_OK) {
-        return status;
+    f->batch = 0;
+    f->blind = gonio_i_cholesky(NULL, f->factor, k) != GONIO_OK;
+    if (f->blind) {
+        return;
     }
     memset(f->columns, 0, padded * padded * sizeof *f->columns);
     for (size_t a = 0; a < k; a++) {
@@ -94,12 +95,10 @@ gonio_status gonio_i_filter_set(gonio_i_filter *f, const double *q, const double
         }
     }
     f->gain_margin = ((double)padded + 4.0) * unit * sqrt(dot(f->factor, f->factor, k * k));
-    f->batch = 0;
 #pragma omp parallel for schedule(static) num_threads(f->threads)
     for (size_t chunk = 0; chunk < chunk_count(f); chunk++) {
         gonio_i_panels_gain(f->panels, chunk * CHUNK, chunk_end(f, chunk), f->columns, f->gain);
     }
-    return GONIO_OK;
 }
 
 /* Bv of a batch of positions as padded single-precision columns, with what goes with each. */
@@ -141,11 +140,11 @@ size_t gonio_i_filter_survivors(gonio_i_filter *f, const double *x, size_t posit
                                 size_t *survivors)
 {
     const gonio_i_selection_problem *p = f->problem;
-    if (position < f->first || position >= f->first + f->batch) {
+    if (!f->blind && (position < f->first || position >= f->first + f->batch)) {
         load_batch(f, x, position);
     }
     const size_t j = position - f->first;
-    if (f->loss[j] > -1e-6) { /* all pass */
+    if (f->blind || f->loss[j] > -1e-6) { /* all pass */
         for (size_t u = 0; u < p->rows; u++) {
             survivors[u] = u;
         }

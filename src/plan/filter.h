@@ -34,6 +34,7 @@ typedef struct gonio_i_filter {
     size_t first;        /* position of the first w */
     size_t batch;        /* positions whose w are there; 0 if none */
     unsigned char *pass; /* [rows] */
+    bool blind;          /* G is too near singular for the filter: everything passes */
 } gonio_i_filter;
 
 /* The panels hold the problem's rows and must outlive the filter. */
@@ -43,8 +44,7 @@ void gonio_i_filter_free(gonio_i_filter *filter);
 
 /* Sets G and mu, from the eigenvectors (rows of q) and eigenvalues d (ascending) of G. mu is
  * lowered if it is not clearly below d[0]. */
-gonio_status gonio_i_filter_set(gonio_i_filter *filter, const double *q, const double *d,
-                                double mu);
+void gonio_i_filter_set(gonio_i_filter *filter, const double *q, const double *d, double mu);
 
 /* Rows that pass at a position, ascending, into survivors[rows + 1]; returns how many. x: the
  * chosen rows, [count][K]. */

@@ -195,6 +195,30 @@ static void test_same_swaps(void **state)
     free(kappas);
 }
 
+/* Rows whose components differ by many orders of magnitude: next to singular, and no reason to
+ * fail. */
+static void test_nearly_singular(void **state)
+{
+    (void)state;
+    enum { ROWS = 80, K = 6, N = 7 };
+    static const double decades[] = {1.0, 2.0, 2.4};
+    for (size_t d = 0; d < sizeof decades / sizeof *decades; d++) {
+        double *v = make_rows(ROWS, K, 21);
+        for (size_t i = 0; i < (size_t)ROWS * K; i++) {
+            v[i] *= pow(10.0, -0.5 * decades[d] * (double)(i % K));
+        }
+        size_t chosen[N];
+        gonio_selection_report report;
+        gonio_plan_options options;
+        gonio_plan_options_default(&options);
+        options.count = N;
+        assert_int_equal(gonio_plan_select(NULL, v, ROWS, K, &options, chosen, &report), GONIO_OK);
+        assert_true(isfinite(report.condition_number));
+        free(report.history);
+        free(v);
+    }
+}
+
 static void test_any_number_of_threads(void **state)
 {
     (void)state;
@@ -268,6 +292,7 @@ int main(void)
         cmocka_unit_test(test_inertia),
         cmocka_unit_test(test_local_optimum),
         cmocka_unit_test(test_same_swaps),
+        cmocka_unit_test(test_nearly_singular),
         cmocka_unit_test(test_any_number_of_threads),
     };
     return cmocka_run_group_tests_name("condition plan", tests, NULL, NULL);
