@@ -286,7 +286,7 @@ static double synthetic_plan_seconds(size_t rows, size_t k, size_t n)
         options.seed = (uint64_t)run;
         options.keep_history = false;
         const double start = now();
-        check(gonio_plan_select(one, v, rows, k, &options, chosen, &found) == GONIO_OK, "planning");
+        check(gonio_plan_select(one, v, rows, k, k, &options, chosen, &found) == GONIO_OK, "planning");
         seconds[run] = now() - start;
     }
     free(chosen);

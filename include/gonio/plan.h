@@ -79,11 +79,13 @@ typedef struct gonio_selection_report {
     gonio_plan_step *history; /* the caller's; released with free() */
 } gonio_selection_report;
 
-/* Chooses n of `rows` rows of a matrix V[rows][components], ascending, into chosen[n]; the engine
- * under gonio_plan_create, for rows that come from elsewhere. */
+/* Chooses n of `rows` rows of a matrix V[rows][leading], of which the first `components` of each
+ * row count, ascending, into chosen[n]; the engine under gonio_plan_create, for rows that come from
+ * elsewhere. V is neither copied nor changed. */
 GONIO_API gonio_status gonio_plan_select(gonio_context *context, const double *vectors, size_t rows,
-                                         size_t components, const gonio_plan_options *options,
-                                         size_t *chosen, gonio_selection_report *report);
+                                         size_t leading, size_t components,
+                                         const gonio_plan_options *options, size_t *chosen,
+                                         gonio_selection_report *report);
 
 /* kappa of X'X for the rows chosen[n] of V[rows][leading]: the first `components` of each row.
  * Infinity if singular to working precision. */

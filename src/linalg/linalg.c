@@ -116,7 +116,7 @@ gonio_status gonio_i_cholesky(gonio_context *context, double *c, size_t n)
     return status;
 }
 
-gonio_status gonio_i_inverse_gram(gonio_context *context, const double *v, size_t n,
+gonio_status gonio_i_inverse_gram(gonio_context *context, const double *v, size_t leading, size_t n,
                                   const size_t *rows, size_t count, double *inverse)
 {
     double *x = gonio_i_allocate(context, count * n, sizeof *x);
@@ -124,7 +124,7 @@ gonio_status gonio_i_inverse_gram(gonio_context *context, const double *v, size_
         return GONIO_ERROR_MEMORY;
     }
     for (size_t j = 0; j < count; j++) {
-        memcpy(x + j * n, v + rows[j] * n, n * sizeof *x);
+        memcpy(x + j * n, v + rows[j] * leading, n * sizeof *x);
     }
     gonio_status status = gonio_i_gram_rows(context, x, count, n, n, inverse);
     free(x);

@@ -34,8 +34,8 @@ gonio_status gonio_i_eigen(gonio_context *context, double *a, size_t n, bool vec
  * above the diagonal. */
 gonio_status gonio_i_cholesky(gonio_context *context, double *c, size_t n);
 
-/* (X'X)^-1 (n x n, both triangles) of `count` rows of V (n values each). */
-gonio_status gonio_i_inverse_gram(gonio_context *context, const double *v, size_t n,
+/* (X'X)^-1 (n x n, both triangles) of `count` rows of V (n values each, `leading` apart). */
+gonio_status gonio_i_inverse_gram(gonio_context *context, const double *v, size_t leading, size_t n,
                                   const size_t *rows, size_t count, double *inverse);
 
 /* A (rows x n, row-major) becomes A R^-1, with R upper triangular from the Cholesky factorisation

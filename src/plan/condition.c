@@ -37,7 +37,7 @@ typedef struct search {
     double *d;            /* [K] eigenvalues, ascending */
     double condition_number;
     gonio_i_filter filter;
-    size_t *survivors; /* [rows + 1] */
+    size_t *survivors; /* [GONIO_I_CHUNK + 1] */
     gonio_i_random random;
     uint64_t tests;   /* that a search without the filter would have made */
     double share;     /* how far this search is, 0 to 1 */
@@ -94,24 +94,46 @@ static bool wins(search *s, size_t position, size_t row)
         return false;
     }
     const size_t k = s->problem->components;
-    rotate(k, s->columns, s->problem->vectors + row * k, s->z);
+    rotate(k, s->columns, gonio_i_row(s->problem, row), s->z);
     const gonio_i_exchange exchange = {s->d, s->y + position * k, s->z, k};
     return gonio_i_exchange_beats(&exchange, s->condition_number * (1.0 - least_gain));
 }
 
+/* The first of the rows first .. last - 1 that lowers kappa at a position; `rows` if none. They are
+ * in a chunk that the filter has looked at. */
+static size_t first_winner_among(search *s, size_t position, size_t first, size_t last)
+{
+    const size_t count = gonio_i_filter_survivors(&s->filter, position, first, last, s->survivors);
+    for (size_t k = 0; k < count; k++) {
+        if (wins(s, position, s->survivors[k])) {
+            return s->survivors[k];
+        }
+    }
+    return s->problem->rows;
+}
+
 /* The first row in the cyclic order from `from` on that lowers kappa at a position; `rows` if none.
- */
+ * The filter looks at a chunk for each thread, then twice as many, and so on. */
 static size_t first_winner(search *s, size_t position, size_t from)
 {
-    const size_t count = gonio_i_filter_survivors(&s->filter, s->x, position, s->survivors);
-    size_t first = 0;
-    while (first < count && s->survivors[first] < from) {
-        first++;
-    }
     const size_t rows = s->problem->rows;
-    for (size_t k = 0; k < count; k++) {
-        const size_t row = s->survivors[(first + k) % count];
-        if (wins(s, position, row)) {
+    const size_t chunks = gonio_i_panels_chunks(s->filter.panels);
+    const size_t threads = (size_t)s->filter.threads;
+    size_t looked = 0;
+    gonio_i_filter_turn_to(&s->filter, s->x, position);
+    for (size_t step = 0; step <= chunks; step++) { /* the chunk with `from` in two parts */
+        const size_t chunk = (from / GONIO_I_CHUNK + step) % chunks;
+        if (step == looked) {
+            const size_t ahead = threads > looked ? threads : looked;
+            const size_t more = threads == 1 ? 1 : ahead < chunks ? ahead : chunks;
+            gonio_i_filter_look(&s->filter, chunk, more);
+            looked += more;
+        }
+        const size_t begin = chunk * GONIO_I_CHUNK;
+        const size_t end = begin + GONIO_I_CHUNK < rows ? begin + GONIO_I_CHUNK : rows;
+        const size_t row =
+            first_winner_among(s, position, step == 0 ? from : begin, step == chunks ? from : end);
+        if (row < rows) {
             s->tests += (row + rows - from) % rows + 1;
             return row;
         }
@@ -244,7 +266,7 @@ static bool allocate_search(const gonio_i_selection_problem *problem, const goni
         .gram = gonio_i_allocate(context, k * k, sizeof *s->gram),
         .columns = gonio_i_allocate(context, k * k, sizeof *s->columns),
         .d = gonio_i_allocate(context, k, sizeof *s->d),
-        .survivors = gonio_i_allocate(context, problem->rows + 1, sizeof *s->survivors),
+        .survivors = gonio_i_allocate(context, GONIO_I_CHUNK + 1, sizeof *s->survivors),
     };
     return gonio_i_filter_allocate(problem, panels, threads, &s->filter) && s->chosen != NULL &&
            s->taken != NULL && s->x != NULL && s->y != NULL && s->z != NULL && s->gram != NULL &&
@@ -359,8 +381,7 @@ static gonio_status select_by_condition(const gonio_i_selection_problem *problem
                   .best = -1,
                   .selection = selection};
     gonio_status status = GONIO_ERROR_MEMORY;
-    if (all.histories != NULL && gonio_i_panels_make(context, problem->vectors, problem->rows,
-                                                     problem->components, &panels)) {
+    if (all.histories != NULL && gonio_i_panels_make(problem, &panels)) {
         run_all(&all);
         status = all.status;
     }

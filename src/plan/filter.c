@@ -6,11 +6,21 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <omp.h>
+
 #include "../linalg/linalg.h"
 
-enum { CHUNK = 64 }; /* panels worked on at a time by one thread */
-
 static const double unit = FLT_EPSILON / 2.0; /* of rounding */
+
+static bool allocate_scratch(gonio_i_filter *f)
+{
+    f->scratch = gonio_i_allocate(f->problem->context, (size_t)f->threads, sizeof *f->scratch);
+    bool failed = f->scratch == NULL;
+    for (int t = 0; t < f->threads && !failed; t++) {
+        f->scratch[t] = gonio_i_panels_scratch(f->panels, &failed);
+    }
+    return !failed;
+}
 
 bool gonio_i_filter_allocate(const gonio_i_selection_problem *problem, const gonio_i_panels *panels,
                              int threads, gonio_i_filter *f)
@@ -18,42 +28,41 @@ bool gonio_i_filter_allocate(const gonio_i_selection_problem *problem, const gon
     gonio_context *context = problem->context;
     const size_t k = problem->components;
     const size_t padded = panels->components;
+    const size_t chunks = gonio_i_panels_chunks(panels);
     *f = (gonio_i_filter){.problem = problem, .panels = panels, .threads = threads};
-    f->rows = panels->count * GONIO_I_PANEL;
     f->resolvent = gonio_i_allocate(context, k * k, sizeof *f->resolvent);
     f->factor = gonio_i_allocate(context, k * k, sizeof *f->factor);
-    f->gain = gonio_i_allocate(context, f->rows, sizeof *f->gain);
-    f->w = gonio_i_allocate(context, GONIO_I_COLUMNS * f->rows, sizeof *f->w);
-    f->columns = gonio_i_allocate(context, padded * padded, sizeof *f->columns);
-    f->pass = gonio_i_allocate(context, f->rows, 1);
-    return f->resolvent != NULL && f->factor != NULL && f->gain != NULL && f->w != NULL &&
-           f->columns != NULL && f->pass != NULL;
+    f->l = gonio_i_allocate(context, padded * padded, sizeof *f->l);
+    f->columns = gonio_i_allocate(context, padded * GONIO_I_COLUMNS, sizeof *f->columns);
+    f->gain = gonio_i_allocate(context, panels->rows, sizeof *f->gain);
+    f->pass = gonio_i_allocate(context, GONIO_I_COLUMNS * panels->rows, 1);
+    f->gain_is_set = gonio_i_allocate(context, chunks, sizeof *f->gain_is_set);
+    f->batch_is_set = gonio_i_allocate(context, chunks, sizeof *f->batch_is_set);
+    return allocate_scratch(f) && f->resolvent != NULL && f->factor != NULL && f->l != NULL &&
+           f->columns != NULL && f->gain != NULL && f->pass != NULL && f->gain_is_set != NULL &&
+           f->batch_is_set != NULL;
 }
 
 void gonio_i_filter_free(gonio_i_filter *f)
 {
+    for (int t = 0; f->scratch != NULL && t < f->threads; t++) {
+        free(f->scratch[t]);
+    }
+    free(f->scratch);
     free(f->resolvent);
     free(f->factor);
-    free(f->gain);
-    free(f->w);
+    free(f->l);
     free(f->columns);
+    free(f->gain);
     free(f->pass);
-}
-
-static size_t chunk_count(const gonio_i_filter *f)
-{
-    return (f->panels->count + CHUNK - 1) / CHUNK;
-}
-
-static size_t chunk_end(const gonio_i_filter *f, size_t chunk)
-{
-    const size_t end = (chunk + 1) * CHUNK;
-    return end < f->panels->count ? end : f->panels->count;
+    free(f->gain_is_set);
+    free(f->batch_is_set);
 }
 
 static double dot(const double *a, const double *b, size_t n)
 {
     double sum = 0.0;
+#pragma omp simd reduction(+ : sum)
     for (size_t k = 0; k < n; k++) {
         sum += a[k] * b[k];
     }
@@ -83,79 +92,97 @@ void gonio_i_filter_set(gonio_i_filter *f, const double *q, const double *d, dou
     /* Close to the pole single precision would decide little; a smaller mu only lets more pass. */
     fill_resolvent(k, q, d, fmin(mu, d[0] * (1.0 - 1e-3)), f->resolvent);
     memcpy(f->factor, f->resolvent, k * k * sizeof *f->factor);
-    f->batch = 0;
     f->blind = gonio_i_cholesky(NULL, f->factor, k) != GONIO_OK;
-    if (f->blind) {
-        return;
-    }
-    memset(f->columns, 0, padded * padded * sizeof *f->columns);
     for (size_t a = 0; a < k; a++) {
         for (size_t b = 0; b <= a; b++) {
-            f->columns[a * padded + b] = (float)f->factor[a * k + b];
+            f->l[a * padded + b] = (float)f->factor[a * k + b];
         }
     }
-    f->gain_margin = ((double)padded + 4.0) * unit * sqrt(dot(f->factor, f->factor, k * k));
-#pragma omp parallel for schedule(static) num_threads(f->threads)
-    for (size_t chunk = 0; chunk < chunk_count(f); chunk++) {
-        gonio_i_panels_gain(f->panels, chunk * CHUNK, chunk_end(f, chunk), f->columns, f->gain);
-    }
+    f->gain_margin =
+        (float)(((double)padded + 4.0) * unit * sqrt(dot(f->factor, f->factor, k * k)) * 1.001);
+    memset(f->gain_is_set, 0, gonio_i_panels_chunks(f->panels) * sizeof *f->gain_is_set);
+    f->batch = 0;
+    f->fresh = true;
 }
 
-/* Bv of a batch of positions as padded single-precision columns, with what goes with each. */
-static void fill_columns(gonio_i_filter *f, const double *x)
+/* Bv of one position as a column in single precision, with what goes with it. */
+static void fill_column(gonio_i_filter *f, const double *v, size_t j)
 {
     const size_t k = f->problem->components;
-    memset(f->columns, 0, f->panels->components * GONIO_I_COLUMNS * sizeof *f->columns);
-    for (size_t j = 0; j < f->batch; j++) {
-        const double *v = x + (f->first + j) * k;
-        double squares = 0.0;
-        f->loss[j] = 1.0;
-        for (size_t a = 0; a < k; a++) {
-            const double bv = dot(f->resolvent + a * k, v, k);
-            f->columns[a * GONIO_I_COLUMNS + j] = (float)bv;
-            f->loss[j] -= v[a] * bv;
-            squares += bv * bv;
-        }
-        const double product = ((double)f->panels->components + 4.0) * unit * sqrt(squares);
-        f->margins[j] = (gonio_i_margins){(float)(f->gain_margin * (1.0 + 1e-6)),
-                                          (float)(product * (1.0 + 1e-6))};
+    double squares = 0.0;
+    double loss = -1.0;
+    for (size_t a = 0; a < k; a++) {
+        const double bv = dot(f->resolvent + a * k, v, k);
+        f->columns[a * f->test.columns + j] = (float)bv;
+        loss += v[a] * bv;
+        squares += bv * bv;
     }
+    f->all_pass[j] = f->blind || loss < 1e-6;
+    f->test.loss[j] = (float)(loss * (1.0 - 1e-6));
+    f->test.margin[j] =
+        (float)(((double)f->panels->components + 4.0) * unit * sqrt(squares) * 1.001);
 }
 
-/* Computes the w of some positions from this one on. */
-static void load_batch(gonio_i_filter *f, const double *x, size_t position)
+void gonio_i_filter_turn_to(gonio_i_filter *f, const double *x, size_t position)
 {
-    const gonio_i_selection_problem *p = f->problem;
+    const size_t k = f->problem->components;
+    if (position >= f->first && position < f->first + f->batch) {
+        return;
+    }
+    const size_t columns = f->fresh ? 1 : GONIO_I_COLUMNS;
+    const size_t rest = f->problem->count - position;
+    f->fresh = false;
     f->first = position;
-    f->batch = p->count - position < GONIO_I_COLUMNS ? p->count - position : GONIO_I_COLUMNS;
-    fill_columns(f, x);
-#pragma omp parallel for schedule(static) num_threads(f->threads)
-    for (size_t chunk = 0; chunk < chunk_count(f); chunk++) {
-        gonio_i_panels_products(f->panels, chunk * CHUNK, chunk_end(f, chunk), f->columns, f->rows,
-                                f->w);
+    f->batch = rest < columns ? rest : columns;
+    f->test = (gonio_i_test){.columns = columns, .c = f->columns};
+    memset(f->columns, 0, f->panels->components * columns * sizeof *f->columns);
+    for (size_t j = 0; j < f->batch; j++) {
+        fill_column(f, x + (position + j) * k, j);
+    }
+    memset(f->batch_is_set, 0, gonio_i_panels_chunks(f->panels) * sizeof *f->batch_is_set);
+}
+
+static void look_at(gonio_i_filter *f, size_t index, float *scratch)
+{
+    const gonio_i_chunk chunk = gonio_i_panels_chunk(f->panels, index, scratch);
+    if (!f->gain_is_set[index]) {
+        gonio_i_chunk_gain(&chunk, f->l, f->gain_margin, f->gain + chunk.first);
+        f->gain_is_set[index] = true;
+    }
+    gonio_i_test test = f->test;
+    test.gain = f->gain + chunk.first;
+    gonio_i_chunk_mark(&chunk, &test, f->pass + chunk.first, f->panels->rows);
+    f->batch_is_set[index] = true;
+}
+
+void gonio_i_filter_look(gonio_i_filter *f, size_t chunk, size_t count)
+{
+    const size_t chunks = gonio_i_panels_chunks(f->panels);
+    size_t missing = 0;
+    for (size_t step = 0; step < count; step++) {
+        missing += !f->batch_is_set[(chunk + step) % chunks];
+    }
+    if (f->blind || missing == 0) {
+        return;
+    }
+#pragma omp parallel for schedule(dynamic) num_threads(f->threads) if (missing > 1)
+    for (size_t step = 0; step < count; step++) {
+        const size_t index = (chunk + step) % chunks;
+        if (!f->batch_is_set[index]) {
+            look_at(f, index, f->scratch[omp_get_thread_num()]);
+        }
     }
 }
 
-size_t gonio_i_filter_survivors(gonio_i_filter *f, const double *x, size_t position,
+size_t gonio_i_filter_survivors(const gonio_i_filter *f, size_t position, size_t first, size_t last,
                                 size_t *survivors)
 {
-    const gonio_i_selection_problem *p = f->problem;
-    if (!f->blind && (position < f->first || position >= f->first + f->batch)) {
-        load_batch(f, x, position);
-    }
     const size_t j = position - f->first;
-    if (f->blind || f->loss[j] > -1e-6) { /* all pass */
-        for (size_t u = 0; u < p->rows; u++) {
-            survivors[u] = u;
-        }
-        return p->rows;
-    }
-    gonio_i_mark(f->rows, f->gain, f->w + j * f->rows, f->panels->length, (float)f->loss[j],
-                 f->margins[j], f->pass);
+    const unsigned char *pass = f->pass + j * f->panels->rows;
     size_t count = 0;
-    for (size_t u = 0; u < p->rows; u++) {
+    for (size_t u = first; u < last; u++) {
         survivors[count] = u;
-        count += f->pass[u];
+        count += f->all_pass[j] || pass[u];
     }
     return count;
 }

@@ -4,8 +4,9 @@
  *
  * With G = X'X, B = (G - mu)^-1 = L L', v the row at the position and u a candidate, Sylvester's
  * law on G - vv' + uu' - mu (inertia.h) reads, in terms of gain b_u = 1 + u'Bu = 1 + |L'u|^2, loss
- * p_v = 1 - v'Bv,   w = u'Bv: u passes if and only if p_v b_u + w^2 > 0   (p_v > 0: all do). The
- * gains of all rows are computed once for each G, the w for some positions at a time.
+ * p_v = v'Bv - 1,   w = u'Bv: u passes if and only if w^2 > p_v b_u   (p_v < 0: all do). Rows are
+ * looked at a chunk at a time, as the search comes to them: the gains of a chunk are computed once
+ * for each G, the w for one position after a swap, and for several once one has failed.
  *
  * All this is done in single precision, with bounds of the rounding errors from
  *   |fl(x'y) - x'y| <= n eps |x| |y|                       (Higham 2002, section 3.1),
@@ -22,19 +23,22 @@ typedef struct gonio_i_filter {
     const gonio_i_selection_problem *problem;
     const gonio_i_panels *panels;
     int threads;
-    size_t rows;       /* padded to whole panels */
+    float **scratch;   /* [threads]: a chunk's panels, where these are not kept */
     double *resolvent; /* B, [K][K] */
     double *factor;    /* L, [K][K] */
-    float *gain;       /* b_u, [rows] */
-    float *w;          /* [GONIO_I_COLUMNS][rows] */
-    float *columns;    /* scratch: L, or the columns of a product, padded */
-    double loss[GONIO_I_COLUMNS];
-    gonio_i_margins margins[GONIO_I_COLUMNS];
-    double gain_margin;
-    size_t first;        /* position of the first w */
-    size_t batch;        /* positions whose w are there; 0 if none */
-    unsigned char *pass; /* [rows] */
-    bool blind;          /* G is too near singular for the filter: everything passes */
+    float *l;          /* L, padded */
+    float *columns;    /* Bv of the batch, padded */
+    float *gain;       /* lower bounds of b_u, [rows] */
+    float gain_margin;
+    unsigned char *pass; /* [GONIO_I_COLUMNS][rows] */
+    gonio_i_test test;   /* of the batch */
+    bool all_pass[GONIO_I_COLUMNS];
+    size_t first;       /* position that the batch begins with */
+    size_t batch;       /* positions in it; 0 if there is none */
+    bool fresh;         /* no position has failed since G was set */
+    bool *gain_is_set;  /* [chunks]: for this G */
+    bool *batch_is_set; /* [chunks]: for this batch */
+    bool blind;         /* G is too near singular for the filter: everything passes */
 } gonio_i_filter;
 
 /* The panels hold the problem's rows and must outlive the filter. */
@@ -46,9 +50,16 @@ void gonio_i_filter_free(gonio_i_filter *filter);
  * lowered if it is not clearly below d[0]. */
 void gonio_i_filter_set(gonio_i_filter *filter, const double *q, const double *d, double mu);
 
-/* Rows that pass at a position, ascending, into survivors[rows + 1]; returns how many. x: the
- * chosen rows, [count][K]. */
-size_t gonio_i_filter_survivors(gonio_i_filter *filter, const double *x, size_t position,
-                                size_t *survivors);
+/* Turns to a position. x: the chosen rows, [count][K]. */
+void gonio_i_filter_turn_to(gonio_i_filter *filter, const double *x, size_t position);
+
+/* Looks at `count` chunks from this one on, cyclically, where that is still to be done: side by
+ * side. */
+void gonio_i_filter_look(gonio_i_filter *filter, size_t chunk, size_t count);
+
+/* Of the rows first .. last - 1, which are in chunks that were looked at, those that pass,
+ * ascending, into survivors[last - first]; returns how many. */
+size_t gonio_i_filter_survivors(const gonio_i_filter *filter, size_t position, size_t first,
+                                size_t last, size_t *survivors);
 
 #endif

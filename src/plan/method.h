@@ -7,18 +7,24 @@
 
 #include "../core/core.h"
 
-/* Choose `count` of the rows of V (rows x components, row-major, contiguous). */
+/* Choose `count` of the rows of V (rows x components, row-major, `stride` values apart). */
 typedef struct gonio_i_selection_problem {
     gonio_context *context;
     const double *vectors;
     size_t rows;
     size_t components;
+    size_t stride;
     size_t count;
     int restarts;
     uint64_t seed;
     bool keep_history;
     const char *start; /* a name that start.h knows */
 } gonio_i_selection_problem;
+
+static inline const double *gonio_i_row(const gonio_i_selection_problem *problem, size_t row)
+{
+    return problem->vectors + row * problem->stride;
+}
 
 typedef struct gonio_i_selection {
     size_t *chosen; /* [count], the caller's; to be filled in ascending */

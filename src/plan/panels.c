@@ -6,42 +6,82 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A panel's row of values as one value (an extension of gcc and clang), so that sums stay in
- * registers. */
-typedef float lanes __attribute__((vector_size(GONIO_I_PANEL * sizeof(float))));
+enum { WIDTH = GONIO_I_PANEL, COLUMNS = GONIO_I_COLUMNS, LANES = 16, HALVES = WIDTH / LANES };
+enum { BLOCK = 4 }; /* rows of L' at a time */
 
-enum { WIDTH = GONIO_I_PANEL, COLUMNS = GONIO_I_COLUMNS };
+/* Half a panel's row of values as one value (an extension of gcc and clang), so that sums stay in
+ * registers. Two halves, so that each broadcast value serves twice. */
+typedef float lanes __attribute__((vector_size(LANES * sizeof(float))));
+typedef int32_t masks __attribute__((vector_size(LANES * sizeof(int32_t))));
+typedef unsigned char flags __attribute__((vector_size(LANES)));
+
+/* More memory than this is not spent on panels. */
+static const size_t most_kept = (size_t)512 << 20;
 
 static size_t round_up(size_t n, size_t multiple)
 {
     return (n + multiple - 1) / multiple * multiple;
 }
 
-bool gonio_i_panels_make(gonio_context *context, const double *vectors, size_t rows,
-                         size_t components, gonio_i_panels *panels)
+/* Values in the panels of `rows` rows. */
+static size_t size_of(const gonio_i_panels *panels, size_t rows)
 {
-    panels->count = (rows + WIDTH - 1) / WIDTH;
-    panels->components = round_up(components, COLUMNS);
-    const size_t stride = panels->components * WIDTH;
-    /* Aligned to a register: the panels are read as such. */
-    panels->values = aligned_alloc(sizeof(lanes), panels->count * stride * sizeof(float));
-    panels->length = gonio_i_allocate(context, panels->count * WIDTH, sizeof *panels->length);
-    if (panels->values == NULL || panels->length == NULL) {
+    return rows * panels->components;
+}
+
+/* ---- layout ---- */
+
+/* A panel from row `first` on, of which there may be fewer than fill it. */
+static void lay_out(const gonio_i_panels *panels, size_t first, float *panel)
+{
+    const gonio_i_selection_problem *p = panels->problem;
+    const size_t rows = first < p->rows ? p->rows - first : 0;
+    const size_t count = rows < WIDTH ? rows : WIDTH;
+    memset(panel, 0, size_of(panels, WIDTH) * sizeof *panel);
+    for (size_t i = 0; i < count; i++) {
+        const double *u = gonio_i_row(p, first + i);
+        for (size_t k = 0; k < p->components; k++) {
+            panel[k * WIDTH + i] = (float)u[k];
+        }
+    }
+}
+
+static float length_of(const double *u, size_t k)
+{
+    double squares = 0.0;
+    for (size_t a = 0; a < k; a++) {
+        squares += u[a] * u[a];
+    }
+    return (float)(sqrt(squares) * (1.0 + 1e-6));
+}
+
+static float *aligned_floats(size_t count)
+{
+    return aligned_alloc(sizeof(lanes), count * sizeof(float));
+}
+
+bool gonio_i_panels_make(const gonio_i_selection_problem *problem, gonio_i_panels *panels)
+{
+    gonio_context *context = problem->context;
+    *panels = (gonio_i_panels){.problem = problem,
+                               .components = round_up(problem->components, BLOCK),
+                               .rows = round_up(problem->rows, WIDTH)};
+    const size_t size = size_of(panels, panels->rows);
+    const bool keep = size <= most_kept / sizeof(float);
+    panels->values = keep ? aligned_floats(size) : NULL;
+    panels->length = aligned_floats(panels->rows);
+    if ((keep && panels->values == NULL) || panels->length == NULL) {
         gonio_i_fail(context, GONIO_ERROR_MEMORY, "out of memory");
         return false;
     }
 #pragma omp parallel for schedule(static) num_threads(gonio_context_threads(context))
-    for (size_t p = 0; p < panels->count; p++) {
-        float *panel = panels->values + p * stride;
-        memset(panel, 0, stride * sizeof *panel);
-        for (size_t i = 0; i < WIDTH && p * WIDTH + i < rows; i++) {
-            const double *u = vectors + (p * WIDTH + i) * components;
-            double squares = 0.0;
-            for (size_t k = 0; k < components; k++) {
-                panel[k * WIDTH + i] = (float)u[k];
-                squares += u[k] * u[k];
-            }
-            panels->length[p * WIDTH + i] = (float)(sqrt(squares) * (1.0 + 1e-6));
+    for (size_t first = 0; first < panels->rows; first += WIDTH) {
+        if (keep) {
+            lay_out(panels, first, panels->values + size_of(panels, first));
+        }
+        for (size_t u = first; u < first + WIDTH; u++) {
+            panels->length[u] =
+                u < problem->rows ? length_of(gonio_i_row(problem, u), problem->components) : 0.0F;
         }
     }
     return true;
@@ -53,65 +93,122 @@ void gonio_i_panels_free(gonio_i_panels *panels)
     free(panels->length);
 }
 
-static const lanes *panel_at(const gonio_i_panels *panels, size_t p)
+size_t gonio_i_panels_chunks(const gonio_i_panels *panels)
 {
-    return (const lanes *)(const void *)(panels->values + p * panels->components * WIDTH);
+    return (panels->rows + GONIO_I_CHUNK - 1) / GONIO_I_CHUNK;
 }
 
-GONIO_I_VECTORISED void gonio_i_panels_gain(const gonio_i_panels *panels, size_t first, size_t last,
-                                            const float *l, float *gain)
+float *gonio_i_panels_scratch(const gonio_i_panels *panels, bool *failed)
 {
-    const size_t k = panels->components;
-    for (size_t p = first; p < last; p++) {
-        const lanes *u = panel_at(panels, p);
-        const lanes zero = {0.0F};
-        lanes total = zero + 1.0F;
-        for (size_t j = 0; j < k; j += COLUMNS) {
-            lanes sum[COLUMNS] = {zero, zero, zero, zero, zero, zero, zero, zero};
-            for (size_t i = j; i < k; i++) {
-                for (size_t c = 0; c < COLUMNS; c++) {
-                    sum[c] += u[i] * l[i * k + j + c];
-                }
-            }
-            for (size_t c = 0; c < COLUMNS; c++) {
-                total += sum[c] * sum[c];
+    float *scratch = panels->values == NULL ? aligned_floats(size_of(panels, GONIO_I_CHUNK)) : NULL;
+    *failed = panels->values == NULL && scratch == NULL;
+    return scratch;
+}
+
+gonio_i_chunk gonio_i_panels_chunk(const gonio_i_panels *panels, size_t chunk, float *scratch)
+{
+    const size_t first = chunk * GONIO_I_CHUNK;
+    const size_t rest = panels->rows - first;
+    const size_t count = rest < GONIO_I_CHUNK ? rest : GONIO_I_CHUNK;
+    for (size_t row = 0; panels->values == NULL && row < count; row += WIDTH) {
+        lay_out(panels, first + row, scratch + size_of(panels, row));
+    }
+    return (gonio_i_chunk){
+        .first = first,
+        .count = count,
+        .components = panels->components,
+        .values = panels->values == NULL ? scratch : panels->values + size_of(panels, first),
+        .length = panels->length + first};
+}
+
+/* ---- loops ---- */
+
+static const lanes *panel_at(const gonio_i_chunk *chunk, size_t row)
+{
+    return (const lanes *)(const void *)(chunk->values + row * chunk->components);
+}
+
+/* gain[row] = 1 + |L'u|^2 for a panel. */
+static inline __attribute__((always_inline)) void panel_gain(const lanes *u, size_t k,
+                                                             const float *l, float *gain)
+{
+    const lanes zero = {0.0F};
+    lanes total[HALVES] = {zero + 1.0F, zero + 1.0F};
+    for (size_t j = 0; j < k; j += BLOCK) {
+        lanes sum[BLOCK][HALVES] = {{zero}};
+        for (size_t i = j; i < k; i++) {
+            for (size_t c = 0; c < BLOCK; c++) {
+                sum[c][0] += u[2 * i] * l[i * k + j + c];
+                sum[c][1] += u[2 * i + 1] * l[i * k + j + c];
             }
         }
-        memcpy(gain + p * WIDTH, &total, sizeof total);
+        for (size_t c = 0; c < BLOCK; c++) {
+            total[0] += sum[c][0] * sum[c][0];
+            total[1] += sum[c][1] * sum[c][1];
+        }
+    }
+    memcpy(gain, total, sizeof total);
+}
+
+GONIO_I_VECTORISED void gonio_i_chunk_gain(const gonio_i_chunk *chunk, const float *l, float margin,
+                                           float *gain)
+{
+    for (size_t row = 0; row < chunk->count; row += WIDTH) {
+        panel_gain(panel_at(chunk, row), chunk->components, l, gain + row);
+    }
+    const float rounding = 1.0F - (float)(chunk->components + 8) * FLT_EPSILON;
+    for (size_t row = 0; row < chunk->count; row++) {
+        const float error = margin * chunk->length[row];
+        gain[row] = gain[row] * rounding - error * (2.0F * sqrtf(gain[row]) + error);
     }
 }
 
-GONIO_I_VECTORISED void gonio_i_panels_products(const gonio_i_panels *panels, size_t first,
-                                                size_t last, const float *c, size_t rows, float *w)
+/* pass[row] of half a panel, from the products w. */
+static inline __attribute__((always_inline)) void
+mark(lanes w, lanes length, lanes gain, float loss, float margin, unsigned char *pass)
 {
-    for (size_t p = first; p < last; p++) {
-        const lanes *u = panel_at(panels, p);
-        const lanes zero = {0.0F};
-        lanes sum[COLUMNS] = {zero, zero, zero, zero, zero, zero, zero, zero};
-        for (size_t i = 0; i < panels->components; i++) {
-            for (size_t j = 0; j < COLUMNS; j++) {
-                sum[j] += u[i] * c[i * COLUMNS + j];
-            }
+    const masks no_sign = {0};
+    const lanes size = (lanes)((masks)w & (no_sign + INT32_MAX)); /* |w| */
+    const lanes most = size + margin * length;
+    const masks passes = most * most > loss * gain;
+    const flags one = __builtin_convertvector(passes, flags) & 1;
+    memcpy(pass, &one, sizeof one);
+}
+
+static inline __attribute__((always_inline)) void mark_panel(const gonio_i_chunk *chunk,
+                                                             const gonio_i_test *t, size_t row,
+                                                             size_t columns, unsigned char *pass,
+                                                             size_t apart)
+{
+    const lanes *u = panel_at(chunk, row);
+    const lanes zero = {0.0F};
+    lanes sum[COLUMNS][HALVES] = {{zero}};
+    for (size_t i = 0; i < chunk->components; i++) {
+        for (size_t j = 0; j < columns; j++) {
+            sum[j][0] += u[2 * i] * t->c[i * columns + j];
+            sum[j][1] += u[2 * i + 1] * t->c[i * columns + j];
         }
-        for (size_t j = 0; j < COLUMNS; j++) {
-            memcpy(w + j * rows + p * WIDTH, &sum[j], sizeof sum[j]);
+    }
+    lanes gain[HALVES];
+    lanes length[HALVES];
+    memcpy(gain, t->gain + row, sizeof gain);
+    memcpy(length, chunk->length + row, sizeof length);
+    for (size_t j = 0; j < columns; j++) {
+        for (size_t half = 0; half < HALVES; half++) {
+            mark(sum[j][half], length[half], gain[half], t->loss[j], t->margin[j],
+                 pass + j * apart + row + half * LANES);
         }
     }
 }
 
-GONIO_I_VECTORISED void gonio_i_mark(size_t n, const float *gain, const float *w,
-                                     const float *length, float loss, gonio_i_margins margins,
-                                     unsigned char *pass)
+GONIO_I_VECTORISED void gonio_i_chunk_mark(const gonio_i_chunk *chunk, const gonio_i_test *test,
+                                           unsigned char *pass, size_t apart)
 {
-    const float rounding = 8.0F * FLT_EPSILON;
-    for (size_t u = 0; u < n; u++) {
-        const float size = fabsf(w[u]);
-        const float product_error = margins.product * length[u];
-        const float factor_error = margins.gain * length[u];
-        const float gain_error = factor_error * (2.0F * sqrtf(gain[u]) + factor_error);
-        const float lost = loss * gain[u];
-        const float margin = product_error * (2.0F * size + product_error) - loss * gain_error +
-                             rounding * (size * size - lost);
-        pass[u] = lost + size * size + margin > 0.0F;
+    for (size_t row = 0; row < chunk->count; row += WIDTH) {
+        if (test->columns == 1) { /* a constant lets the sums stay in registers */
+            mark_panel(chunk, test, row, 1, pass, apart);
+        } else {
+            mark_panel(chunk, test, row, COLUMNS, pass, apart);
+        }
     }
 }

@@ -1,51 +1,69 @@
 /* The candidate rows in single precision, laid out for the filter (filter.h), and its inner loops.
  *
- * Sixteen rows make a panel, value[k][row]: all loops then run over rows, in vector registers, with
- * the other operand broadcast. Rows are padded with zeros to whole panels, components to multiples
- * of 8. */
+ * Thirty-two rows make a panel, value[k][row]: all loops then run over rows, in vector registers,
+ * with the other operand broadcast. Panels make chunks, which stay in the cache while they are
+ * worked on. Rows are padded with zeros to whole panels, components to multiples of 4.
+ *
+ * The panels of up to a million or so rows are kept; of more, they are laid out anew each time a
+ * chunk is worked on, which costs little of the work and no memory. */
 #ifndef GONIO_PANELS_H
 #define GONIO_PANELS_H
 
 #include <stddef.h>
 
-#include "../core/core.h"
+#include "method.h"
 
-enum { GONIO_I_PANEL = 16, GONIO_I_COLUMNS = 8 };
+enum { GONIO_I_PANEL = 32, GONIO_I_CHUNK_PANELS = 32 };
+enum { GONIO_I_CHUNK = GONIO_I_PANEL * GONIO_I_CHUNK_PANELS }; /* rows */
+enum { GONIO_I_COLUMNS = 8 };                                  /* products at a time */
 
 typedef struct gonio_i_panels {
-    size_t count;      /* panels */
+    const gonio_i_selection_problem *problem;
     size_t components; /* padded */
-    float *values;     /* [count][components][GONIO_I_PANEL] */
-    float *length;     /* [count x GONIO_I_PANEL]: Euclidean norms of the rows, rounded up */
+    size_t rows;       /* padded to whole panels */
+    float *values;     /* [panel][components][GONIO_I_PANEL]; NULL if not kept */
+    float *length;     /* [rows]: Euclidean norms, rounded up */
 } gonio_i_panels;
 
-/* Lays out vectors[rows][components]; false after a message when out of memory. */
-bool gonio_i_panels_make(gonio_context *context, const double *vectors, size_t rows,
-                         size_t components, gonio_i_panels *panels);
+/* Lays out the rows of a problem; false after a message when out of memory. */
+bool gonio_i_panels_make(const gonio_i_selection_problem *problem, gonio_i_panels *panels);
 void gonio_i_panels_free(gonio_i_panels *panels);
 
-/* The loops below work on panels first .. last - 1; arrays over rows are whole (count x
- * GONIO_I_PANEL). */
+size_t gonio_i_panels_chunks(const gonio_i_panels *panels);
 
-/* gain[row] = 1 + |L'u|^2 for a lower triangular L[components][components], padded with zeros. */
-void gonio_i_panels_gain(const gonio_i_panels *panels, size_t first, size_t last, const float *l,
-                         float *gain);
+/* Room for the panels of a chunk, aligned for the loops below, or NULL if panels are kept or (then
+ * *failed) memory ran out. */
+float *gonio_i_panels_scratch(const gonio_i_panels *panels, bool *failed);
 
-/* w[j][row] = u'c_j for GONIO_I_COLUMNS columns at once, c[components][GONIO_I_COLUMNS]; w: `rows`
- * apart.
- */
-void gonio_i_panels_products(const gonio_i_panels *panels, size_t first, size_t last,
-                             const float *c, size_t rows, float *w);
+/* One chunk: its rows first .. first + count - 1 (padded) and their panels, laid out in the scratch
+ * unless they are kept. */
+typedef struct gonio_i_chunk {
+    size_t first;
+    size_t count;
+    size_t components;
+    const float *values;
+    const float *length; /* of its rows */
+} gonio_i_chunk;
 
-/* What filter.h needs to know about rounding. */
-typedef struct gonio_i_margins {
-    float gain;    /* |error of gain| <= gain (2 |u| sqrt(gain) + gain |u|^2) */
-    float product; /* |error of w| <= product |u| */
-} gonio_i_margins;
+gonio_i_chunk gonio_i_panels_chunk(const gonio_i_panels *panels, size_t chunk, float *scratch);
 
-/* The test of filter.h: pass[u] unless loss gain + w^2 < 0 whatever the rounding errors. loss < 0.
- */
-void gonio_i_mark(size_t n, const float *gain, const float *w, const float *length, float loss,
-                  gonio_i_margins margins, unsigned char *pass);
+/* gain[row] <= 1 + |L'u|^2, a lower bound as close as rounding allows, for a lower triangular
+ * L[components][components] (padded with zeros) whose products have errors of at most margin |u|:
+ * |error of L'u| <= margin |u|. gain: of the chunk's rows. */
+void gonio_i_chunk_gain(const gonio_i_chunk *chunk, const float *l, float margin, float *gain);
+
+/* The test of filter.h for one column or GONIO_I_COLUMNS at once, c[components][columns]:
+ * pass[column][row] is 1 unless (u'c)^2 <= loss gain for certain, where |error of u'c| <= margin
+ * |u|; the columns of pass lie `apart`. loss > 0. */
+typedef struct gonio_i_test {
+    size_t columns; /* 1 or GONIO_I_COLUMNS */
+    const float *c;
+    const float *gain; /* as above */
+    float loss[GONIO_I_COLUMNS];
+    float margin[GONIO_I_COLUMNS];
+} gonio_i_test;
+
+void gonio_i_chunk_mark(const gonio_i_chunk *chunk, const gonio_i_test *test, unsigned char *pass,
+                        size_t apart);
 
 #endif

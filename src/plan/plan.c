@@ -83,7 +83,7 @@ gonio_status gonio_i_chosen_gram(const gonio_i_selection_problem *problem, const
 {
     const size_t k = problem->components;
     for (size_t j = 0; j < problem->count; j++) {
-        memcpy(rows + j * k, problem->vectors + chosen[j] * k, k * sizeof *rows);
+        memcpy(rows + j * k, gonio_i_row(problem, chosen[j]), k * sizeof *rows);
     }
     return gonio_i_gram_rows(problem->context, rows, problem->count, k, k, gram);
 }
@@ -156,17 +156,23 @@ static gonio_status check_selection(gonio_context *context, size_t rows, size_t 
 }
 
 gonio_status gonio_plan_select(gonio_context *context, const double *vectors, size_t rows,
-                               size_t components, const gonio_plan_options *options, size_t *chosen,
-                               gonio_selection_report *report)
+                               size_t leading, size_t components, const gonio_plan_options *options,
+                               size_t *chosen, gonio_selection_report *report)
 {
     gonio_status status = check_selection(context, rows, components, options);
     if (status != GONIO_OK) {
         return status;
     }
-    const gonio_i_selection_problem problem = {
-        context,        vectors,           rows,          components,
-        options->count, options->restarts, options->seed, options->keep_history,
-        options->start};
+    const gonio_i_selection_problem problem = {.context = context,
+                                               .vectors = vectors,
+                                               .rows = rows,
+                                               .components = components,
+                                               .stride = leading,
+                                               .count = options->count,
+                                               .restarts = options->restarts,
+                                               .seed = options->seed,
+                                               .keep_history = options->keep_history,
+                                               .start = options->start};
     gonio_i_selection selection = {.chosen = chosen};
     status = find_method(options->method)->select(&problem, &selection);
     if (status != GONIO_OK) {
@@ -176,17 +182,6 @@ gonio_status gonio_plan_select(gonio_context *context, const double *vectors, si
     *report = (gonio_selection_report){selection.condition_number, selection.tests, selection.steps,
                                        selection.history};
     return GONIO_OK;
-}
-
-/* The first `components` of each row, close together. */
-static double *leading_components(gonio_context *context, const double *vectors, size_t rows,
-                                  size_t leading, size_t components)
-{
-    double *packed = gonio_i_allocate(context, rows * components, sizeof *packed);
-    for (size_t i = 0; packed != NULL && i < rows; i++) {
-        memcpy(packed + i * components, vectors + i * leading, components * sizeof *packed);
-    }
-    return packed;
 }
 
 gonio_status gonio_condition_number(gonio_context *context, const double *vectors, size_t leading,
@@ -205,6 +200,7 @@ gonio_status gonio_condition_number(gonio_context *context, const double *vector
                                                    .vectors = rows,
                                                    .rows = count,
                                                    .components = components,
+                                                   .stride = components,
                                                    .count = count};
         status = gonio_i_chosen_condition(&problem, all, condition_number);
     }
@@ -259,14 +255,12 @@ static gonio_plan *allocate_plan(gonio_context *context, size_t count)
 static gonio_status choose(gonio_context *context, const gonio_basis_view *basis,
                            const gonio_plan_options *options, gonio_plan *plan)
 {
-    double *vectors = leading_components(context, basis->vectors, basis->rows, basis->components,
-                                         plan->components);
     size_t *chosen = gonio_i_allocate(context, plan->count, sizeof *chosen);
     gonio_selection_report report;
-    gonio_status status = vectors == NULL || chosen == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    gonio_status status = chosen == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
     if (status == GONIO_OK) {
-        status = gonio_plan_select(context, vectors, basis->rows, plan->components, options, chosen,
-                                   &report);
+        status = gonio_plan_select(context, basis->vectors, basis->rows, basis->components,
+                                   plan->components, options, chosen, &report);
     }
     if (status == GONIO_OK) {
         plan->condition_number = report.condition_number;
@@ -275,7 +269,6 @@ static gonio_status choose(gonio_context *context, const gonio_basis_view *basis
         plan->steps = report.steps;
         fill_entries(basis, chosen, options->phi_d, plan);
     }
-    free(vectors);
     free(chosen);
     return status;
 }

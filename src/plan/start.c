@@ -27,6 +27,13 @@ static gonio_status take_spanning_rows(const gonio_i_selection_problem *p, doubl
     return status;
 }
 
+static void copy_rows(const gonio_i_selection_problem *p, double *copy)
+{
+    for (size_t row = 0; row < p->rows; row++) {
+        memcpy(copy + row * p->components, gonio_i_row(p, row), p->components * sizeof *copy);
+    }
+}
+
 static gonio_status qr_start(const gonio_i_selection_problem *p, int restart, size_t *chosen)
 {
     (void)restart;
@@ -37,7 +44,7 @@ static gonio_status qr_start(const gonio_i_selection_problem *p, int restart, si
     }
     gonio_status status = GONIO_OK;
     for (size_t done = 0; done < p->count && status == GONIO_OK; done += k) {
-        memcpy(rest, p->vectors, p->rows * k * sizeof *rest);
+        copy_rows(p, rest);
         for (size_t j = 0; j < done; j++) {
             memset(rest + chosen[j] * k, 0, k * sizeof *rest);
         }
@@ -81,12 +88,12 @@ static void add_row(volume *v, size_t row)
 {
     const gonio_i_selection_problem *p = v->problem;
     const size_t k = p->components;
-    apply(v, p->vectors + row * k, v->image);
-    const double scale = 1.0 / (1.0 + dot(p->vectors + row * k, v->image, k));
+    apply(v, gonio_i_row(p, row), v->image);
+    const double scale = 1.0 / (1.0 + dot(gonio_i_row(p, row), v->image, k));
     v->score[row] = -1.0;
 #pragma omp parallel for schedule(static) num_threads(gonio_context_threads(p->context))
     for (size_t u = 0; u < p->rows; u++) {
-        const double along = dot(p->vectors + u * k, v->image, k);
+        const double along = dot(gonio_i_row(p, u), v->image, k);
         v->score[u] -= v->score[u] < 0.0 ? 0.0 : fmin(scale * along * along, v->score[u]);
     }
     for (size_t a = 0; a < k; a++) {
@@ -101,10 +108,11 @@ static gonio_status start_volume(volume *v, const size_t *chosen)
 {
     const gonio_i_selection_problem *p = v->problem;
     const size_t k = p->components;
-    gonio_status status = gonio_i_inverse_gram(p->context, p->vectors, k, chosen, k, v->inverse);
+    gonio_status status =
+        gonio_i_inverse_gram(p->context, p->vectors, p->stride, k, chosen, k, v->inverse);
     for (size_t u = 0; u < p->rows && status == GONIO_OK; u++) {
-        apply(v, p->vectors + u * k, v->image);
-        v->score[u] = dot(p->vectors + u * k, v->image, k);
+        apply(v, gonio_i_row(p, u), v->image);
+        v->score[u] = dot(gonio_i_row(p, u), v->image, k);
     }
     for (size_t j = 0; j < k; j++) {
         v->score[chosen[j]] = -1.0;

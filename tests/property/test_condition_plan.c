@@ -93,7 +93,7 @@ static void test_local_optimum(void **state)
             options.count = n;
             options.restarts = 2;
             options.seed = seed;
-            assert_int_equal(gonio_plan_select(NULL, v, rows, k, &options, chosen, &report),
+            assert_int_equal(gonio_plan_select(NULL, v, rows, k, k, &options, chosen, &report),
                              GONIO_OK);
             const double kappa = report.condition_number;
             assert_true(fabs(kappa - plain_condition(v, k, chosen, n)) <= 1e-9 * kappa);
@@ -179,7 +179,7 @@ static void test_same_swaps(void **state)
             options.count = n;
             options.restarts = 1;
             options.seed = seed;
-            assert_int_equal(gonio_plan_select(NULL, v, rows, k, &options, fast, &report),
+            assert_int_equal(gonio_plan_select(NULL, v, rows, k, k, &options, fast, &report),
                              GONIO_OK);
             assert_int_equal(report.steps, swaps + 1);
             for (size_t s = 0; s < report.steps; s++) {
@@ -212,7 +212,7 @@ static void test_nearly_singular(void **state)
         gonio_plan_options options;
         gonio_plan_options_default(&options);
         options.count = N;
-        assert_int_equal(gonio_plan_select(NULL, v, ROWS, K, &options, chosen, &report), GONIO_OK);
+        assert_int_equal(gonio_plan_select(NULL, v, ROWS, K, K, &options, chosen, &report), GONIO_OK);
         assert_true(isfinite(report.condition_number));
         free(report.history);
         free(v);
@@ -235,7 +235,7 @@ static void test_any_number_of_threads(void **state)
         size_t chosen[N];
         gonio_selection_report report;
         assert_int_equal(gonio_context_create(&context, &settings), GONIO_OK);
-        assert_int_equal(gonio_plan_select(context, v, ROWS, K, &options,
+        assert_int_equal(gonio_plan_select(context, v, ROWS, K, K, &options,
                                            threads == 1 ? first : chosen, &report),
                          GONIO_OK);
         if (threads > 1) {
