@@ -52,33 +52,28 @@ static double largest_at_least(const gonio_i_exchange *e)
     return fmax(e->d[top - 1], e->d[top] - e->y[top] * e->y[top] + e->z[top] * e->z[top]);
 }
 
-/* lambda_max(H), by bisection on the number of eigenvalues above. */
-static double largest(const gonio_i_exchange *e)
+bool gonio_i_exchange_beats(const gonio_i_exchange *e, double limit)
 {
+    const int all = (int)e->n;
+    double low = largest_at_least(e) * (1.0 - 4.0 * DBL_EPSILON);
+    if (gonio_i_exchange_count_above(e, low / limit) != all) {
+        return false; /* most of them */
+    }
     double added = 0.0;
     for (size_t k = 0; k < e->n; k++) {
         added += e->z[k] * e->z[k];
     }
-    double low = largest_at_least(e) * (1.0 - 4.0 * DBL_EPSILON);
     double high = (e->d[e->n - 1] + added) * (1.0 + 4.0 * DBL_EPSILON);
+    /* low <= lambda_max < high: narrowed until one of them decides. */
     while (high - low > 2.0 * DBL_EPSILON * high) {
         const double middle = 0.5 * (low + high);
-        if (middle <= low || middle >= high) {
-            break;
+        const bool below = gonio_i_exchange_count_above(e, middle) > 0;
+        const bool lifted = gonio_i_exchange_count_above(e, middle / limit) == all;
+        if (below != lifted) {
+            return lifted;
         }
-        if (gonio_i_exchange_count_above(e, middle) > 0) {
-            low = middle;
-        } else {
-            high = middle;
-        }
+        low = below ? middle : low;
+        high = below ? high : middle;
     }
-    return 0.5 * (low + high);
-}
-
-bool gonio_i_exchange_beats(const gonio_i_exchange *e, double limit)
-{
-    const int all = (int)e->n;
-    /* Most are out by the cheap bound already. */
-    return gonio_i_exchange_count_above(e, largest_at_least(e) / limit) == all &&
-           gonio_i_exchange_count_above(e, largest(e) / limit) == all;
+    return gonio_i_exchange_count_above(e, high / limit) == all;
 }
