@@ -116,6 +116,16 @@ gonio_status gonio_i_cholesky(gonio_context *context, double *c, size_t n)
     return status;
 }
 
+gonio_status gonio_i_inverse_cholesky(gonio_context *context, double *c, size_t n)
+{
+    gonio_status status = gonio_i_cholesky(context, c, n);
+    if (status == GONIO_OK) {
+        status = check_info(context, "dtrtri",
+                            LAPACKE_dtrtri(LAPACK_COL_MAJOR, 'U', 'N', (int)n, c, (int)n));
+    }
+    return status;
+}
+
 gonio_status gonio_i_inverse_gram(gonio_context *context, const double *v, size_t leading, size_t n,
                                   const size_t *rows, size_t count, double *inverse)
 {

@@ -34,6 +34,11 @@ gonio_status gonio_i_eigen(gonio_context *context, double *a, size_t n, bool vec
  * above the diagonal. */
 gonio_status gonio_i_cholesky(gonio_context *context, double *c, size_t n);
 
+/* L^-1 for the lower triangular L of C = L L', in place of a symmetric positive definite C (n x n);
+ * zeros above the diagonal. A C that is not positive definite is GONIO_ERROR_DATA without a message
+ * if the context is NULL. */
+gonio_status gonio_i_inverse_cholesky(gonio_context *context, double *c, size_t n);
+
 /* (X'X)^-1 (n x n, both triangles) of `count` rows of V (n values each, `leading` apart). */
 gonio_status gonio_i_inverse_gram(gonio_context *context, const double *v, size_t leading, size_t n,
                                   const size_t *rows, size_t count, double *inverse);

@@ -14,6 +14,9 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
+
+#include <omp.h>
 
 #include "../core/random.h"
 #include "../linalg/linalg.h"
@@ -25,52 +28,101 @@
 /* A swap has to lower kappa by more than this share: less is rounding. */
 static const double least_gain = 1e-10;
 
+/* Scratch of one thread. */
+typedef struct worker {
+    double *z;         /* [K]: a candidate in the eigenbasis of G */
+    size_t *survivors; /* [GONIO_I_CHUNK + 1] */
+} worker;
+
 typedef struct search {
     const gonio_i_selection_problem *problem;
     size_t *chosen;
     unsigned char *taken; /* [rows] */
     double *x;            /* [count][K]: the chosen rows */
     double *y;            /* [count][K]: the chosen rows in the eigenbasis of G */
-    double *z;            /* [K]: a candidate in the eigenbasis of G */
-    double *gram;         /* [K][K]; holds the eigenvectors as rows once decomposed */
-    double *columns;      /* [K][K]: the eigenvectors as columns */
+    double *gram;         /* G, [K][K] */
+    double *q;            /* [K][K]: the eigenvectors of G as rows */
+    double *columns;      /* [K][K]: and as columns */
     double *d;            /* [K] eigenvalues, ascending */
     double condition_number;
     gonio_i_filter filter;
-    size_t *survivors; /* [GONIO_I_CHUNK + 1] */
+    worker *workers; /* [threads] */
+    size_t *winners; /* [chunks + 1]: scratch */
+    int threads;
+    double began;   /* s */
+    double waiting; /* s, that the first thread waited for the others */
+    size_t from;    /* the row that the next position begins with */
     gonio_i_random random;
     uint64_t tests;   /* that a search without the filter would have made */
     double share;     /* how far this search is, 0 to 1 */
     double *progress; /* the sum of all searches' shares */
 } search;
 
-/* What lambda_min of a swap that lowers kappa must exceed. */
-static double bound(const search *s)
+static double now(void)
 {
-    return s->d[s->problem->components - 2] / s->condition_number;
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* G of the choice, its eigenvectors and eigenvalues, the chosen rows in that basis, and the filter.
- */
+/* Ends a time of waiting. The steps of a search are so short that on a busy machine, where a thread
+ * may be without a processor just when it is waited for, threads only cost time: then it goes on
+ * with one. (The plan is the same on any number.) */
+static void stop_waiting(search *s, double since)
+{
+    static const double patience = 0.02;
+    const double time = now();
+    s->waiting += time - since;
+    if (s->waiting > patience && s->waiting > 0.5 * (time - s->began)) {
+        s->threads = 1;
+    }
+}
+
+/* The chosen rows and G = X'X. */
+static gonio_status gather(search *s)
+{
+    return gonio_i_chosen_gram(s->problem, s->chosen, s->x, s->gram);
+}
+
+/* The eigenvectors and eigenvalues of G, and the chosen rows in that basis. */
 static gonio_status decompose(search *s)
 {
     const gonio_i_selection_problem *p = s->problem;
     const size_t k = p->components;
-    gonio_status status = gonio_i_chosen_gram(p, s->chosen, s->x, s->gram);
+    memcpy(s->q, s->gram, k * k * sizeof *s->q);
+    gonio_status status = gonio_i_eigen(p->context, s->q, k, true, s->d);
     if (status == GONIO_OK) {
-        status = gonio_i_eigen(p->context, s->gram, k, true, s->d);
-    }
-    if (status == GONIO_OK) {
-        status = gonio_i_product_transposed(p->context, s->x, p->count, k, s->gram, k, s->y, k);
+        status = gonio_i_product_transposed(p->context, s->x, p->count, k, s->q, k, s->y, k);
     }
     s->condition_number = status == GONIO_OK ? gonio_i_condition(s->d, k) : INFINITY;
     for (size_t j = 0; j < k; j++) {
         for (size_t a = 0; a < k; a++) {
-            s->columns[a * k + j] = s->gram[j * k + a];
+            s->columns[a * k + j] = s->q[j * k + a];
         }
     }
+    return status;
+}
+
+/* Sets the filter for G, from its smallest and its two largest eigenvalues. mu is kept off the
+ * pole at the smallest, where single precision would decide little. Where kappa is so large that
+ * rounding moves the smallest, nothing is filtered. */
+static void set_filter(search *s, double smallest, double second_largest, double largest)
+{
+    const double mu = second_largest * smallest / largest * (1.0 - 1e-9);
+    const bool sound = smallest > largest * 1e-6;
+    gonio_i_filter_set(&s->filter, s->gram, sound ? fmin(mu, smallest * (1.0 - 1e-3)) : INFINITY);
+}
+
+/* All that the search needs to know of the choice. */
+static gonio_status consider(search *s)
+{
+    const size_t k = s->problem->components;
+    gonio_status status = gather(s);
+    if (status == GONIO_OK) {
+        status = decompose(s);
+    }
     if (status == GONIO_OK && k > 1 && isfinite(s->condition_number)) {
-        gonio_i_filter_set(&s->filter, s->gram, s->d, bound(s));
+        set_filter(s, s->d[0], s->d[k - 2], s->d[k - 1]);
     }
     return status;
 }
@@ -87,55 +139,88 @@ GONIO_I_VECTORISED static void rotate(size_t k, const double *restrict q, const 
     }
 }
 
+/* G after a swap, in the eigenbasis of G. */
+static gonio_i_exchange exchange_of(const search *s, size_t position, size_t row, double *z)
+{
+    const size_t k = s->problem->components;
+    rotate(k, s->columns, gonio_i_row(s->problem, row), z);
+    return (gonio_i_exchange){s->d, s->y + position * k, z, k};
+}
+
 /* Whether a swap lowers kappa, exactly. */
-static bool wins(search *s, size_t position, size_t row)
+static bool wins(const search *s, size_t position, size_t row, double *z)
 {
     if (s->taken[row]) {
         return false;
     }
-    const size_t k = s->problem->components;
-    rotate(k, s->columns, gonio_i_row(s->problem, row), s->z);
-    const gonio_i_exchange exchange = {s->d, s->y + position * k, s->z, k};
+    const gonio_i_exchange exchange = exchange_of(s, position, row, z);
     return gonio_i_exchange_beats(&exchange, s->condition_number * (1.0 - least_gain));
 }
 
-/* The first of the rows first .. last - 1 that lowers kappa at a position; `rows` if none. They are
- * in a chunk that the filter has looked at. */
-static size_t first_winner_among(search *s, size_t position, size_t first, size_t last)
+/* The first of a chunk's rows first .. last - 1 that lowers kappa at a position; `rows` if none. */
+static size_t first_winner_among(search *s, size_t position, size_t first, size_t last, int thread)
 {
-    const size_t count = gonio_i_filter_survivors(&s->filter, position, first, last, s->survivors);
+    const worker *w = &s->workers[thread];
+    const size_t count =
+        gonio_i_filter_survivors(&s->filter, position, first, last, thread, w->survivors);
     for (size_t k = 0; k < count; k++) {
-        if (wins(s, position, s->survivors[k])) {
-            return s->survivors[k];
+        if (wins(s, position, w->survivors[k], w->z)) {
+            return w->survivors[k];
         }
     }
     return s->problem->rows;
 }
 
+/* The same for one step of the way around: chunks in cyclic order, the one with `from` in two
+ * parts. */
+static size_t first_winner_at(search *s, size_t position, size_t from, size_t step, int thread)
+{
+    const size_t chunks = gonio_i_panels_chunks(s->filter.panels);
+    const size_t begin = (from / GONIO_I_CHUNK + step) % chunks * GONIO_I_CHUNK;
+    const size_t full = begin + GONIO_I_CHUNK;
+    const size_t end = full < s->problem->rows ? full : s->problem->rows;
+    return first_winner_among(s, position, step == 0 ? from : begin, step == chunks ? from : end,
+                              thread);
+}
+
+/* Some steps of the way around, by all threads. */
+static void take_steps(search *s, size_t position, size_t from, size_t first, size_t count)
+{
+    double since = 0.0;
+#pragma omp parallel num_threads(s->threads) if (count > 1)
+    {
+        const int thread = omp_get_thread_num();
+#pragma omp for schedule(dynamic) nowait
+        for (size_t step = first; step < first + count; step++) {
+            s->winners[step] = first_winner_at(s, position, from, step, thread);
+        }
+        if (thread == 0) {
+            since = now();
+        }
+    }
+    stop_waiting(s, since);
+}
+
 /* The first row in the cyclic order from `from` on that lowers kappa at a position; `rows` if none.
- * The filter looks at a chunk for each thread, then twice as many, and so on. */
+ * Several threads take a step each, then twice as many, and so on, as most winners are near; the
+ * last step is in the first one's chunk and waits for it. */
 static size_t first_winner(search *s, size_t position, size_t from)
 {
     const size_t rows = s->problem->rows;
     const size_t chunks = gonio_i_panels_chunks(s->filter.panels);
-    const size_t threads = (size_t)s->filter.threads;
-    size_t looked = 0;
     gonio_i_filter_turn_to(&s->filter, s->x, position);
-    for (size_t step = 0; step <= chunks; step++) { /* the chunk with `from` in two parts */
-        const size_t chunk = (from / GONIO_I_CHUNK + step) % chunks;
-        if (step == looked) {
-            const size_t ahead = threads > looked ? threads : looked;
-            const size_t more = threads == 1 ? 1 : ahead < chunks ? ahead : chunks;
-            gonio_i_filter_look(&s->filter, chunk, more);
-            looked += more;
-        }
-        const size_t begin = chunk * GONIO_I_CHUNK;
-        const size_t end = begin + GONIO_I_CHUNK < rows ? begin + GONIO_I_CHUNK : rows;
-        const size_t row =
-            first_winner_among(s, position, step == 0 ? from : begin, step == chunks ? from : end);
-        if (row < rows) {
-            s->tests += (row + rows - from) % rows + 1;
-            return row;
+    size_t ahead = 1;
+    for (size_t done = 0; done <= chunks; done += ahead) {
+        const size_t threads = (size_t)s->threads;
+        const size_t wanted = threads == 1 ? 1 : done > threads ? done : threads;
+        const size_t rest = done < chunks ? chunks - done : 1;
+        ahead = wanted < rest ? wanted : rest;
+        take_steps(s, position, from, done, ahead);
+        for (size_t step = done; step < done + ahead; step++) {
+            if (s->winners[step] < rows) {
+                s->tests += (s->winners[step] + rows - from) % rows + 1;
+                return s->winners[step];
+            }
         }
     }
     s->tests += rows;
@@ -149,17 +234,52 @@ static void put(search *s, size_t position, size_t row)
     s->chosen[position] = row;
 }
 
+/* Where there are several threads, one decomposes G while the others compute the gains that will be
+ * needed first. */
+static gonio_status decompose_and_prepare(search *s)
+{
+    const size_t chunks = gonio_i_panels_chunks(s->filter.panels);
+    gonio_status status = GONIO_OK;
+    _Atomic bool done = false;
+    double since = 0.0;
+#pragma omp parallel num_threads(s->threads) if (s->threads > 1)
+    {
+        const int thread = omp_get_thread_num();
+        const size_t others = (size_t)omp_get_num_threads() - 1;
+        if (thread == 0) {
+            status = decompose(s);
+            done = true;
+            since = now();
+        }
+        for (size_t step = (size_t)thread; step <= chunks && !done; step += others) {
+            gonio_i_filter_prepare(&s->filter, (s->from / GONIO_I_CHUNK + step - 1) % chunks,
+                                   thread);
+        }
+    }
+    stop_waiting(s, since);
+    return status;
+}
+
 /* Makes a swap. Next to singular, rounding may promise a gain that is none: that one is undone. */
 static gonio_status make_swap(search *s, size_t position, size_t row, bool *gained)
 {
+    const size_t k = s->problem->components;
     const double before = s->condition_number;
     const size_t old = s->chosen[position];
+    const gonio_i_exchange exchange = exchange_of(s, position, row, s->workers[0].z);
+    const double smallest = gonio_i_exchange_eigenvalue(&exchange, 0);
+    const double second_largest = gonio_i_exchange_eigenvalue(&exchange, k - 2);
+    const double largest = gonio_i_exchange_eigenvalue(&exchange, k - 1);
     put(s, position, row);
-    gonio_status status = decompose(s);
+    gonio_status status = gather(s);
+    if (status == GONIO_OK) {
+        set_filter(s, smallest, second_largest, largest);
+        status = decompose_and_prepare(s);
+    }
     *gained = s->condition_number < before;
     if (status == GONIO_OK && !*gained) {
         put(s, position, old);
-        status = decompose(s);
+        status = consider(s);
     }
     return status;
 }
@@ -169,8 +289,8 @@ static gonio_status sweep(search *s, int restart, int *swaps, gonio_i_selection 
 {
     gonio_status status = GONIO_OK;
     for (size_t position = 0; position < s->problem->count && status == GONIO_OK; position++) {
-        const size_t from = (size_t)gonio_i_random_below(&s->random, s->problem->rows);
-        const size_t row = first_winner(s, position, from);
+        const size_t row = first_winner(s, position, s->from);
+        s->from = (size_t)gonio_i_random_below(&s->random, s->problem->rows);
         bool gained = false;
         if (row < s->problem->rows) {
             status = make_swap(s, position, row, &gained);
@@ -200,6 +320,7 @@ static gonio_status report(search *s, double share)
 static gonio_status descend(search *s, int restart, gonio_i_selection *selection)
 {
     int swaps = 0;
+    s->began = now();
     gonio_status status =
         gonio_i_selection_record(s->problem, selection, restart, swaps, s->condition_number);
     bool proved = s->problem->components < 2; /* kappa of one component is 1 */
@@ -216,23 +337,31 @@ static gonio_status descend(search *s, int restart, gonio_i_selection *selection
 
 /* ---- starts ---- */
 
-static gonio_status begin_with(search *s, const gonio_i_start *start, int restart)
+static gonio_status begin_with(search *s, const char *name, int restart)
 {
-    gonio_status status = start->choose(s->problem, restart, s->chosen);
+    const gonio_i_selection_problem *p = s->problem;
+    gonio_status status = GONIO_OK;
+    if (name == NULL) {
+        memcpy(s->chosen, p->given, p->count * sizeof *s->chosen);
+    } else {
+        status = gonio_i_find_start(name)->choose(p, restart, s->chosen);
+    }
     memset(s->taken, 0, s->problem->rows);
     for (size_t j = 0; j < s->problem->count && status == GONIO_OK; j++) {
         s->taken[s->chosen[j]] = 1;
     }
-    return status == GONIO_OK ? decompose(s) : status;
+    return status == GONIO_OK ? consider(s) : status;
 }
 
 /* The start asked for, or where its rows do not span K dimensions one whose rows do. */
 static gonio_status start(search *s, int restart)
 {
     gonio_i_random_seed(&s->random, s->problem->seed, 2 * (uint64_t)restart + 1);
-    gonio_status status = begin_with(s, gonio_i_find_start(s->problem->start), restart);
+    s->from = (size_t)gonio_i_random_below(&s->random, s->problem->rows);
+    gonio_status status =
+        begin_with(s, s->problem->given != NULL ? NULL : s->problem->start, restart);
     if (status == GONIO_OK && isinf(s->condition_number)) {
-        status = begin_with(s, gonio_i_find_start("qr"), restart);
+        status = begin_with(s, "qr", restart);
     }
     if (status == GONIO_OK && isinf(s->condition_number)) {
         status = gonio_i_fail(s->problem->context, GONIO_ERROR_DATA,
@@ -249,6 +378,20 @@ static int compare_rows(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
+static bool allocate_workers(search *s)
+{
+    gonio_context *context = s->problem->context;
+    bool ready = true;
+    s->workers = gonio_i_allocate(context, (size_t)s->threads, sizeof *s->workers);
+    for (int t = 0; t < s->threads && s->workers != NULL && ready; t++) {
+        worker *w = &s->workers[t];
+        w->z = gonio_i_allocate(context, s->problem->components, sizeof *w->z);
+        w->survivors = gonio_i_allocate(context, GONIO_I_CHUNK + 1, sizeof *w->survivors);
+        ready = w->z != NULL && w->survivors != NULL;
+    }
+    return ready && s->workers != NULL;
+}
+
 static bool allocate_search(const gonio_i_selection_problem *problem, const gonio_i_panels *panels,
                             double *progress, int threads, search *s)
 {
@@ -258,32 +401,39 @@ static bool allocate_search(const gonio_i_selection_problem *problem, const goni
     *s = (search){
         .problem = problem,
         .progress = progress,
+        .threads = threads,
         .chosen = gonio_i_allocate(context, n, sizeof *s->chosen),
         .taken = gonio_i_allocate(context, problem->rows, sizeof *s->taken),
         .x = gonio_i_allocate(context, n * k, sizeof *s->x),
         .y = gonio_i_allocate(context, n * k, sizeof *s->y),
-        .z = gonio_i_allocate(context, k, sizeof *s->z),
         .gram = gonio_i_allocate(context, k * k, sizeof *s->gram),
+        .q = gonio_i_allocate(context, k * k, sizeof *s->q),
         .columns = gonio_i_allocate(context, k * k, sizeof *s->columns),
         .d = gonio_i_allocate(context, k, sizeof *s->d),
-        .survivors = gonio_i_allocate(context, GONIO_I_CHUNK + 1, sizeof *s->survivors),
+        .winners = gonio_i_allocate(context, gonio_i_panels_chunks(panels) + 1, sizeof *s->winners),
     };
-    return gonio_i_filter_allocate(problem, panels, threads, &s->filter) && s->chosen != NULL &&
-           s->taken != NULL && s->x != NULL && s->y != NULL && s->z != NULL && s->gram != NULL &&
-           s->columns != NULL && s->d != NULL && s->survivors != NULL;
+    return gonio_i_filter_allocate(problem, panels, threads, &s->filter) && allocate_workers(s) &&
+           s->chosen != NULL && s->taken != NULL && s->x != NULL && s->y != NULL &&
+           s->gram != NULL && s->q != NULL && s->columns != NULL && s->d != NULL &&
+           s->winners != NULL;
 }
 
 static void free_search(search *s)
 {
+    for (int t = 0; s->workers != NULL && t < s->filter.threads; t++) {
+        free(s->workers[t].z);
+        free(s->workers[t].survivors);
+    }
+    free(s->workers);
     free(s->chosen);
     free(s->taken);
     free(s->x);
     free(s->y);
-    free(s->z);
     free(s->gram);
+    free(s->q);
     free(s->columns);
     free(s->d);
-    free(s->survivors);
+    free(s->winners);
     gonio_i_filter_free(&s->filter);
 }
 

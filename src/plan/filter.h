@@ -2,8 +2,8 @@
  * it and lift lambda_min above a bound mu < lambda_min(G). It never misses one; what passes is
  * decided exactly elsewhere.
  *
- * With G = X'X, B = (G - mu)^-1 = L L', v the row at the position and u a candidate, Sylvester's
- * law on G - vv' + uu' - mu (inertia.h) reads, in terms of gain b_u = 1 + u'Bu = 1 + |L'u|^2, loss
+ * With G = X'X, B = (G - mu)^-1 = T'T, v the row at the position and u a candidate, Sylvester's
+ * law on G - vv' + uu' - mu (inertia.h) reads, in terms of gain b_u = 1 + u'Bu = 1 + |T u|^2, loss
  * p_v = v'Bv - 1,   w = u'Bv: u passes if and only if w^2 > p_v b_u   (p_v < 0: all do). Rows are
  * looked at a chunk at a time, as the search comes to them: the gains of a chunk are computed once
  * for each G, the w for one position after a swap, and for several once one has failed.
@@ -23,13 +23,13 @@ typedef struct gonio_i_filter {
     const gonio_i_selection_problem *problem;
     const gonio_i_panels *panels;
     int threads;
-    float **scratch;   /* [threads]: a chunk's panels, where these are not kept */
-    double *resolvent; /* B, [K][K] */
-    double *factor;    /* L, [K][K] */
-    float *l;          /* L, padded */
-    float *columns;    /* Bv of the batch, padded */
-    float *gain;       /* lower bounds of b_u, [rows] */
-    float gain_margin;
+    float **scratch;     /* [threads]: a chunk's panels, where these are not kept */
+    double *root;        /* T, [K][K] */
+    float *t;            /* T as panels.h wants it */
+    double *image;       /* scratch, [2][K] */
+    float *columns;      /* Bv of the batch, padded */
+    float *gain;         /* lower bounds of b_u, [rows] */
+    float gain_margin;   /* panels.h */
     unsigned char *pass; /* [GONIO_I_COLUMNS][rows] */
     gonio_i_test test;   /* of the batch */
     bool all_pass[GONIO_I_COLUMNS];
@@ -41,25 +41,25 @@ typedef struct gonio_i_filter {
     bool blind;         /* G is too near singular for the filter: everything passes */
 } gonio_i_filter;
 
-/* The panels hold the problem's rows and must outlive the filter. */
+/* The panels hold the problem's rows and must outlive the filter. Up to `threads` threads, which
+ * call themselves 0 .. threads - 1, may then use it at a time, on different chunks. */
 bool gonio_i_filter_allocate(const gonio_i_selection_problem *problem, const gonio_i_panels *panels,
                              int threads, gonio_i_filter *filter);
 void gonio_i_filter_free(gonio_i_filter *filter);
 
-/* Sets G and mu, from the eigenvectors (rows of q) and eigenvalues d (ascending) of G. mu is
- * lowered if it is not clearly below d[0]. */
-void gonio_i_filter_set(gonio_i_filter *filter, const double *q, const double *d, double mu);
+/* Sets G [K][K] and mu < lambda_min(G); a mu lower than need be only lets more pass, one of
+ * infinity everything. */
+void gonio_i_filter_set(gonio_i_filter *filter, const double *gram, double mu);
+
+/* Computes the gains of a chunk ahead of need. */
+void gonio_i_filter_prepare(gonio_i_filter *filter, size_t chunk, int thread);
 
 /* Turns to a position. x: the chosen rows, [count][K]. */
 void gonio_i_filter_turn_to(gonio_i_filter *filter, const double *x, size_t position);
 
-/* Looks at `count` chunks from this one on, cyclically, where that is still to be done: side by
- * side. */
-void gonio_i_filter_look(gonio_i_filter *filter, size_t chunk, size_t count);
-
-/* Of the rows first .. last - 1, which are in chunks that were looked at, those that pass,
- * ascending, into survivors[last - first]; returns how many. */
-size_t gonio_i_filter_survivors(const gonio_i_filter *filter, size_t position, size_t first,
-                                size_t last, size_t *survivors);
+/* Of the rows first .. last - 1 of a chunk, those that pass, ascending, into
+ * survivors[last - first + 1]; returns how many. */
+size_t gonio_i_filter_survivors(gonio_i_filter *filter, size_t position, size_t first, size_t last,
+                                int thread, size_t *survivors);
 
 #endif

@@ -52,6 +52,31 @@ static double largest_at_least(const gonio_i_exchange *e)
     return fmax(e->d[top - 1], e->d[top] - e->y[top] * e->y[top] + e->z[top] * e->z[top]);
 }
 
+/* The largest d, and what is put in. */
+static double largest_at_most(const gonio_i_exchange *e)
+{
+    double sum = e->d[e->n - 1];
+    for (size_t k = 0; k < e->n; k++) {
+        sum += e->z[k] * e->z[k];
+    }
+    return sum * (1.0 + 4.0 * DBL_EPSILON);
+}
+
+double gonio_i_exchange_eigenvalue(const gonio_i_exchange *e, size_t k)
+{
+    double low = k > 0 ? e->d[k - 1] : 0.0; /* eigenvalues interlace */
+    double high = k + 1 < e->n ? e->d[k + 1] : largest_at_most(e);
+    while (high - low > 1e-10 * high) {
+        const double middle = 0.5 * (low + high);
+        if (gonio_i_exchange_count_above(e, middle) >= (int)(e->n - k)) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
 bool gonio_i_exchange_beats(const gonio_i_exchange *e, double limit)
 {
     const int all = (int)e->n;
@@ -59,11 +84,7 @@ bool gonio_i_exchange_beats(const gonio_i_exchange *e, double limit)
     if (gonio_i_exchange_count_above(e, low / limit) != all) {
         return false; /* most of them */
     }
-    double added = 0.0;
-    for (size_t k = 0; k < e->n; k++) {
-        added += e->z[k] * e->z[k];
-    }
-    double high = (e->d[e->n - 1] + added) * (1.0 + 4.0 * DBL_EPSILON);
+    double high = largest_at_most(e);
     /* low <= lambda_max < high: narrowed until one of them decides. */
     while (high - low > 2.0 * DBL_EPSILON * high) {
         const double middle = 0.5 * (low + high);

@@ -23,4 +23,7 @@ int gonio_i_exchange_count_above(const gonio_i_exchange *exchange, double x);
 /* Whether lambda_max(H)/lambda_min(H) < limit. */
 bool gonio_i_exchange_beats(const gonio_i_exchange *exchange, double limit);
 
+/* The k-th eigenvalue of H (from 0, ascending), less at most a relative 1e-10. */
+double gonio_i_exchange_eigenvalue(const gonio_i_exchange *exchange, size_t k);
+
 #endif

@@ -18,7 +18,8 @@ typedef struct gonio_i_selection_problem {
     int restarts;
     uint64_t seed;
     bool keep_history;
-    const char *start; /* a name that start.h knows */
+    const char *start;   /* a name that start.h knows */
+    const size_t *given; /* [count] or NULL: rows to start from instead; may be the result's */
 } gonio_i_selection_problem;
 
 static inline const double *gonio_i_row(const gonio_i_selection_problem *problem, size_t row)

@@ -7,7 +7,7 @@
 #include <string.h>
 
 enum { WIDTH = GONIO_I_PANEL, COLUMNS = GONIO_I_COLUMNS, LANES = 16, HALVES = WIDTH / LANES };
-enum { BLOCK = 4 }; /* rows of L' at a time */
+enum { BLOCK = 4 }; /* rows of T at a time */
 
 /* Half a panel's row of values as one value (an extension of gcc and clang), so that sums stay in
  * registers. Two halves, so that each broadcast value serves twice. */
@@ -128,18 +128,18 @@ static const lanes *panel_at(const gonio_i_chunk *chunk, size_t row)
     return (const lanes *)(const void *)(chunk->values + row * chunk->components);
 }
 
-/* gain[row] = 1 + |L'u|^2 for a panel. */
+/* gain[row] = 1 + |T u|^2 for a panel. */
 static inline __attribute__((always_inline)) void panel_gain(const lanes *u, size_t k,
-                                                             const float *l, float *gain)
+                                                             const float *t, float *gain)
 {
     const lanes zero = {0.0F};
     lanes total[HALVES] = {zero + 1.0F, zero + 1.0F};
     for (size_t j = 0; j < k; j += BLOCK) {
         lanes sum[BLOCK][HALVES] = {{zero}};
-        for (size_t i = j; i < k; i++) {
+        for (size_t i = 0; i < j + BLOCK; i++) {
             for (size_t c = 0; c < BLOCK; c++) {
-                sum[c][0] += u[2 * i] * l[i * k + j + c];
-                sum[c][1] += u[2 * i + 1] * l[i * k + j + c];
+                sum[c][0] += u[2 * i] * t[i * k + j + c];
+                sum[c][1] += u[2 * i + 1] * t[i * k + j + c];
             }
         }
         for (size_t c = 0; c < BLOCK; c++) {
@@ -150,11 +150,11 @@ static inline __attribute__((always_inline)) void panel_gain(const lanes *u, siz
     memcpy(gain, total, sizeof total);
 }
 
-GONIO_I_VECTORISED void gonio_i_chunk_gain(const gonio_i_chunk *chunk, const float *l, float margin,
+GONIO_I_VECTORISED void gonio_i_chunk_gain(const gonio_i_chunk *chunk, const float *t, float margin,
                                            float *gain)
 {
     for (size_t row = 0; row < chunk->count; row += WIDTH) {
-        panel_gain(panel_at(chunk, row), chunk->components, l, gain + row);
+        panel_gain(panel_at(chunk, row), chunk->components, t, gain + row);
     }
     const float rounding = 1.0F - (float)(chunk->components + 8) * FLT_EPSILON;
     for (size_t row = 0; row < chunk->count; row++) {

@@ -47,10 +47,10 @@ typedef struct gonio_i_chunk {
 
 gonio_i_chunk gonio_i_panels_chunk(const gonio_i_panels *panels, size_t chunk, float *scratch);
 
-/* gain[row] <= 1 + |L'u|^2, a lower bound as close as rounding allows, for a lower triangular
- * L[components][components] (padded with zeros) whose products have errors of at most margin |u|:
- * |error of L'u| <= margin |u|. gain: of the chunk's rows. */
-void gonio_i_chunk_gain(const gonio_i_chunk *chunk, const float *l, float margin, float *gain);
+/* gain[row] <= 1 + |T u|^2, a lower bound as close as rounding allows, for a lower triangular T,
+ * t[column][row] = T_row,column (padded with zeros), whose products have errors of at most
+ * |error of T u| <= margin |u|. gain: of the chunk's rows. */
+void gonio_i_chunk_gain(const gonio_i_chunk *chunk, const float *t, float margin, float *gain);
 
 /* The test of filter.h for one column or GONIO_I_COLUMNS at once, c[components][columns]:
  * pass[column][row] is 1 unless (u'c)^2 <= loss gain for certain, where |error of u'c| <= margin
