@@ -405,16 +405,19 @@ static void bench_learn(bench *b)
 
 /* ---- reconstructing ---- */
 
-/* write(2) of a MERL table's bytes, with fsync and rename as gonio does. */
+/* write(2) of a MERL table's bytes, with fsync and rename as gonio does. In pieces as cp and dd use
+ * them: Linux is slower with all at once, for which it looks for larger pages. */
 static double plain_write_seconds(const char *path, const char *data, size_t size)
 {
+    enum { PIECE = 128 << 10 };
     char *part = NULL;
     check(asprintf(&part, "%s.part", path) > 0, "memory");
     const double start = now();
     const int descriptor = open(part, O_WRONLY | O_CREAT | O_TRUNC, 0666);
     size_t done = 0;
     while (descriptor >= 0 && done < size) {
-        const ssize_t written = write(descriptor, data + done, size - done);
+        const size_t piece = size - done < PIECE ? size - done : PIECE;
+        const ssize_t written = write(descriptor, data + done, piece);
         check(written > 0, "write");
         done += (size_t)written;
     }
@@ -442,12 +445,27 @@ static double reconstruct_seconds(gonio_context *context, const gonio_basis *bas
     return seconds;
 }
 
-static void bench_reconstruct(bench *b)
+enum { MERL_SIZE = 12 + sizeof(double) * GONIO_CHANNELS * GONIO_BINS };
+
+/* The bytes of a real table, for the plain writes. */
+static char *table_bytes(const bench *b, gonio_context *context, const char *path)
+{
+    gonio_material *material = NULL;
+    char *data = malloc(MERL_SIZE);
+    check(data != NULL && gonio_material_open(context, b->paths[0], &material) == GONIO_OK &&
+              gonio_material_write_merl(context, material, path) == GONIO_OK,
+          "writing a table");
+    FILE *file = fopen(path, "rb");
+    check(file != NULL && fread(data, 1, MERL_SIZE, file) == MERL_SIZE, "reading a table");
+    fclose(file);
+    gonio_material_free(&material);
+    return data;
+}
+
+static void bench_reconstruct_one(bench *b, gonio_context *context, const gonio_basis *basis,
+                                  const char *path, const char *data)
 {
     enum { N = 80, TIMES = 15 };
-    const size_t size = 12 + sizeof(double) * GONIO_CHANNELS * GONIO_BINS;
-    gonio_context *all = make_context(0);
-    gonio_basis *basis = learn(all, b->paths, BASIS_MATERIALS, 35, NULL);
     const gonio_basis_view view = gonio_basis_describe(basis);
     size_t rows[N];
     double readings[N];
@@ -455,19 +473,116 @@ static void bench_reconstruct(bench *b)
         rows[k] = k * (view.rows / N);
         readings[k] = view.mean[rows[k]] + 0.01 * (double)(k % 7);
     }
-    char *folder = scratch_folder();
-    char *path = NULL;
-    check(asprintf(&path, "%s/table.binary", folder) > 0, "memory");
-    char *data = calloc(size, 1);
     double ratio[TIMES];
     double seconds[TIMES];
     for (int run = 0; run < TIMES; run++) {
-        const double plain = plain_write_seconds(path, data, size);
-        seconds[run] = reconstruct_seconds(all, basis, rows, N, readings, path);
+        const double plain = plain_write_seconds(path, data, MERL_SIZE);
+        seconds[run] = reconstruct_seconds(context, basis, rows, N, readings, path);
         ratio[run] = seconds[run] / plain;
     }
     report(b, "reconstruct one material to a MERL table", median(seconds, TIMES), "s");
     report(b, "reconstruct one material: over plain write(2)", median(ratio, TIMES), "x");
+}
+
+/* Readings of TABLES materials by the simulated instrument, in FOLDER/readings-NUMBER.csv. */
+static void write_readings(const bench *b, gonio_context *context, const gonio_basis *basis,
+                           const char *folder)
+{
+    gonio_plan_options how;
+    const gonio_readings_options any = {.values_needed = false, .negative_to_zero = true};
+    gonio_plan *plan = NULL;
+    char *path = NULL;
+    gonio_plan_options_default(&how);
+    how.method = "random";
+    check(asprintf(&path, "%s/plan.csv", folder) > 0 &&
+              gonio_plan_create(context, basis, &how, &plan) == GONIO_OK &&
+              gonio_plan_write(context, plan, NULL, path) == GONIO_OK,
+          "planning");
+    for (size_t k = 0; k < TABLES; k++) {
+        gonio_readings *readings = NULL;
+        gonio_material *material = NULL;
+        gonio_table *table = NULL;
+        char *to = NULL;
+        check(asprintf(&to, "%s/readings-%03zu.csv", folder, k) > 0 &&
+                  gonio_readings_read(context, path, &any, &readings) == GONIO_OK &&
+                  gonio_material_open(context, b->paths[k % b->count], &material) == GONIO_OK &&
+                  gonio_table_load(context, material, &table) == GONIO_OK &&
+                  gonio_measure(context, readings, table, NULL) == GONIO_OK &&
+                  gonio_readings_write(context, readings, NULL, to) == GONIO_OK,
+              "measuring");
+        gonio_table_free(&table);
+        gonio_material_free(&material);
+        gonio_readings_free(&readings);
+        free(to);
+    }
+    gonio_plan_free(&plan);
+    free(path);
+}
+
+/* Seconds for a shell command, with FOLDER as its working directory. */
+static double command_seconds(const char *folder, const char *command)
+{
+    char *line = NULL;
+    check(asprintf(&line, "cd '%s' && %s", folder, command) > 0, "memory");
+    const double start = now();
+    check(system(line) == 0, command);
+    free(line);
+    return now() - start;
+}
+
+/* Empties FOLDER/out and waits for the disk. */
+static void make_room(const char *folder)
+{
+    command_seconds(folder, "rm -rf out && mkdir out && sync");
+}
+
+static double plain_writes_seconds(const char *folder, const char *data)
+{
+    double seconds = 0.0;
+    for (int k = 0; k < TABLES; k++) {
+        char *path = NULL;
+        check(asprintf(&path, "%s/out/%03d.binary", folder, k) > 0, "memory");
+        seconds += plain_write_seconds(path, data, MERL_SIZE);
+        free(path);
+    }
+    return seconds;
+}
+
+/* The whole command, reading of the basis and of the readings included. */
+static void bench_reconstruct_many(bench *b, gonio_context *context, const gonio_basis *basis,
+                                   const char *folder, const char *data)
+{
+    char *path = NULL;
+    check(asprintf(&path, "%s/basis.gonio", folder) > 0 &&
+              gonio_basis_write(context, basis, NULL, path) == GONIO_OK,
+          "writing a basis");
+    write_readings(b, context, basis, folder);
+    double ratio[RUNS];
+    double seconds[RUNS];
+    for (int run = 0; run < RUNS; run++) {
+        make_room(folder);
+        const double plain = plain_writes_seconds(folder, data);
+        make_room(folder);
+        seconds[run] = command_seconds(folder, GONIO_PROGRAM
+                                       " reconstruct -q basis.gonio readings-*.csv -o out");
+        ratio[run] = seconds[run] / plain;
+    }
+    report(b, "reconstruct 100 materials in one command", median(seconds, RUNS), "s");
+    report(b, "reconstruct 100 materials: over plain write(2)", median(ratio, RUNS), "x");
+    command_seconds(folder, "rm -rf out basis.gonio plan.csv readings-*.csv");
+    free(path);
+}
+
+static void bench_reconstruct(bench *b)
+{
+    gonio_context *all = make_context(0);
+    gonio_basis *basis = learn(all, b->paths, BASIS_MATERIALS, 35, NULL);
+    char *folder = scratch_folder();
+    char *path = NULL;
+    check(asprintf(&path, "%s/table.binary", folder) > 0, "memory");
+    char *data = table_bytes(b, all, path);
+    bench_reconstruct_one(b, all, basis, path, data);
+    bench_reconstruct_many(b, all, basis, folder, data);
     unlink(path);
     rmdir(folder);
     free(data);

@@ -70,11 +70,12 @@ GONIO_API void gonio_fingerprint_free(gonio_fingerprint **fingerprint);
 
 /* Writes a material as a MERL .binary table: int32 90, 90, 180, then three planes (R, G, B) of
  * float64 rho / ((1, 1.15, 1.66)/1500), -1 for no data. The file appears whole or not at all.
- * Errors: _IO, and those of the source. */
+ * Errors: _IO, _CANCELLED, and those of the source. */
 GONIO_API gonio_status gonio_material_write_merl(gonio_context *context,
                                                  const gonio_material *material, const char *path);
 
-/* A material read whole (35 MB), for look-ups in any order. */
+/* A material read whole (35 MB), for look-ups in any order. Errors of loading: _CANCELLED, _MEMORY,
+ * and those of the source. */
 typedef struct gonio_table gonio_table;
 
 GONIO_API gonio_status gonio_table_load(gonio_context *context, const gonio_material *material,

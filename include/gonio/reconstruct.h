@@ -55,6 +55,20 @@ GONIO_API gonio_status gonio_reconstruction_material(gonio_context *context,
                                                      const gonio_reconstruction *reconstruction,
                                                      const char *name, gonio_material **material);
 
+/* Solves for `count` materials and writes readings[k]'s reconstruction to paths[k] as a MERL table
+ * (material.h), several at a time. Every table appears whole or not at all, and after those before
+ * it: if one fails, those before it are in place, it and those after it are not. Of several
+ * failures of solving the first is told. The bytes do not depend on the number of threads; memory
+ * does, not on `count`.
+ * made: `count` pointers; on return, success or not, the reconstructions of the tables that are in
+ * place, to be freed by the caller, and NULL for the others.
+ * Errors: those of gonio_reconstruct; _IO; _MEMORY; _CANCELLED. */
+GONIO_API gonio_status gonio_reconstruct_tables(gonio_context *context, const gonio_basis *basis,
+                                                const gonio_readings *const *readings,
+                                                const char *const *paths, size_t count,
+                                                const gonio_reconstruct_options *options,
+                                                gonio_reconstruction **made);
+
 /* A material's own bivariate average (database.h) as a material: the best any bivariate method can
  * do. The original must outlive it. */
 GONIO_API gonio_status gonio_bivariate_material(gonio_context *context,

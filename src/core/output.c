@@ -74,6 +74,7 @@ gonio_status gonio_i_output_open(gonio_context *context, const char *path, gonio
     const gonio_status status = open_target(context, path, output);
     if (status != GONIO_OK) {
         free(output->path);
+        *output = (gonio_i_output){.descriptor = -1};
     }
     return status;
 }
@@ -115,16 +116,56 @@ gonio_status gonio_i_output_write_at(gonio_context *context, gonio_i_output *out
     return GONIO_OK;
 }
 
+/* File systems that cannot do it say so; writing tells the rest. */
+gonio_status gonio_i_output_reserve(gonio_context *context, gonio_i_output *output, off_t size)
+{
+#ifdef __linux__
+    int result = 0;
+    do {
+        result = output->temporary != NULL ? fallocate(output->descriptor, 0, 0, size) : 0;
+    } while (result != 0 && errno == EINTR);
+    if (result != 0 && (errno == ENOSPC || errno == EFBIG || errno == EDQUOT || errno == EIO)) {
+        return cannot_write(context, output->path);
+    }
+#else
+    (void)context;
+    (void)output;
+    (void)size;
+#endif
+    return GONIO_OK;
+}
+
+void gonio_i_output_start_flush(const gonio_i_output *output, off_t offset, off_t size)
+{
+#ifdef __linux__
+    if (output->temporary != NULL) {
+        (void)sync_file_range(output->descriptor, offset, size, SYNC_FILE_RANGE_WRITE);
+    }
+#else
+    (void)output;
+    (void)offset;
+    (void)size;
+#endif
+}
+
+gonio_status gonio_i_output_flush(gonio_context *context, gonio_i_output *output)
+{
+    if (output->temporary != NULL && !output->flushed && fsync(output->descriptor) != 0) {
+        return cannot_write(context, output->path);
+    }
+    output->flushed = true;
+    return GONIO_OK;
+}
+
 /* Flushes to disk before the rename, so that a crash cannot leave an empty file under the name. */
 static gonio_status put_in_place(gonio_context *context, gonio_i_output *output)
 {
-    if (output->temporary == NULL) {
-        return GONIO_OK;
-    }
-    if (fsync(output->descriptor) != 0 || rename(output->temporary, output->path) != 0) {
+    const gonio_status status = gonio_i_output_flush(context, output);
+    if (status == GONIO_OK && output->temporary != NULL &&
+        rename(output->temporary, output->path) != 0) {
         return cannot_write(context, output->path);
     }
-    return GONIO_OK;
+    return status;
 }
 
 gonio_status gonio_i_output_close(gonio_context *context, gonio_i_output *output,

@@ -11,6 +11,32 @@ struct gonio_table {
     double *rho; /* [theta_h][channel][theta_d][phi_d] */
 };
 
+static void load_slabs(gonio_context *team, const gonio_material *material, int threads,
+                       double *rho, gonio_status *status)
+{
+    int finished = 0;
+#pragma omp parallel for schedule(dynamic) num_threads(threads)
+    for (int theta_h = 0; theta_h < GONIO_THETA_H_BINS; theta_h++) {
+        gonio_status mine;
+#pragma omp atomic read
+        mine = *status;
+        if (mine == GONIO_OK) {
+            mine = gonio_material_read_slab(material, team, theta_h,
+                                            rho + (size_t)theta_h * GONIO_SLAB_VALUES);
+        }
+        int done;
+#pragma omp atomic capture
+        done = ++finished;
+        if (mine == GONIO_OK) {
+            mine = gonio_i_progress(team, "reading", (double)done / GONIO_THETA_H_BINS);
+        }
+        if (mine != GONIO_OK) {
+#pragma omp atomic write
+            *status = mine;
+        }
+    }
+}
+
 gonio_status gonio_table_load(gonio_context *context, const gonio_material *material,
                               gonio_table **table)
 {
@@ -19,23 +45,15 @@ gonio_status gonio_table_load(gonio_context *context, const gonio_material *mate
         return GONIO_ERROR_MEMORY;
     }
     gonio_status status = GONIO_OK;
-    gonio_context *team = gonio_i_team_begin(context);
     made->rho = gonio_i_allocate(context, (size_t)GONIO_THETA_H_BINS * GONIO_SLAB_VALUES,
                                  sizeof *made->rho);
     if (made->rho == NULL) {
         status = GONIO_ERROR_MEMORY;
     } else {
-#pragma omp parallel for schedule(dynamic) num_threads(gonio_context_threads(context))
-        for (int theta_h = 0; theta_h < GONIO_THETA_H_BINS; theta_h++) {
-            double *slab = made->rho + (size_t)theta_h * GONIO_SLAB_VALUES;
-            const gonio_status mine = gonio_material_read_slab(material, team, theta_h, slab);
-            if (mine != GONIO_OK) {
-#pragma omp critical(gonio_table_load)
-                status = mine;
-            }
-        }
+        gonio_context *team = gonio_i_team_begin(context);
+        load_slabs(team, material, gonio_context_threads(context), made->rho, &status);
+        gonio_i_team_end(team, context);
     }
-    gonio_i_team_end(team, context);
     if (status != GONIO_OK) {
         gonio_table_free(&made);
         return status;

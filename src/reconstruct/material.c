@@ -1,7 +1,6 @@
 /* Reconstructions as materials: values made slab by slab when asked for. */
 #include <gonio/reconstruct.h>
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,56 +16,99 @@ typedef struct reconstructed {
     double coefficients[]; /* [columns][components] */
 } reconstructed;
 
-/* g = m + V c at a cell of the basis. */
-static double log_value(const reconstructed *r, size_t position, size_t channel)
+GONIO_I_VECTORISED static double dot(size_t n, const double *x, const double *y)
 {
-    const bool joint = r->columns == 1;
-    const size_t row = joint ? GONIO_CHANNELS * position + channel : position;
-    const double *v = r->view.vectors + row * r->view.components;
-    const double *c = r->coefficients + (joint ? 0 : channel * r->components);
-    double g = r->view.mean[row];
-    for (size_t k = 0; k < r->components; k++) {
-        g += v[k] * c[k];
+    double sum = 0.0;
+#pragma omp simd reduction(+ : sum)
+    for (size_t k = 0; k < n; k++) {
+        sum += x[k] * y[k];
     }
-    return g;
+    return sum;
 }
 
-/* Fills one cell's phi_d bins of a channel with g, or each bin of a full basis. */
-static void fill_row(const reconstructed *r, int theta_h, int theta_d, size_t channel, double *row)
+/* g = m + V c at a cell of the basis. */
+static double log_value(const reconstructed *r, int32_t cell, size_t channel)
 {
-    const int32_t cell = theta_d + GONIO_THETA_D_BINS * theta_h;
-    if (r->view.representation == GONIO_BIVARIATE) {
-        const double g = log_value(r, gonio_basis_position(r->basis, cell), channel);
-        for (int p = 0; p < GONIO_PHI_D_BINS; p++) {
-            row[p] = g;
-        }
-        return;
-    }
-    for (int p = 0; p < GONIO_PHI_D_BINS; p++) {
-        row[p] = log_value(r, gonio_basis_position(r->basis, cell * GONIO_PHI_D_BINS + p), channel);
+    const bool joint = r->columns == 1;
+    const size_t position = gonio_basis_position(r->basis, cell);
+    const size_t row = joint ? GONIO_CHANNELS * position + channel : position;
+    const double *c = r->coefficients + (joint ? 0 : channel * r->components);
+    return r->view.mean[row] + dot(r->components, r->view.vectors + row * r->view.components, c);
+}
+
+/* Between 0 and a number whose exponential is finite; 0 for NaN. */
+GONIO_I_VECTORISED static void clamp(size_t n, double *g)
+{
+    const double largest = 600.0;
+    for (size_t k = 0; k < n; k++) {
+        const double positive = g[k] > 0.0 ? g[k] : 0.0;
+        g[k] = positive < largest ? positive : largest;
     }
 }
 
 /* rho = s (e^g - 1), clamped at 0, in place. A g beyond the range of numbers stays finite. */
 static void to_brdf(size_t n, double *g, int channel)
 {
-    const double largest = 600.0;
     const double scale = gonio_log_scale(channel);
-    for (size_t k = 0; k < n; k++) {
-        g[k] = fmin(fmax(g[k], 0.0), largest);
-    }
+    clamp(n, g);
     gonio_i_expm1(n, g, g);
     for (size_t k = 0; k < n; k++) {
         g[k] *= scale;
     }
 }
 
-static void clear_invalid(int theta_h, int theta_d, double *row)
+/* Sets the bins first .. last - 1 of a row. */
+static void fill(double *row, int first, int last, double value)
 {
-    const int first = gonio_i_first_valid_phi(theta_h, theta_d);
-    for (int p = 0; p < GONIO_PHI_D_BINS; p++) {
-        if (p < first || p >= GONIO_PHI_D_BINS - first) {
-            row[p] = -1.0;
+    for (int p = first; p < last; p++) {
+        row[p] = value;
+    }
+}
+
+static double *row_of(double *rho, int channel, int theta_d)
+{
+    return rho + (size_t)channel * GONIO_SLAB_BINS + (size_t)theta_d * GONIO_PHI_D_BINS;
+}
+
+/* One value for all valid bins of a cell. */
+static void spread_cells(const reconstructed *r, int theta_h, const int *first, double *rho)
+{
+    for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
+        double value[GONIO_THETA_D_BINS];
+        for (int theta_d = 0; theta_d < GONIO_THETA_D_BINS; theta_d++) {
+            value[theta_d] = log_value(r, theta_d + GONIO_THETA_D_BINS * theta_h, (size_t)channel);
+        }
+        to_brdf(GONIO_THETA_D_BINS, value, channel);
+        for (int theta_d = 0; theta_d < GONIO_THETA_D_BINS; theta_d++) {
+            fill(row_of(rho, channel, theta_d), first[theta_d], GONIO_PHI_D_BINS - first[theta_d],
+                 value[theta_d]);
+        }
+    }
+}
+
+/* A value of its own for each valid bin. */
+static void fill_bins(const reconstructed *r, int theta_h, const int *first, double *rho)
+{
+    for (int theta_d = 0; theta_d < GONIO_THETA_D_BINS; theta_d++) {
+        const int32_t cell = theta_d + GONIO_THETA_D_BINS * theta_h;
+        const int last = GONIO_PHI_D_BINS - first[theta_d];
+        for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
+            double *row = row_of(rho, channel, theta_d);
+            for (int p = first[theta_d]; p < last; p++) {
+                row[p] = log_value(r, cell * GONIO_PHI_D_BINS + p, (size_t)channel);
+            }
+            to_brdf((size_t)(last - first[theta_d]), row + first[theta_d], channel);
+        }
+    }
+}
+
+static void clear_invalid(const int *first, double *rho)
+{
+    for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
+        for (int theta_d = 0; theta_d < GONIO_THETA_D_BINS; theta_d++) {
+            double *row = row_of(rho, channel, theta_d);
+            fill(row, 0, first[theta_d], -1.0);
+            fill(row, GONIO_PHI_D_BINS - first[theta_d], GONIO_PHI_D_BINS, -1.0);
         }
     }
 }
@@ -74,14 +116,17 @@ static void clear_invalid(int theta_h, int theta_d, double *row)
 static gonio_status read_reconstructed(void *self, gonio_context *context, int theta_h, double *rho)
 {
     (void)context;
+    const reconstructed *r = self;
+    int first[GONIO_THETA_D_BINS];
     for (int theta_d = 0; theta_d < GONIO_THETA_D_BINS; theta_d++) {
-        for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
-            double *row = rho + channel * GONIO_SLAB_BINS + (size_t)theta_d * GONIO_PHI_D_BINS;
-            fill_row(self, theta_h, theta_d, channel, row);
-            to_brdf(GONIO_PHI_D_BINS, row, (int)channel);
-            clear_invalid(theta_h, theta_d, row);
-        }
+        first[theta_d] = gonio_i_first_valid_phi(theta_h, theta_d);
     }
+    if (r->view.representation == GONIO_BIVARIATE) {
+        spread_cells(r, theta_h, first, rho);
+    } else {
+        fill_bins(r, theta_h, first, rho);
+    }
+    clear_invalid(first, rho);
     return GONIO_OK;
 }
 

@@ -157,4 +157,25 @@ for signal in INT TERM; do
     expect_true "an interrupted plan leaves nothing" test "$(snapshot)" = "$before"
 done
 
+# Many reconstructions: stopped when the first is there, long before the last.
+mkdir several results
+for k in {10..49}; do ln r.csv several/$k.csv; done
+for signal in INT TERM; do
+    "$GONIO" reconstruct b.gonio several/*.csv -o results >"$root/work/stdout" \
+        2>"$root/work/stderr" &
+    job=$!
+    while [ ! -e results/10.binary ] && kill -0 $job 2>/dev/null; do :; done
+    kill -s "$signal" $job
+    wait $job
+    code=$?
+    count=$(find results -name '*.binary' | wc -l)
+    whole=$(find results -name '*.binary' -size 34992012c | wc -l)
+    expect_true "interrupted reconstructions fail" test $code -eq 1
+    expect_true "an interrupt takes effect before the last of many" test "$count" -lt 40
+    expect_true "interrupted reconstructions are whole or not there" test "$whole" -eq "$count"
+    expect_true "and nothing else is left" test "$(ls results | wc -l)" -eq "$count"
+    expect_true "those reported are there" test "$(wc -l <"$root/work/stdout")" -eq "$count"
+    rm results/*
+done
+
 finish

@@ -1,10 +1,12 @@
 /* Reconstruction: a material inside the span of the basis is given back. */
 #include "../support.h"
 
+#include <dirent.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "core/random.h"
 #include "made_material.h"
@@ -19,12 +21,12 @@ typedef struct fixture {
     gonio_basis_view view;
 } fixture;
 
-static gonio_basis *learn(gonio_channel_model channels)
+static gonio_basis *learn(gonio_representation representation, gonio_channel_model channels)
 {
     static const char *const paths[MATERIALS] = {
         "atlas:gold-polished", "atlas:red-glossy-plastic", "atlas:burgundy-velvet",
         "atlas:oak-sawn",      "atlas:plaster-cast",       "atlas:steel-brushed"};
-    const gonio_database_options how = {GONIO_BIVARIATE, channels, NULL};
+    const gonio_database_options how = {representation, channels, NULL};
     const gonio_basis_options options = {.components = K};
     gonio_database *database = NULL;
     gonio_basis *basis = NULL;
@@ -41,7 +43,7 @@ static int set_up(void **state)
     f->folder = support_folder();
     snprintf(f->path, sizeof f->path, "%s/readings.csv", f->folder);
     f->context = support_context();
-    f->basis = learn(GONIO_JOINT);
+    f->basis = learn(GONIO_BIVARIATE, GONIO_JOINT);
     f->view = gonio_basis_describe(f->basis);
     *state = f;
     return 0;
@@ -219,7 +221,7 @@ static void test_all_channels_may_be_used(void **state)
 static void test_separate_channels(void **state)
 {
     const fixture *f = *state;
-    gonio_basis *basis = learn(GONIO_SEPARATE);
+    gonio_basis *basis = learn(GONIO_BIVARIATE, GONIO_SEPARATE);
     assert_chain(f, basis, false, READINGS);
     gonio_basis_free(&basis);
 }
@@ -268,7 +270,7 @@ static void test_directions_between_centres(void **state)
 static void test_what_does_not_belong_together(void **state)
 {
     const fixture *f = *state;
-    gonio_basis *other = learn(GONIO_SEPARATE);
+    gonio_basis *other = learn(GONIO_BIVARIATE, GONIO_SEPARATE);
     gonio_reconstruct_options options = {.other_basis = false};
     gonio_reconstruction *r = NULL;
     write_plan(f, f->basis);
@@ -290,6 +292,238 @@ static void test_what_does_not_belong_together(void **state)
     gonio_basis_free(&other);
 }
 
+/* ---- the values of the material ---- */
+
+/* Every bin against s (e^(m + V c) - 1), worked out bin by bin. */
+static void assert_values(const gonio_basis *basis)
+{
+    const gonio_basis_view view = gonio_basis_describe(basis);
+    const bool joint = view.channels == GONIO_JOINT;
+    gonio_material *material = make_truth(basis);
+    gonio_table *table = made_table(material);
+    const double *values = gonio_table_values(table);
+    for (int32_t index = 0; index < GONIO_BINS; index += 7) {
+        const gonio_bin bin = gonio_bin_from_index(index);
+        const int32_t cell =
+            view.representation == GONIO_BIVARIATE ? index / GONIO_PHI_D_BINS : index;
+        const size_t position = gonio_basis_position(basis, cell);
+        for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
+            const size_t row = joint ? GONIO_CHANNELS * position + channel : position;
+            double g = view.mean[row];
+            for (size_t k = 0; k < K; k++) {
+                g += view.vectors[row * K + k] * truth[joint ? k : channel * K + k];
+            }
+            const double found =
+                values[(size_t)bin.theta_h * GONIO_SLAB_VALUES + channel * GONIO_SLAB_BINS +
+                       (size_t)(bin.theta_d * GONIO_PHI_D_BINS + bin.phi_d)];
+            const double expected = !gonio_bin_is_valid(bin) ? -1.0
+                                    : g > 0.0 ? gonio_log_scale((int)channel) * expm1(g)
+                                              : 0.0;
+            if (!(fabs(found - expected) <= 1e-11 * fabs(expected) + 1e-18)) {
+                fail_msg("bin %d, channel %zu: %.17g, not %.17g", (int)index, channel, found,
+                         expected);
+            }
+        }
+    }
+    gonio_table_free(&table);
+    gonio_material_free(&material);
+}
+
+static void test_every_bin_has_the_value_of_its_row(void **state)
+{
+    const fixture *f = *state;
+    gonio_basis *separate = learn(GONIO_BIVARIATE, GONIO_SEPARATE);
+    gonio_basis *full = learn(GONIO_FULL, GONIO_JOINT);
+    assert_values(f->basis);
+    assert_values(separate);
+    assert_values(full);
+    gonio_basis_free(&separate);
+    gonio_basis_free(&full);
+}
+
+/* ---- several tables ---- */
+
+enum { TABLES = 4 };
+
+typedef struct several {
+    gonio_readings *readings[TABLES];
+    char *path[TABLES];
+    gonio_reconstruction *made[TABLES];
+} several;
+
+/* Readings that differ, as noise does. */
+static void make_several(const fixture *f, several *s)
+{
+    write_plan(f, f->basis);
+    gonio_material *material = make_truth(f->basis);
+    gonio_table *table = made_table(material);
+    for (size_t k = 0; k < TABLES; k++) {
+        const gonio_readings_options plan = {.values_needed = false};
+        const gonio_instrument_options noise = {.noise = 0.01, .seed = k};
+        assert_int_equal(gonio_readings_read(f->context, f->path, &plan, &s->readings[k]),
+                         GONIO_OK);
+        assert_int_equal(gonio_measure(f->context, s->readings[k], table, &noise), GONIO_OK);
+        s->path[k] = malloc(512);
+        assert_non_null(s->path[k]);
+        snprintf(s->path[k], 512, "%s/table-%zu.binary", f->folder, k);
+    }
+    gonio_table_free(&table);
+    gonio_material_free(&material);
+}
+
+static void free_several(several *s)
+{
+    for (size_t k = 0; k < TABLES; k++) {
+        gonio_readings_free(&s->readings[k]);
+        free(s->path[k]);
+    }
+}
+
+static gonio_status write_several(const fixture *f, gonio_context *context, several *s)
+{
+    return gonio_reconstruct_tables(context, f->basis, (const gonio_readings *const *)s->readings,
+                                    (const char *const *)s->path, TABLES, NULL, s->made);
+}
+
+/* The first `count` are in place, whole, and reported, the others not; nothing else is left. */
+static void assert_in_place(const fixture *f, several *s, size_t count)
+{
+    for (size_t k = 0; k < TABLES; k++) {
+        gonio_material *material = NULL;
+        const bool there = gonio_material_open(NULL, s->path[k], &material) == GONIO_OK;
+        assert_int_equal(there, k < count);
+        assert_int_equal(s->made[k] != NULL, k < count);
+        gonio_material_free(&material);
+        gonio_reconstruction_free(&s->made[k]);
+        unlink(s->path[k]);
+    }
+    DIR *folder = opendir(f->folder);
+    assert_non_null(folder);
+    for (const struct dirent *entry = readdir(folder); entry != NULL; entry = readdir(folder)) {
+        assert_null(strstr(entry->d_name, ".part"));
+    }
+    closedir(folder);
+}
+
+static uint64_t fingerprint_of(const char *path)
+{
+    gonio_fingerprint *fingerprint = NULL;
+    assert_int_equal(gonio_fingerprint_create(&fingerprint), GONIO_OK);
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    char block[4096];
+    for (size_t got = 0; (got = fread(block, 1, sizeof block, file)) > 0;) {
+        gonio_fingerprint_add(fingerprint, block, got);
+    }
+    fclose(file);
+    const uint64_t value = gonio_fingerprint_value(fingerprint);
+    gonio_fingerprint_free(&fingerprint);
+    return value;
+}
+
+static void test_tables_are_the_same_on_any_number_of_threads(void **state)
+{
+    const fixture *f = *state;
+    several s = {0};
+    uint64_t alone[TABLES];
+    make_several(f, &s);
+    for (size_t k = 0; k < TABLES; k++) {
+        gonio_reconstruction *r = NULL;
+        gonio_material *material = NULL;
+        assert_int_equal(gonio_reconstruct(NULL, f->basis, s.readings[k], NULL, &r), GONIO_OK);
+        assert_int_equal(gonio_reconstruction_material(NULL, f->basis, r, "one", &material),
+                         GONIO_OK);
+        assert_int_equal(gonio_material_write_merl(NULL, material, s.path[k]), GONIO_OK);
+        alone[k] = fingerprint_of(s.path[k]);
+        assert_true(k == 0 || alone[k] != alone[k - 1]);
+        gonio_material_free(&material);
+        gonio_reconstruction_free(&r);
+    }
+    static const int threads[] = {1, 2, 5};
+    for (size_t t = 0; t < sizeof threads / sizeof *threads; t++) {
+        const gonio_context_options options = {.threads = threads[t]};
+        gonio_context *context = NULL;
+        assert_int_equal(gonio_context_create(&context, &options), GONIO_OK);
+        assert_int_equal(write_several(f, context, &s), GONIO_OK);
+        for (size_t k = 0; k < TABLES; k++) {
+            assert_int_equal(s.made[k]->readings, READINGS);
+            assert_true(fingerprint_of(s.path[k]) == alone[k]);
+        }
+        assert_in_place(f, &s, TABLES);
+        gonio_context_free(&context);
+    }
+    free_several(&s);
+}
+
+static void test_tables_before_the_first_failure_are_written(void **state)
+{
+    const fixture *f = *state;
+    several s = {0};
+    make_several(f, &s);
+
+    char *path = s.path[2];
+    s.path[2] = strdup("/nowhere/table.binary");
+    assert_int_equal(write_several(f, f->context, &s), GONIO_ERROR_IO);
+    assert_non_null(strstr(support_message(), "/nowhere/table.binary: cannot write"));
+    assert_in_place(f, &s, 2);
+    free(s.path[2]);
+    s.path[2] = path;
+
+    FILE *file = fopen(f->path, "wb");
+    assert_non_null(file);
+    fputs("theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,R_per_sr\n10,0,20,180,0.1\n", file);
+    assert_int_equal(fclose(file), 0);
+    for (size_t k = 1; k < TABLES; k += 2) {
+        gonio_readings_free(&s.readings[k]);
+        assert_int_equal(gonio_readings_read(f->context, f->path, NULL, &s.readings[k]), GONIO_OK);
+    }
+    assert_int_equal(write_several(f, f->context, &s), GONIO_ERROR_UNDETERMINED);
+    assert_non_null(strstr(support_message(), "1 readings of which 1 are independent"));
+    assert_in_place(f, &s, 1);
+    free_several(&s);
+}
+
+typedef struct progress {
+    int calls;
+    int ends;
+    int most; /* calls, after which the work is cancelled */
+} progress;
+
+static int on_progress(void *user, const char *task, double fraction)
+{
+    progress *p = user;
+    assert_string_equal(task, "reconstructing");
+    assert_true(fraction >= 0.0 && fraction <= 1.0);
+    p->calls++;
+    p->ends += fraction == 1.0;
+    return p->calls >= p->most;
+}
+
+static void test_cancelled_tables_leave_nothing(void **state)
+{
+    const fixture *f = *state;
+    several s = {0};
+    make_several(f, &s);
+    for (int threads = 1; threads <= 2; threads++) {
+        progress p = {.most = 10000};
+        const gonio_context_options options = {
+            .progress = on_progress, .user = &p, .threads = threads};
+        gonio_context *context = NULL;
+        assert_int_equal(gonio_context_create(&context, &options), GONIO_OK);
+        assert_int_equal(write_several(f, context, &s), GONIO_OK);
+        assert_int_equal(p.calls, TABLES * GONIO_THETA_H_BINS + 1);
+        assert_int_equal(p.ends, 1);
+        assert_in_place(f, &s, TABLES);
+
+        p = (progress){.most = 50};
+        assert_int_equal(write_several(f, context, &s), GONIO_ERROR_CANCELLED);
+        assert_int_equal(p.calls, 50);
+        assert_in_place(f, &s, 0);
+        gonio_context_free(&context);
+    }
+    free_several(&s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -299,6 +533,10 @@ int main(void)
         cmocka_unit_test(test_separate_channels),
         cmocka_unit_test(test_directions_between_centres),
         cmocka_unit_test(test_what_does_not_belong_together),
+        cmocka_unit_test(test_every_bin_has_the_value_of_its_row),
+        cmocka_unit_test(test_tables_are_the_same_on_any_number_of_threads),
+        cmocka_unit_test(test_tables_before_the_first_failure_are_written),
+        cmocka_unit_test(test_cancelled_tables_leave_nothing),
     };
     return cmocka_run_group_tests_name("reconstruct", tests, set_up, tear_down);
 }

@@ -32,34 +32,27 @@ static void report(const gonio_reconstruction *r, const char *output, json_t *re
     }
 }
 
-static gonio_status write_result(tool *t, const gonio_basis *basis,
-                                 const gonio_reconstruction *reconstruction, const char *output)
-{
-    gonio_material *material = NULL;
-    gonio_status status = gonio_reconstruction_material(t->context, basis, reconstruction,
-                                                        "reconstruction", &material);
-    if (status == GONIO_OK) {
-        status = gonio_material_write_merl(t->context, material, output);
-    }
-    gonio_material_free(&material);
-    return status;
-}
-
 static gonio_status reconstruct(tool *t, const options *o, const gonio_basis *basis,
-                                const gonio_readings *readings, const char *output, json_t *results)
+                                gonio_readings *const *readings, char *const *outputs, size_t count,
+                                json_t *results)
 {
     const gonio_reconstruct_options how = {.components = (size_t)o->components,
                                            .all_channels = o->all_channels,
                                            .other_basis = o->other_basis};
-    gonio_reconstruction *reconstruction = NULL;
-    gonio_status status = gonio_reconstruct(t->context, basis, readings, &how, &reconstruction);
-    if (status == GONIO_OK) {
-        status = write_result(t, basis, reconstruction, output);
+    gonio_reconstruction **made = calloc(count, sizeof(gonio_reconstruction *));
+    if (made == NULL) {
+        return GONIO_ERROR_MEMORY;
     }
-    if (status == GONIO_OK) {
-        report(reconstruction, output, results);
+    const gonio_status status =
+        gonio_reconstruct_tables(t->context, basis, (const gonio_readings *const *)readings,
+                                 (const char *const *)outputs, count, &how, made);
+    for (size_t k = 0; k < count; k++) {
+        if (made[k] != NULL) {
+            report(made[k], outputs[k], results);
+        }
+        gonio_reconstruction_free(&made[k]);
     }
-    gonio_reconstruction_free(&reconstruction);
+    free(made);
     return status;
 }
 
@@ -91,8 +84,8 @@ static int reconstruct_all(tool *t, const options *o, const char *basis_path,
     if (status == GONIO_OK) {
         status = tool_basis(t, basis_path, &basis);
     }
-    for (size_t k = 0; k < count && status == GONIO_OK; k++) {
-        status = reconstruct(t, o, basis, readings[k], outputs[k], results);
+    if (status == GONIO_OK) {
+        status = reconstruct(t, o, basis, readings, outputs, count, results);
     }
     for (size_t k = 0; readings != NULL && k < count; k++) {
         gonio_readings_free(&readings[k]);

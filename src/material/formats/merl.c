@@ -1,7 +1,7 @@
 /* MERL .binary tables: int32 theta_h, theta_d, phi_d bins, then three planes (R, G, B) of float64,
  * phi_d fastest; reflectance = stored x (1, 1.15, 1.66)/1500 1/sr; negative for no data. All
  * little-endian. */
-#include "format.h"
+#include "merl.h"
 
 #include <endian.h>
 #include <errno.h>
@@ -12,11 +12,16 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "../../core/output.h"
+#include "format.h"
 
 static const double scale[GONIO_CHANNELS] = {1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0};
 
-enum { HEADER = 12, FULL_CIRCLE = 2 * GONIO_PHI_D_BINS };
+enum {
+    HEADER = 12,
+    FULL_CIRCLE = 2 * GONIO_PHI_D_BINS,
+    PLANE = GONIO_SLAB_BINS * sizeof(double), /* bytes of one channel of a slab */
+    BLOCK = 5                                 /* slabs that are written in a row; divides 90 */
+};
 
 typedef struct merl_table {
     int descriptor;
@@ -217,65 +222,123 @@ static gonio_status open_table(gonio_context *context, const gonio_i_file *file,
 
 const gonio_i_format_reader gonio_i_merl_reader = {"MERL .binary table", probe, open_table};
 
-static void to_stored(double *values, int channel)
+GONIO_I_VECTORISED static void to_stored(double *values, int channel)
 {
     for (size_t k = 0; k < GONIO_SLAB_BINS; k++) {
-        values[k] = values[k] >= 0.0 ? values[k] / scale[channel] : -1.0;
+        const double stored = values[k] / scale[channel]; /* outside of the choice: vectorises */
+        values[k] = values[k] >= 0.0 ? stored : -1.0;
     }
     byte_order_to_host(values, GONIO_SLAB_BINS);
 }
 
-static gonio_status write_slab(gonio_context *context, const gonio_material *material, int theta_h,
-                               double *rho, gonio_i_output *output)
+typedef struct writer {
+    gonio_context *context;
+    const gonio_material *material;
+    gonio_i_output *output;
+    gonio_i_tables_progress *progress;
+    gonio_status status; /* of the first thread that failed */
+} writer;
+
+/* Where a slab's plane of a channel stands in the file. */
+static off_t plane_offset(int channel, int theta_h)
 {
-    gonio_status status = gonio_material_read_slab(material, context, theta_h, rho);
+    return (off_t)(HEADER + PLANE * (size_t)(GONIO_THETA_H_BINS * channel + theta_h));
+}
+
+static gonio_status report_slab(const writer *w)
+{
+    size_t done;
+#pragma omp atomic capture
+    done = ++w->progress->slabs;
+    const size_t all = w->progress->tables * GONIO_THETA_H_BINS;
+    return gonio_i_progress(w->context, w->progress->task, 0.999 * (double)done / (double)all);
+}
+
+static gonio_status write_slab(const writer *w, int theta_h, double *rho)
+{
+    gonio_status status = gonio_material_read_slab(w->material, w->context, theta_h, rho);
     for (int channel = 0; channel < GONIO_CHANNELS && status == GONIO_OK; channel++) {
         double *plane = rho + (size_t)channel * GONIO_SLAB_BINS;
-        const size_t size = sizeof(double) * GONIO_SLAB_BINS;
-        const size_t slab = (size_t)GONIO_THETA_H_BINS * (size_t)channel + (size_t)theta_h;
         to_stored(plane, channel);
-        status =
-            gonio_i_output_write_at(context, output, plane, size, (off_t)(HEADER + slab * size));
+        status = gonio_i_output_write_at(w->context, w->output, plane, PLANE,
+                                         plane_offset(channel, theta_h));
+    }
+    return status == GONIO_OK ? report_slab(w) : status;
+}
+
+/* Some slabs, whose way to the disk begins while the next ones are made. */
+static gonio_status write_block(const writer *w, int first, double *rho)
+{
+    gonio_status status = GONIO_OK;
+    for (int k = 0; k < BLOCK && status == GONIO_OK; k++) {
+        status = write_slab(w, first + k, rho);
+    }
+    for (int channel = 0; channel < GONIO_CHANNELS && status == GONIO_OK; channel++) {
+        gonio_i_output_start_flush(w->output, plane_offset(channel, first), BLOCK * PLANE);
     }
     return status;
 }
 
-static gonio_status write_slabs(gonio_context *context, const gonio_material *material,
-                                gonio_i_output *output)
+static void write_blocks(writer *w, int threads)
 {
-    gonio_status result = GONIO_OK;
-    gonio_context *team = gonio_i_team_begin(context);
-#pragma omp parallel num_threads(gonio_context_threads(context))
+#pragma omp parallel num_threads(threads)
     {
-        double *rho = gonio_i_allocate(team, GONIO_SLAB_VALUES, sizeof *rho);
+        double *rho = gonio_i_allocate(w->context, GONIO_SLAB_VALUES, sizeof *rho);
         gonio_status mine = rho != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
 #pragma omp for schedule(dynamic)
-        for (int theta_h = 0; theta_h < GONIO_THETA_H_BINS; theta_h++) {
-            if (mine == GONIO_OK) {
-                mine = write_slab(team, material, theta_h, rho, output);
+        for (int first = 0; first < GONIO_THETA_H_BINS; first += BLOCK) {
+            gonio_status seen;
+#pragma omp atomic read
+            seen = w->status;
+            if (mine == GONIO_OK && seen == GONIO_OK) {
+                mine = write_block(w, first, rho);
+            }
+            if (mine != GONIO_OK) {
+#pragma omp atomic write
+                w->status = mine;
             }
         }
         free(rho);
-#pragma omp critical(gonio_write_merl)
-        result = mine != GONIO_OK ? mine : result;
     }
-    gonio_i_team_end(team, context);
-    return result;
+}
+
+static gonio_status write_header(gonio_context *context, gonio_i_output *output)
+{
+    const uint32_t header[3] = {htole32(GONIO_THETA_H_BINS), htole32(GONIO_THETA_D_BINS),
+                                htole32(GONIO_PHI_D_BINS)};
+    return gonio_i_output_write(context, output, header, sizeof header);
+}
+
+gonio_status gonio_i_merl_write(gonio_context *context, const gonio_material *material,
+                                const char *path, int threads, gonio_i_tables_progress *progress,
+                                gonio_i_output *output)
+{
+    gonio_status status = gonio_i_output_open(context, path, output);
+    if (status == GONIO_OK) {
+        status = gonio_i_output_reserve(context, output, plane_offset(GONIO_CHANNELS, 0));
+    }
+    if (status == GONIO_OK) {
+        status = write_header(context, output);
+    }
+    if (status == GONIO_OK) {
+        gonio_context *team = gonio_i_team_begin(context);
+        writer w = {team, material, output, progress, GONIO_OK};
+        write_blocks(&w, threads);
+        gonio_i_team_end(team, context);
+        status = w.status;
+    }
+    return status == GONIO_OK ? gonio_i_output_flush(context, output) : status;
 }
 
 gonio_status gonio_material_write_merl(gonio_context *context, const gonio_material *material,
                                        const char *path)
 {
-    const uint32_t header[3] = {htole32(GONIO_THETA_H_BINS), htole32(GONIO_THETA_D_BINS),
-                                htole32(GONIO_PHI_D_BINS)};
+    gonio_i_tables_progress progress = {"writing", 0, 1};
     gonio_i_output output;
-    gonio_status status = gonio_i_output_open(context, path, &output);
-    if (status != GONIO_OK) {
-        return status;
-    }
-    status = gonio_i_output_write(context, &output, header, sizeof header);
+    gonio_status status = gonio_i_merl_write(context, material, path,
+                                             gonio_context_threads(context), &progress, &output);
     if (status == GONIO_OK) {
-        status = write_slabs(context, material, &output);
+        status = gonio_i_progress(context, progress.task, 1.0);
     }
     return gonio_i_output_close(context, &output, status);
 }

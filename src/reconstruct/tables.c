@@ -1,0 +1,104 @@
+/* Reconstructions written as MERL tables, several at a time. */
+#include <gonio/reconstruct.h>
+
+#include "../core/core.h"
+#include "../material/formats/merl.h"
+
+typedef struct tables {
+    gonio_context *context;
+    const gonio_basis *basis;
+    const char *const *paths;
+    gonio_reconstruction **made;
+    int threads; /* for each */
+    gonio_i_tables_progress progress;
+    gonio_status status; /* of the first that failed */
+} tables;
+
+/* In order, so that of several that cannot be solved the first is told. Returns how many come
+ * before it. */
+static size_t solve(tables *all, const gonio_readings *const *readings, size_t count,
+                    const gonio_reconstruct_options *options)
+{
+    for (size_t k = 0; k < count; k++) {
+        all->status =
+            gonio_reconstruct(all->context, all->basis, readings[k], options, &all->made[k]);
+        if (all->status != GONIO_OK) {
+            return k;
+        }
+    }
+    return count;
+}
+
+/* Writes table k all but the last step. */
+static gonio_status write_table(tables *all, gonio_context *team, size_t k, gonio_i_output *output)
+{
+    gonio_material *material = NULL;
+    gonio_status status =
+        gonio_reconstruction_material(team, all->basis, all->made[k], "reconstruction", &material);
+    if (status == GONIO_OK) {
+        status =
+            gonio_i_merl_write(team, material, all->paths[k], all->threads, &all->progress, output);
+    }
+    gonio_material_free(&material);
+    return status;
+}
+
+/* Puts table k in place, unless one before it failed. */
+static void finish_table(tables *all, gonio_context *team, size_t k, gonio_status written,
+                         gonio_i_output *output)
+{
+    gonio_status before;
+#pragma omp atomic read
+    before = all->status;
+    const gonio_status status =
+        gonio_i_output_close(team, output, before != GONIO_OK ? before : written);
+    if (status != GONIO_OK) {
+        gonio_reconstruction_free(&all->made[k]);
+#pragma omp atomic write
+        all->status = status;
+    }
+}
+
+/* Several at a time, for one waits for the disk while another computes; each is put in place after
+ * those before it. */
+static void write_tables(tables *all, size_t count)
+{
+    const size_t threads = (size_t)gonio_context_threads(all->context);
+    const size_t teams = count < threads ? count : threads;
+    gonio_context *team = gonio_i_team_begin(all->context);
+    all->threads = teams > 0 ? (int)(threads / teams) : 1;
+#pragma omp parallel for ordered schedule(dynamic) num_threads((int)(teams > 0 ? teams : 1))
+    for (size_t k = 0; k < count; k++) {
+        gonio_i_output output = {.descriptor = -1};
+        gonio_status status;
+#pragma omp atomic read
+        status = all->status;
+        if (status == GONIO_OK) {
+            status = write_table(all, team, k, &output);
+        }
+#pragma omp ordered
+        finish_table(all, team, k, status, &output);
+    }
+    gonio_i_team_end(team, all->context);
+}
+
+gonio_status gonio_reconstruct_tables(gonio_context *context, const gonio_basis *basis,
+                                      const gonio_readings *const *readings,
+                                      const char *const *paths, size_t count,
+                                      const gonio_reconstruct_options *options,
+                                      gonio_reconstruction **made)
+{
+    tables all = {.context = context, .basis = basis, .paths = paths, .made = made};
+    for (size_t k = 0; k < count; k++) {
+        made[k] = NULL;
+    }
+    const size_t solved = solve(&all, readings, count, options);
+    const gonio_status unsolved = all.status;
+    all.status = GONIO_OK;
+    all.progress = (gonio_i_tables_progress){"reconstructing", 0, solved};
+    write_tables(&all, solved);
+    if (all.status == GONIO_OK) {
+        all.status = gonio_i_progress(context, all.progress.task, 1.0);
+    }
+    return all.status != GONIO_OK ? all.status : unsolved;
+}
