@@ -89,7 +89,7 @@ static void put_drawing(gonio_i_sheet *sheet, const gonio_i_directions *figure)
     fprintf(s,
             "  set key at screen 0.5,0.05 center center horizontal Left reverse samplen 1 width 3\n"
             "  set multiplot layout 1,%zu margins 0.01,0.99,0.1,%s spacing 0.02,0",
-            figure->count, figure->title != NULL ? "0.84" : "0.9");
+            figure->count, figure->title != NULL ? "0.86" : "0.9");
     if (figure->title != NULL) {
         fputs(" title ", s);
         gonio_i_put_quoted(s, figure->title);

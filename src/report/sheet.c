@@ -129,13 +129,15 @@ static void put_tics(FILE *script, const char *axis, const gonio_i_range *range)
     static const double few[] = {1.0, 2.0, 5.0};
     static const double many[] = {1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0};
     const double decades = log10(range->high / range->low);
-    const double *steps = decades < 1.1 ? many : few;
-    const size_t count = decades < 1.1 ? sizeof many / sizeof *many : sizeof few / sizeof *few;
+    const bool is_short = decades < 1.1;
+    const double *steps = is_short ? many : few;
+    const size_t count = is_short ? sizeof many / sizeof *many : sizeof few / sizeof *few;
     const char *word = "";
     if (!(decades < 2.6)) {
         return;
     }
-    for (double decade = floor(log10(range->low)); decade <= ceil(log10(range->high)); decade++) {
+    const int last = (int)ceil(log10(range->high));
+    for (int decade = (int)floor(log10(range->low)); decade <= last; decade++) {
         for (size_t k = 0; k < count; k++) {
             fprintf(script, "set %stics %s(%.10g)\n", axis, word, steps[k] * pow(10.0, decade));
             word = "add ";
@@ -275,8 +277,8 @@ void gonio_i_sheet_begin_drawing(gonio_i_sheet *sheet, int width, int height)
             "  if (format eq 'svg') { set terminal svg size %d,%d noenhanced font 'sans-serif,%d' "
             "background 'white' }\n"
             "  if (format eq 'pdf') { set terminal pdfcairo size %.4fin,%.4fin noenhanced "
-            "font 'sans-serif,%.4g' fontscale 1 linewidth 1 background 'white' }\n",
-            width, height, FONT, width / 96.0, height / 96.0, FONT * 0.75);
+            "font 'sans-serif,%d' fontscale 0.75 linewidth 1.7 background 'white' }\n",
+            width, height, FONT, width / 96.0, height / 96.0, FONT);
     fprintf(s,
             "  if (format eq 'png') { set terminal pngcairo size %d,%.0f noenhanced "
             "font 'sans-serif,%d' fontscale %.4g linewidth %.4g pointscale %.4g "
