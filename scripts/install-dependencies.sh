@@ -6,7 +6,8 @@ set -eu
 packages="gcc libc6-dev make cmake ninja-build pkg-config libopenblas-dev liblapacke-dev libhdf5-dev
 libxxhash-dev libcsv-dev libjansson-dev libpopt-dev"
 if [ "$2" = check ]; then
-    packages="$packages libcmocka-dev clang-format clang-tidy libomp-dev mandoc"
+    packages="$packages libcmocka-dev clang-format clang-tidy libomp-dev mandoc gnuplot-nox
+libopenmpi-dev openmpi-bin"
 fi
 
 if ! command -v dpkg-query >/dev/null 2>&1; then

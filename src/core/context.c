@@ -15,8 +15,11 @@ struct gonio_context {
     gonio_context_options options;
     pthread_mutex_t callbacks;
     bool cancelled;
-    gonio_context *above; /* of a team: where its messages go */
+    const char *task; /* the progress told last */
+    double fraction;
+    gonio_context *above; /* of a team or a piece: where its messages go */
     bool failed;          /* of a team: an error was told */
+    const char *piece;    /* of a piece: what its messages begin with */
 };
 
 /* More threads than this for each processor cost memory and gain nothing. */
@@ -67,6 +70,7 @@ gonio_status gonio_context_create(gonio_context **context, const gonio_context_o
     if (options != NULL) {
         made->options = *options;
     }
+    made->task = "";
     pthread_mutex_init(&made->callbacks, NULL);
     openblas_set_num_threads(1);
     *context = made;
@@ -112,6 +116,25 @@ void gonio_i_team_end(gonio_context *team, const gonio_context *context)
     }
 }
 
+gonio_status gonio_i_piece_begin(gonio_context *context, const char *name, gonio_context **piece)
+{
+    gonio_context *made = gonio_i_allocate(context, 1, sizeof *made);
+    if (made == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    made->options.threads = 1;
+    made->above = context;
+    made->piece = name;
+    pthread_mutex_init(&made->callbacks, NULL);
+    *piece = made;
+    return GONIO_OK;
+}
+
+void gonio_i_piece_end(gonio_context *piece)
+{
+    gonio_context_free(&piece);
+}
+
 /* Whether a team may tell this error: the first only. */
 static bool is_first_error(gonio_context *team)
 {
@@ -130,19 +153,30 @@ static void keep_to_one_line(char *text)
     }
 }
 
+/* "name: text", cut where there is no room. */
+static void put_in_front(const char *name, char *text, size_t size)
+{
+    char longer[4096 + 256];
+    snprintf(longer, sizeof longer, "%.200s: %s", name, text);
+    longer[size - 1] = '\0';
+    strcpy(text, longer);
+}
+
 static void send(gonio_context *context, gonio_message_level level, const char *format,
                  va_list arguments)
 {
+    char text[4096];
+    vsnprintf(text, sizeof text, format, arguments);
     for (; context != NULL && context->above != NULL; context = context->above) {
-        if (level == GONIO_MESSAGE_ERROR && !is_first_error(context)) {
+        if (context->piece != NULL) {
+            put_in_front(context->piece, text, sizeof text);
+        } else if (level == GONIO_MESSAGE_ERROR && !is_first_error(context)) {
             return;
         }
     }
     if (context == NULL || context->options.message == NULL) {
         return;
     }
-    char text[4096];
-    vsnprintf(text, sizeof text, format, arguments);
     keep_to_one_line(text);
     pthread_mutex_lock(&context->callbacks);
     context->options.message(context->options.user, level, text);
@@ -176,13 +210,20 @@ void gonio_i_note(gonio_context *context, const char *format, ...)
 
 gonio_status gonio_i_progress(gonio_context *context, const char *task, double fraction)
 {
-    while (context != NULL && context->above != NULL) {
-        context = context->above;
+    bool of_piece = false;
+    for (; context != NULL && context->above != NULL; context = context->above) {
+        of_piece = of_piece || context->piece != NULL;
     }
     if (context == NULL || context->options.progress == NULL) {
         return GONIO_OK;
     }
     pthread_mutex_lock(&context->callbacks);
+    if (of_piece) {
+        task = context->task;
+        fraction = context->fraction;
+    }
+    context->task = task;
+    context->fraction = fraction;
     if (!context->cancelled) {
         context->cancelled = context->options.progress(context->options.user, task, fraction) != 0;
     }

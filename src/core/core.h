@@ -32,7 +32,15 @@ void gonio_i_note(gonio_context *context, const char *format, ...) GONIO_I_PRINT
 gonio_context *gonio_i_team_begin(gonio_context *context);
 void gonio_i_team_end(gonio_context *team, const gonio_context *context);
 
-/* Reports progress; GONIO_ERROR_CANCELLED once the callback has asked to stop. Thread-safe. */
+/* For one of many independent pieces of work that run side by side: a context with one thread that
+ * passes messages on behind "name: ". Progress told to it only asks whether to stop: the callback
+ * is told again what was told last of the work as a whole. `name` must last as long. Errors:
+ * _MEMORY. */
+gonio_status gonio_i_piece_begin(gonio_context *context, const char *name, gonio_context **piece);
+void gonio_i_piece_end(gonio_context *piece);
+
+/* Reports progress; GONIO_ERROR_CANCELLED once the callback has asked to stop. Thread-safe;
+ * `task` must last as long as the context. */
 gonio_status gonio_i_progress(gonio_context *context, const char *task, double fraction);
 
 /* Zeroed memory for count x size bytes, the product checked, or NULL after a message; released with

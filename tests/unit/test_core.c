@@ -84,6 +84,56 @@ static void test_a_team_can_be_cancelled(void **state)
     gonio_context_free(&context);
 }
 
+static char told[256];
+
+static int note_progress(void *user, const char *task, double fraction)
+{
+    (void)user;
+    snprintf(told, sizeof told, "%s %.2f", task, fraction);
+    return fraction >= 0.5;
+}
+
+static void note_message(void *user, gonio_message_level level, const char *text)
+{
+    (void)user;
+    (void)level;
+    snprintf(told, sizeof told, "%s", text);
+}
+
+static void test_a_piece_is_part_of_a_whole(void **state)
+{
+    (void)state;
+    gonio_context *context = NULL;
+    const gonio_context_options options = {note_message, note_progress, NULL, 2};
+    assert_int_equal(gonio_context_create(&context, &options), GONIO_OK);
+    gonio_context *team = gonio_i_team_begin(context);
+    gonio_context *piece = NULL, *inner = NULL;
+    assert_int_equal(gonio_i_piece_begin(team, "gold", &piece), GONIO_OK);
+    assert_int_equal(gonio_i_piece_begin(piece, "start 2", &inner), GONIO_OK);
+    assert_int_equal(gonio_context_threads(piece), 1);
+    assert_int_equal(gonio_i_progress(piece, "inside", 1.0), GONIO_OK);
+    assert_string_equal(told, " 0.00");
+    assert_int_equal(gonio_i_progress(team, "whole", 0.25), GONIO_OK);
+    assert_int_equal(gonio_i_progress(inner, "inside", 1.0), GONIO_OK);
+    assert_string_equal(told, "whole 0.25");
+    gonio_i_warn(inner, "%s", "dull");
+    assert_string_equal(told, "gold: start 2: dull");
+    gonio_i_fail(piece, GONIO_ERROR_DATA, "first");
+    gonio_i_fail(inner, GONIO_ERROR_DATA, "second, which the team keeps to itself");
+    assert_string_equal(told, "gold: first");
+    assert_int_equal(gonio_i_progress(team, "whole", 0.75), GONIO_ERROR_CANCELLED);
+    assert_int_equal(gonio_i_progress(inner, "inside", 0.1), GONIO_ERROR_CANCELLED);
+    gonio_i_piece_end(inner);
+    gonio_i_piece_end(piece);
+    gonio_i_team_end(team, context);
+    gonio_context_free(&context);
+
+    assert_int_equal(gonio_i_piece_begin(NULL, "alone", &piece), GONIO_OK);
+    assert_int_equal(gonio_i_progress(piece, "inside", 0.5), GONIO_OK);
+    assert_int_equal(gonio_i_fail(piece, GONIO_ERROR_IO, "nobody listens"), GONIO_ERROR_IO);
+    gonio_i_piece_end(piece);
+}
+
 static void test_threads(void **state)
 {
     (void)state;
@@ -303,6 +353,7 @@ int main(void)
         cmocka_unit_test(test_a_message_is_one_line),
         cmocka_unit_test(test_a_team_tells_its_first_error_only),
         cmocka_unit_test(test_a_team_can_be_cancelled),
+        cmocka_unit_test(test_a_piece_is_part_of_a_whole),
         cmocka_unit_test(test_threads),
         cmocka_unit_test(test_names),
         cmocka_unit_test(test_an_output_appears_whole_or_not_at_all),

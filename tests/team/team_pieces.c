@@ -1,0 +1,82 @@
+/* Work in pieces by a team: team-pieces FOLDER [FAILING_RANK]. Started by mpirun or alone. Rank 0
+ * prints the sum of all results. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/core.h"
+#include "report/pieces.h"
+#include "team.h"
+
+enum { PIECES = 30 };
+
+typedef struct task {
+    int rank, failing;
+} task;
+
+static char *name_of(void *user, size_t piece)
+{
+    (void)user;
+    return gonio_i_format("piece-%02zu", piece);
+}
+
+static double cost_of(void *user, size_t piece)
+{
+    (void)user;
+    return (double)(1 + piece);
+}
+
+static gonio_status compute(void *user, gonio_context *context, size_t piece, json_t **result)
+{
+    const task *t = user;
+    if (t->rank == t->failing) {
+        return gonio_i_fail(context, GONIO_ERROR_DATA, "made to fail");
+    }
+    *result = json_pack("{s:f}", "third", (double)piece / 3.0);
+    return GONIO_OK;
+}
+
+static void on_message(void *user, gonio_message_level level, const char *text)
+{
+    (void)user;
+    (void)level;
+    fprintf(stderr, "%s\n", text);
+}
+
+static gonio_status run(gonio_context *context, const char *folder, const gonio_team *team, task *t)
+{
+    json_t *results[PIECES] = {0};
+    gonio_i_pieces *pieces = NULL;
+    json_t *identity = json_pack("{s:s}", "test", "team");
+    const gonio_i_work work = {"thirds", PIECES, t, name_of, cost_of, compute};
+    gonio_status status = gonio_i_pieces_open(context, folder, identity, team, &pieces);
+    if (status == GONIO_OK) {
+        status = gonio_i_pieces_run(context, pieces, &work, team->rank == 0 ? results : NULL);
+    }
+    if (status == GONIO_OK && team->rank == 0) {
+        double sum = 0.0;
+        for (int k = 0; k < PIECES; k++) {
+            sum += json_real_value(json_object_get(results[k], "third"));
+            json_decref(results[k]);
+        }
+        printf("sum %.3f by %d\n", sum, team->size);
+    }
+    gonio_i_pieces_free(&pieces);
+    json_decref(identity);
+    return status;
+}
+
+int main(int argc, char **argv)
+{
+    gonio_team team;
+    int code = 1;
+    gonio_context *context = NULL;
+    const gonio_context_options options = {.message = on_message, .threads = 1};
+    if (argc > 1 && tool_team_begin(&team, "team-pieces") &&
+        gonio_context_create(&context, &options) == GONIO_OK) {
+        task t = {team.rank, argc > 2 ? atoi(argv[2]) : -1};
+        code = run(context, argv[1], &team, &t) == GONIO_OK ? 0 : 1;
+    }
+    gonio_context_free(&context);
+    return tool_team_end(code);
+}
