@@ -205,9 +205,9 @@ static strides full_rows(const gonio_database *database, int theta_h, const read
 }
 
 /* The cells of a slab of the bivariate grid, [cell][channel]. */
-static strides bivariate_rows(int theta_h, const reader *r)
+static strides bivariate_rows(const gonio_database *database, int theta_h, const reader *r)
 {
-    gonio_i_slab_mean(theta_h, r->rho, r->g);
+    gonio_i_slab_mean(database->first_phi + (size_t)theta_h * GONIO_THETA_D_BINS, r->rho, r->g);
     for (size_t k = 0; k < GONIO_THETA_D_BINS; k++) {
         r->data[k] = !isnan(r->g[k * GONIO_CHANNELS]);
     }
@@ -272,7 +272,7 @@ static gonio_status read_slab(gonio_context *context, const gonio_database *data
     }
     gonio_fingerprint_add(fingerprint, r->rho, GONIO_SLAB_VALUES * sizeof *r->rho);
     const strides step = database->options.representation == GONIO_BIVARIATE
-                             ? bivariate_rows(theta_h, r)
+                             ? bivariate_rows(database, theta_h, r)
                              : full_rows(database, theta_h, r);
     const size_t first = database->tile[database->slab_tiles[theta_h]].first;
     const size_t end = database->tile[database->slab_tiles[theta_h + 1]].first;
