@@ -15,6 +15,7 @@
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -360,47 +361,124 @@ static void write_tables(const bench *b, gonio_context *context, const char *fol
     }
 }
 
-static double cat_seconds(const char *folder)
+static const char learn_child[] = "--learn"; /* how the benchmark starts itself for one learning */
+
+/* Wall-clock seconds of a program that writes to /dev/null, and what it used. */
+static double run_seconds(const char *program, char *const *argv, struct rusage *usage)
 {
-    char *command = NULL;
-    check(asprintf(&command, "cat %s/*.binary > /dev/null", folder) > 0, "memory");
     const double start = now();
-    check(system(command) == 0, "cat");
-    const double seconds = now() - start;
-    free(command);
-    return seconds;
+    const pid_t child = fork();
+    if (child == 0) {
+        const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
+        dup2(nowhere, STDOUT_FILENO);
+        execvp(program, argv);
+        _exit(127);
+    }
+    int status = 0;
+    check(child > 0 && wait4(child, &status, 0, usage) == child && status == 0, program);
+    return now() - start;
+}
+
+/* `cat` of every table to /dev/null. */
+static double cat_seconds(char *const *tables)
+{
+    char *argv[TABLES + 2] = {"cat"};
+    memcpy(argv + 1, tables, TABLES * sizeof *argv);
+    struct rusage usage;
+    return run_seconds("cat", argv, &usage);
+}
+
+/* What a row of the benchmark of learning learns. */
+typedef struct learning {
+    const char *name;
+    const char *kind; /* representation, channels and components, for the child */
+    int runs;
+} learning;
+
+static const learning learnings[] = {
+    {"bivariate", "bivariate joint 45", RUNS},
+    {"full, separate channels, K = 100", "full separate 100", RUNS},
+    {"full, joint, K = 60", "full joint 60", 3},
+};
+
+/* In a process of its own, whose peak memory is that of learning alone. */
+static int learn_as_child(char *const *arguments, size_t count)
+{
+    char representation[16];
+    char channels[16];
+    size_t components = 0;
+    check(sscanf(arguments[0], "%15s %15s %zu", representation, channels, &components) == 3,
+          "reading what to learn");
+    gonio_database_options how;
+    gonio_database_options_default(&how);
+    how.representation = strcmp(representation, "full") == 0 ? GONIO_FULL : GONIO_BIVARIATE;
+    how.channels = strcmp(channels, "separate") == 0 ? GONIO_SEPARATE : GONIO_JOINT;
+    gonio_context *all = make_context(0);
+    gonio_basis *basis = learn(all, arguments + 1, count - 1, components, &how);
+    gonio_basis_free(&basis);
+    gonio_context_free(&all);
+    return 0;
+}
+
+static void bench_learning(bench *b, const learning *what, char *const *tables)
+{
+    char name[128];
+    double ratio[RUNS];
+    double seconds[RUNS];
+    long peak = 0;
+    char *argv[TABLES + 4] = {"gonio-bench", (char *)(uintptr_t)learn_child,
+                              (char *)(uintptr_t)what->kind};
+    memcpy(argv + 3, tables, TABLES * sizeof *argv);
+    for (int run = 0; run < what->runs; run++) {
+        struct rusage usage;
+        const double cat = cat_seconds(tables);
+        seconds[run] = run_seconds("/proc/self/exe", argv, &usage);
+        ratio[run] = seconds[run] / cat;
+        peak = usage.ru_maxrss > peak ? usage.ru_maxrss : peak;
+    }
+    snprintf(name, sizeof name, "learn 100 MERL tables, %s", what->name);
+    report(b, name, median(seconds, (size_t)what->runs), "s");
+    snprintf(name, sizeof name, "learn, %s: over cat", what->name);
+    report(b, name, median(ratio, (size_t)what->runs), "x");
+    snprintf(name, sizeof name, "learn, %s: peak memory", what->name);
+    report(b, name, (double)peak / 1024.0, "MiB");
+}
+
+static bool are_tables(const bench *b)
+{
+    bool all = b->count >= TABLES;
+    for (size_t k = 0; k < TABLES && all; k++) {
+        const char *dot = strrchr(b->paths[k], '.');
+        all = dot != NULL && strcmp(dot, ".binary") == 0;
+    }
+    return all;
 }
 
 static void bench_learn(bench *b)
 {
-    gonio_context *all = make_context(0);
-    char *folder = scratch_folder();
+    const bool given = are_tables(b);
+    char *folder = NULL;
     char *tables[TABLES];
-    write_tables(b, all, folder, tables);
-    double ratio[RUNS];
-    double seconds[RUNS];
-    cat_seconds(folder);
-    for (int run = 0; run < RUNS; run++) {
-        const double cat = cat_seconds(folder);
-        const double start = now();
-        gonio_basis *basis = learn(all, tables, TABLES, 45, NULL);
-        seconds[run] = now() - start;
-        ratio[run] = seconds[run] / cat;
-        gonio_basis_free(&basis);
+    if (given) {
+        memcpy(tables, b->paths, sizeof tables);
+    } else {
+        gonio_context *all = make_context(0);
+        folder = scratch_folder();
+        write_tables(b, all, folder, tables);
+        gonio_context_free(&all);
     }
-    report(b, "learn 100 MERL tables, bivariate", median(seconds, RUNS), "s");
-    report(b, "learn 100 MERL tables, bivariate: over cat", median(ratio, RUNS), "x");
-    struct rusage usage;
-    getrusage(RUSAGE_SELF, &usage);
-    report(b, "learn 100 MERL tables, bivariate: peak memory", (double)usage.ru_maxrss / 1024.0,
-           "MiB");
-    for (size_t k = 0; k < TABLES; k++) {
+    cat_seconds(tables);
+    for (size_t k = 0; k < sizeof learnings / sizeof *learnings; k++) {
+        bench_learning(b, &learnings[k], tables);
+    }
+    for (size_t k = 0; k < TABLES && !given; k++) {
         unlink(tables[k]);
         free(tables[k]);
     }
-    rmdir(folder);
-    free(folder);
-    gonio_context_free(&all);
+    if (!given) {
+        rmdir(folder);
+        free(folder);
+    }
 }
 
 /* ---- reconstructing ---- */
@@ -598,8 +676,8 @@ static const struct {
     const char *name;
     void (*run)(bench *b);
 } sections[] = {
-    {"learn", bench_learn}, /* first: its peak memory is the process's */
-    {"plan", bench_plan},     {"starts", bench_starts}, {"reconstruct", bench_reconstruct},
+    {"learn", bench_learn},   {"plan", bench_plan},
+    {"starts", bench_starts}, {"reconstruct", bench_reconstruct},
     {"growth", bench_growth},
 };
 
@@ -615,6 +693,9 @@ static bool wanted(const char *name, int argc, char **argv)
 
 int main(int argc, char **argv)
 {
+    if (argc > 4 && strcmp(argv[1], learn_child) == 0) {
+        return learn_as_child(argv + 2, (size_t)argc - 2);
+    }
     bench b = {.results = json_object(), .processors = (int)sysconf(_SC_NPROCESSORS_ONLN)};
     find_materials(&b, argc > 1 && strcmp(argv[1], "atlas:") != 0 ? argv[1] : NULL);
     printf("%zu materials, %d processors\n", b.count, b.processors);

@@ -26,8 +26,10 @@ typedef struct gonio_basis_options {
 
 GONIO_API void gonio_basis_options_default(gonio_basis_options *options);
 
-/* Learns a basis by the Gram matrix of the columns, accumulated over blocks of rows, followed by a
- * re-orthonormalisation (Cholesky QR). The result does not depend on the number of threads.
+/* Learns a basis by the Gram matrix of the columns, accumulated over tiles of rows in double
+ * precision. max |V'V - I| is at most 1e-11: where it would be more, V is orthonormalised again
+ * (Cholesky QR), to rounding. The result does not depend on the number of threads. Memory: the
+ * basis, and a few MB a thread.
  * Errors: _ARGUMENT if K > columns - 1; _DATA if the columns span fewer than K dimensions; _MEMORY;
  * those of gonio_database_read_rows. */
 GONIO_API gonio_status gonio_basis_learn(gonio_context *context, const gonio_database *database,

@@ -10,8 +10,9 @@
  * channel fastest; or separate, where each channel of each material is a column (R, G, B of the
  * first material, then the next) and the rows are cells.
  *
- * The matrix is kept out of core, in an unlinked scratch file, so that memory does not grow with
- * the number of materials; each material is read once. A cell that has no data in one or more of
+ * The matrix is kept out of core, in unlinked scratch files, so that memory does not grow with
+ * the number of materials; each material is read once. It is kept as float32, whose relative error
+ * of 6e-8 is far below the noise of measured materials. A cell that has no data in one or more of
  * the materials is left out of the matrix. */
 #ifndef GONIO_DATABASE_H
 #define GONIO_DATABASE_H
@@ -57,7 +58,7 @@ typedef struct gonio_database gonio_database;
 typedef struct gonio_database_options {
     gonio_representation representation;
     gonio_channel_model channels;
-    const char *scratch; /* folder for the scratch file; NULL for $TMPDIR or /tmp */
+    const char *scratch; /* folder for the scratch files; NULL for $TMPDIR or /tmp */
 } gonio_database_options;
 
 /* Bivariate, joint: the paper's. */
@@ -66,7 +67,7 @@ GONIO_API void gonio_database_options_default(gonio_database_options *options);
 /* Reads the materials at the given paths (as gonio_material_open takes them), several at a time.
  * The order of the columns is that of the paths, whatever the number of threads.
  * Errors: those of gonio_material_open and _read_slab; _DATA if a material has no data at all, if
- * two have the same name, or if no cell has data in all of them; _IO for the scratch file. */
+ * two have the same name, or if no cell has data in all of them; _IO for the scratch files. */
 GONIO_API gonio_status gonio_database_create(gonio_context *context, const char *const *paths,
                                              size_t count, const gonio_database_options *options,
                                              gonio_database **database);

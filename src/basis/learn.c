@@ -1,20 +1,27 @@
 /* Learning: mean and principal components of the observation matrix, out of core.
  *
- * Given    H, read in blocks of rows
+ * Given    H, read in tiles of rows
  * Returned m, the top K left singular vectors V of H - m, and all lambda_k = S_k^2/(columns - 1)
- * Method   G = (H - m)'(H - m) block by block, G = W S^2 W', V = (H - m) W S^-1 (Ali et al.,
- * sec. 3.6) Accuracy G squares the condition number, which costs V some orthogonality; dividing V
- * by the Cholesky factor of V'V restores it to rounding. The blocks and the order in which they are
- * added depend on the matrix only, never on the threads. */
+ * Method   G = (H - m)'(H - m) tile by tile, G = W S^2 W', V = (H - m) W S^-1 (Ali et al.,
+ *          sec. 3.6)
+ * Accuracy G squares the condition number, which costs V some orthogonality. V'V is summed while V
+ *          is made; where it is not I to `ORTHOGONAL`, dividing V by the Cholesky factor of V'V
+ *          restores it to rounding.
+ * The tiles and the order in which they are added depend on the matrix only, never on the threads.
+ */
 #include "basis.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "../database/tiles.h"
 #include "../linalg/linalg.h"
 
-enum { BLOCK_VALUES = 1 << 18 }; /* 2 MiB of doubles a block and thread */
+/* Tiles that one thread sums before it waits for its turn to add them up. */
+enum { TILES_A_TURN = 8 };
+
+static const double ORTHOGONAL = 1e-11; /* max |V'V - I| */
 
 typedef struct learner {
     gonio_context *context;
@@ -24,8 +31,9 @@ typedef struct learner {
     size_t materials;
     size_t columns;
     gonio_basis *basis;
-    size_t block; /* rows a block */
-    size_t blocks;
+    size_t tiles;
+    size_t turns;
+    size_t *finished; /* turns, over all passes */
 } learner;
 
 void gonio_basis_options_default(gonio_basis_options *options)
@@ -33,129 +41,249 @@ void gonio_basis_options_default(gonio_basis_options *options)
     *options = (gonio_basis_options){0};
 }
 
-static size_t block_rows(const learner *l, size_t block)
+/* What a thread works on. */
+typedef struct workspace {
+    float *values; /* a tile, [column][row] */
+    double *h;     /* the same, less the mean of each row */
+    double *part;  /* of a sum over tiles, [columns][columns] */
+} workspace;
+
+static bool make_workspace(const learner *l, workspace *w)
 {
-    const size_t first = block * l->block;
-    return l->view.rows - first < l->block ? l->view.rows - first : l->block;
+    const size_t values = gonio_i_database_tile_room(l->database) * l->columns;
+    w->values = gonio_i_allocate(l->context, values, sizeof *w->values);
+    w->h = gonio_i_allocate(l->context, values, sizeof *w->h);
+    w->part = gonio_i_allocate(l->context, l->columns * l->columns, sizeof *w->part);
+    return w->values != NULL && w->h != NULL && w->part != NULL;
 }
 
-/* Reads a block of rows and takes the mean of each row out of it. */
-static gonio_status read_centred(const learner *l, size_t block, double *h)
+static void free_workspace(workspace *w)
 {
-    const size_t count = block_rows(l, block);
-    const size_t first = block * l->block;
-    const gonio_status status =
-        gonio_database_read_rows(l->database, l->context, first, count, l->subset, l->materials, h);
-    if (status != GONIO_OK) {
-        return status;
-    }
-    double *mean = l->basis->mean + first;
-    memset(mean, 0, count * sizeof *mean);
-    for (size_t j = 0; j < l->columns; j++) {
-        for (size_t i = 0; i < count; i++) {
-            mean[i] += h[j * count + i];
-        }
-    }
-    for (size_t i = 0; i < count; i++) {
-        mean[i] /= (double)l->columns;
-    }
-    for (size_t j = 0; j < l->columns; j++) {
-        for (size_t i = 0; i < count; i++) {
-            h[j * count + i] -= mean[i];
-        }
-    }
-    return GONIO_OK;
+    free(w->values);
+    free(w->h);
+    free(w->part);
 }
 
-/* G, summed over the blocks in order. */
-static gonio_status accumulate_gram(const learner *l, double *gram)
+GONIO_I_VECTORISED static void find_means(const float *values, size_t rows, size_t columns,
+                                          double *mean)
 {
-    const size_t n = l->columns;
+    memset(mean, 0, rows * sizeof *mean);
+    for (size_t j = 0; j < columns; j++) {
+        for (size_t i = 0; i < rows; i++) {
+            mean[i] += (double)values[j * rows + i];
+        }
+    }
+    for (size_t i = 0; i < rows; i++) {
+        mean[i] /= (double)columns;
+    }
+}
+
+GONIO_I_VECTORISED static void subtract_means(const float *values, size_t rows, size_t columns,
+                                              const double *mean, double *h)
+{
+    for (size_t j = 0; j < columns; j++) {
+        for (size_t i = 0; i < rows; i++) {
+            h[j * rows + i] = (double)values[j * rows + i] - mean[i];
+        }
+    }
+}
+
+/* Reads a tile and takes the mean of each row out of it. */
+static gonio_status read_centred(const learner *l, size_t tile, gonio_i_row_range rows,
+                                 const workspace *w)
+{
+    const gonio_status status = gonio_i_database_read_tile(l->database, l->context, tile, l->subset,
+                                                           l->materials, w->values);
+    if (status == GONIO_OK) {
+        double *mean = l->basis->mean + rows.first;
+        find_means(w->values, rows.count, l->columns, mean);
+        subtract_means(w->values, rows.count, l->columns, mean, w->h);
+    }
+    return status;
+}
+
+/* One turn's work on one tile: adds to w->part. */
+typedef gonio_status tile_work(const learner *l, gonio_i_row_range rows, const workspace *w,
+                               const double *p);
+
+static gonio_status work_turn(const learner *l, tile_work *work, size_t turn, const workspace *w,
+                              const double *p, size_t n)
+{
+    const size_t first = turn * TILES_A_TURN;
+    const size_t end = first + TILES_A_TURN < l->tiles ? first + TILES_A_TURN : l->tiles;
+    gonio_status status = GONIO_OK;
+    memset(w->part, 0, n * n * sizeof *w->part);
+    for (size_t tile = first; tile < end && status == GONIO_OK; tile++) {
+        const gonio_i_row_range rows = gonio_i_database_tile_rows(l->database, tile);
+        if (rows.count > 0) {
+            status = read_centred(l, tile, rows, w);
+            status = status == GONIO_OK ? work(l, rows, w, p) : status;
+        }
+    }
+    return status;
+}
+
+static gonio_status report_turn(const learner *l)
+{
+    size_t done;
+#pragma omp atomic capture
+    done = ++*l->finished;
+    /* Two passes over the tiles. */
+    return gonio_i_progress(l->context, "learning", (double)done / (double)(2 * l->turns));
+}
+
+/* Goes through all tiles; sum (n x n): what the work has added to w->part, in order. */
+static gonio_status for_each_tile(const learner *l, tile_work *work, const double *p, double *sum,
+                                  size_t n)
+{
     gonio_status result = GONIO_OK;
 #pragma omp parallel num_threads(gonio_context_threads(l->context))
     {
-        double *h = gonio_i_allocate(l->context, l->block * n, sizeof *h);
-        double *part = gonio_i_allocate(l->context, n * n, sizeof *part);
-        gonio_status mine = h != NULL && part != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
-#pragma omp for ordered schedule(static, 1)
-        for (size_t block = 0; block < l->blocks; block++) {
-            if (mine == GONIO_OK) {
-                mine = read_centred(l, block, h);
+        workspace w = {0};
+        gonio_status mine = make_workspace(l, &w) ? GONIO_OK : GONIO_ERROR_MEMORY;
+#pragma omp for ordered schedule(dynamic, 1)
+        for (size_t turn = 0; turn < l->turns; turn++) {
+            gonio_status so_far;
+#pragma omp atomic read
+            so_far = result;
+            if (mine == GONIO_OK && so_far == GONIO_OK) {
+                mine = work_turn(l, work, turn, &w, p, n);
             }
             if (mine == GONIO_OK) {
-                mine = gonio_i_gram_columns(l->context, h, block_rows(l, block), n, part);
+                mine = report_turn(l);
             }
 #pragma omp ordered
             {
                 for (size_t k = 0; k < n * n && mine == GONIO_OK; k++) {
-                    gram[k] += part[k];
+                    sum[k] += w.part[k];
                 }
-                result = mine != GONIO_OK ? mine : result;
+                if (mine != GONIO_OK) {
+#pragma omp atomic write
+                    result = mine;
+                }
             }
         }
-        free(h);
-        free(part);
+        free_workspace(&w);
     }
     return result;
 }
 
-/* V = (H - m) P, block by block, P (columns x K) = W S^-1. */
-static gonio_status project(const learner *l, const double *p)
+/* G of a tile. */
+static gonio_status add_gram(const learner *l, gonio_i_row_range rows, const workspace *w,
+                             const double *p)
 {
-    const size_t n = l->columns;
-    const size_t k = l->basis->components;
-    gonio_status result = GONIO_OK;
-#pragma omp parallel num_threads(gonio_context_threads(l->context))
-    {
-        double *h = gonio_i_allocate(l->context, l->block * n, sizeof *h);
-        gonio_status mine = h != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
-#pragma omp for schedule(dynamic)
-        for (size_t block = 0; block < l->blocks; block++) {
-            if (mine == GONIO_OK) {
-                mine = read_centred(l, block, h);
-            }
-            if (mine == GONIO_OK) {
-                mine = gonio_i_product_columns(l->context, h, block_rows(l, block), n, p, k,
-                                               l->basis->vectors + block * l->block * k);
-            }
-        }
-        free(h);
-#pragma omp critical(gonio_project)
-        result = mine != GONIO_OK ? mine : result;
-    }
-    return result;
+    (void)p;
+    return gonio_i_add_gram_columns(l->context, w->h, rows.count, l->columns, w->part);
 }
 
-static gonio_status orthonormalise(const learner *l)
+/* V of a tile is (H - m) P, P (columns x K) = W S^-1; and its V'V. */
+static gonio_status project(const learner *l, gonio_i_row_range rows, const workspace *w,
+                            const double *p)
+{
+    const size_t k = l->basis->components;
+    double *v = l->basis->vectors + rows.first * k;
+    const gonio_status status =
+        gonio_i_product_columns(l->context, w->h, rows.count, l->columns, p, k, v);
+    return status == GONIO_OK ? gonio_i_add_gram_rows(l->context, v, rows.count, k, w->part)
+                              : status;
+}
+
+/* max |C - I| over the upper triangle. */
+static double distance_from_identity(const double *c, size_t n)
+{
+    double most = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        for (size_t j = i; j < n; j++) {
+            most = fmax(most, fabs(c[i * n + j] - (i == j ? 1.0 : 0.0)));
+        }
+    }
+    return most;
+}
+
+/* Rows of V that are worked on together once it is made. */
+enum { BLOCK_ROWS = 4096 };
+
+static size_t block_rows(const gonio_basis *basis, size_t block)
+{
+    const size_t left = basis->rows - block * BLOCK_ROWS;
+    return left < BLOCK_ROWS ? left : BLOCK_ROWS;
+}
+
+/* V becomes V L'^-1, V'V = L L' = c (upper triangle, overwritten), if it needs that. */
+static gonio_status orthonormalise(const learner *l, double *c)
 {
     gonio_basis *basis = l->basis;
     const size_t k = basis->components;
-    double *c = gonio_i_allocate(l->context, k * k, sizeof *c);
-    if (c == NULL) {
-        return GONIO_ERROR_MEMORY;
+    if (distance_from_identity(c, k) <= ORTHOGONAL) {
+        return GONIO_OK;
     }
-    gonio_status status = gonio_i_gram_rows(l->context, basis->vectors, basis->rows, k, k, c);
-    if (status == GONIO_OK) {
-        status = gonio_i_divide_cholesky(l->context, basis->vectors, basis->rows, k, c);
+    gonio_i_mirror(c, k);
+    const gonio_status status = gonio_i_cholesky(l->context, c, k);
+    if (status != GONIO_OK) {
+        return status;
     }
-    free(c);
-    return status;
+#pragma omp parallel for schedule(static) num_threads(gonio_context_threads(l->context))
+    for (size_t block = 0; block < (basis->rows + BLOCK_ROWS - 1) / BLOCK_ROWS; block++) {
+        gonio_i_divide_triangle(basis->vectors + block * BLOCK_ROWS * k, block_rows(basis, block),
+                                k, c);
+    }
+    return GONIO_OK;
+}
+
+/* Entries of the largest size in each of the k columns of v, with their signs; the first of equals
+ * stays. */
+GONIO_I_VECTORISED static void find_largest(const double *v, size_t rows, size_t k, double *largest)
+{
+    for (size_t i = 0; i < rows; i++) {
+        for (size_t j = 0; j < k; j++) {
+            const double x = v[i * k + j];
+            largest[j] = fabs(x) > fabs(largest[j]) ? x : largest[j];
+        }
+    }
+}
+
+GONIO_I_VECTORISED static void scale_columns(double *v, size_t rows, size_t k, const double *factor)
+{
+    for (size_t i = 0; i < rows; i++) {
+        for (size_t j = 0; j < k; j++) {
+            v[i * k + j] *= factor[j];
+        }
+    }
 }
 
 /* An eigenvector's sign is arbitrary: make the largest entry positive. */
-static void fix_signs(gonio_basis *basis)
+static gonio_status fix_signs(const learner *l)
 {
+    gonio_basis *basis = l->basis;
     const size_t k = basis->components;
-    for (size_t j = 0; j < k; j++) {
-        double largest = 0.0;
-        for (size_t i = 0; i < basis->rows; i++) {
-            const double v = basis->vectors[i * k + j];
-            largest = fabs(v) > fabs(largest) ? v : largest;
+    const size_t blocks = (basis->rows + BLOCK_ROWS - 1) / BLOCK_ROWS;
+    double *largest = gonio_i_allocate(l->context, (blocks + 1) * k, sizeof *largest);
+    if (largest == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    double *sign = largest + blocks * k;
+#pragma omp parallel num_threads(gonio_context_threads(l->context))
+    {
+#pragma omp for schedule(static)
+        for (size_t block = 0; block < blocks; block++) {
+            find_largest(basis->vectors + block * BLOCK_ROWS * k, block_rows(basis, block), k,
+                         largest + block * k);
         }
-        for (size_t i = 0; i < basis->rows && largest < 0.0; i++) {
-            basis->vectors[i * k + j] = -basis->vectors[i * k + j];
+#pragma omp single
+        {
+            find_largest(largest, blocks, k, sign);
+            for (size_t j = 0; j < k; j++) {
+                sign[j] = sign[j] < 0.0 ? -1.0 : 1.0;
+            }
+        }
+#pragma omp for schedule(static)
+        for (size_t block = 0; block < blocks; block++) {
+            scale_columns(basis->vectors + block * BLOCK_ROWS * k, block_rows(basis, block), k,
+                          sign);
         }
     }
+    free(largest);
+    return GONIO_OK;
 }
 
 /* From the eigenvalues (ascending) and eigenvectors (rows) of G: the variances and P = W S^-1. */
@@ -188,26 +316,31 @@ static gonio_status split_gram(const learner *l, const double *w, const double *
 static gonio_status decompose(const learner *l)
 {
     const size_t n = l->columns;
+    const size_t k = l->basis->components;
     double *gram = gonio_i_allocate(l->context, n * n, sizeof *gram);
     double *values = gonio_i_allocate(l->context, n, sizeof *values);
-    double *p = gonio_i_allocate(l->context, n * l->basis->components, sizeof *p);
-    gonio_status status =
-        gram == NULL || values == NULL || p == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    double *p = gonio_i_allocate(l->context, n * k, sizeof *p);
+    double *c = gonio_i_allocate(l->context, k * k, sizeof *c);
+    gonio_status status = gram == NULL || values == NULL || p == NULL || c == NULL
+                              ? GONIO_ERROR_MEMORY
+                              : for_each_tile(l, add_gram, NULL, gram, n);
     if (status == GONIO_OK) {
-        status = accumulate_gram(l, gram);
-    }
-    if (status == GONIO_OK) {
+        gonio_i_mirror(gram, n);
         status = gonio_i_eigen(l->context, gram, n, true, values);
     }
     if (status == GONIO_OK) {
         status = split_gram(l, gram, values, p);
     }
     if (status == GONIO_OK) {
-        status = project(l, p);
+        status = for_each_tile(l, project, p, c, k);
+    }
+    if (status == GONIO_OK) {
+        status = orthonormalise(l, c);
     }
     free(gram);
     free(values);
     free(p);
+    free(c);
     return status;
 }
 
@@ -234,10 +367,9 @@ static gonio_status learn(const learner *l)
         status = decompose(l);
     }
     if (status == GONIO_OK) {
-        status = orthonormalise(l);
+        status = fix_signs(l);
     }
     if (status == GONIO_OK) {
-        fix_signs(l->basis);
         status = gonio_i_basis_finish(l->context, l->basis);
     }
     return status;
@@ -278,8 +410,10 @@ gonio_status gonio_basis_learn(gonio_context *context, const gonio_database *dat
     if (status != GONIO_OK) {
         return status;
     }
-    l.block = BLOCK_VALUES / l.columns > 0 ? BLOCK_VALUES / l.columns : 1;
-    l.blocks = (l.view.rows + l.block - 1) / l.block;
+    l.tiles = gonio_i_database_tiles(database);
+    l.turns = (l.tiles + TILES_A_TURN - 1) / TILES_A_TURN;
+    size_t finished = 0;
+    l.finished = &finished;
     l.basis = gonio_i_basis_allocate(context, l.materials, l.view.cells, l.view.channels,
                                      components, l.columns - 1);
     if (l.basis == NULL) {

@@ -1,27 +1,51 @@
-/* The observation matrix: materials read once, in log space, kept in an unlinked scratch file.
+/* The observation matrix: materials read once, in log space, kept in unlinked scratch files.
  *
- * Scratch layout: [material][cell of the whole grid][channel], float64, NaN where there is no data.
- */
+ * Only cells that can hold data are stored: of the full grid the valid bins, of the bivariate one
+ * all cells. They are cut into tiles of neighbouring cells of one slab. Scratch layout:
+ * [tile][material][column of the material][row in the tile], where a tile's rows are those of all
+ * its stored cells, in the order of the matrix; a cell without data holds NaN.
+ *
+ * Stored as float32: its relative error of 6e-8 is far below the noise of any measurement (and what
+ * float32 leaves out of a basis is as random as that noise), and the matrix is read twice. */
 #include <gonio/database.h>
 
-#include <errno.h>
-#include <fcntl.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "../core/core.h"
+#include "../core/vector_math.h"
+#include "../direction/grid.h"
+#include "scratch.h"
 #include "slab_mean.h"
+#include "tiles.h"
+
+/* A tile of all materials is to stay in a processor's cache, and one of a material worth a call. */
+enum { TILE_VALUES = 1 << 19, LARGEST_TILE = 1024, SMALLEST_TILE = 64 };
+
+/* What some material has in a cell. */
+enum { HAS_DATA = 1, LACKS_DATA = 2 };
+
+typedef struct cell_tile {
+    size_t first; /* of its stored cells */
+    size_t count;
+    size_t kept; /* position of its first cell that is kept */
+} cell_tile;
 
 struct gonio_database {
     gonio_database_options options;
-    int scratch;
+    gonio_i_scratch scratch;
     size_t materials;
     char **names;
     uint64_t *fingerprints;
+    size_t stored_count;
+    int32_t *stored; /* [stored_count] cells of the grid, ascending */
+    size_t tiles;
+    cell_tile *tile;                           /* [tiles + 1], the last one empty */
+    size_t slab_tiles[GONIO_THETA_H_BINS + 1]; /* the first tile of each slab */
+    uint8_t first_phi[GONIO_CELLS];            /* grid.h */
     size_t cells;
-    int32_t *cell;
+    int32_t *cell; /* those of `stored` that are kept */
 };
 
 void gonio_database_options_default(gonio_database_options *options)
@@ -29,150 +53,240 @@ void gonio_database_options_default(gonio_database_options *options)
     *options = (gonio_database_options){0};
 }
 
-static size_t grid_cells(gonio_representation representation)
+/* ---- tiles ---- */
+
+static size_t per_cell(const gonio_database *database)
 {
-    return representation == GONIO_BIVARIATE ? GONIO_CELLS : GONIO_BINS;
+    return database->options.channels == GONIO_JOINT ? GONIO_CHANNELS : 1;
 }
 
-static gonio_status open_scratch(gonio_context *context, const char *folder, int *descriptor)
+static size_t per_material(const gonio_database *database)
 {
-    const char *wanted = folder != NULL ? folder : getenv("TMPDIR");
-    const char *used = wanted != NULL && *wanted != '\0' ? wanted : "/tmp";
-    char *name = gonio_i_format("%s/gonio-XXXXXX", used);
-    if (name == NULL) {
+    return GONIO_CHANNELS / per_cell(database);
+}
+
+static size_t tile_cells(const gonio_database *database)
+{
+    const size_t cells = TILE_VALUES / (GONIO_CHANNELS * database->materials);
+    return cells < SMALLEST_TILE ? SMALLEST_TILE : cells > LARGEST_TILE ? LARGEST_TILE : cells;
+}
+
+static void find_valid_bins(gonio_database *database)
+{
+    for (int cell = 0; cell < GONIO_CELLS; cell++) {
+        database->first_phi[cell] =
+            (uint8_t)gonio_i_first_valid_phi(cell / GONIO_THETA_D_BINS, cell % GONIO_THETA_D_BINS);
+    }
+}
+
+/* Lists the stored cells of one slab; returns how many. */
+static size_t list_cells(const gonio_database *database, int theta_h, int32_t *stored)
+{
+    size_t count = 0;
+    for (int d = 0; d < GONIO_THETA_D_BINS; d++) {
+        const int32_t cell = theta_h * GONIO_THETA_D_BINS + d;
+        if (database->options.representation == GONIO_BIVARIATE) {
+            stored[count++] = cell;
+            continue;
+        }
+        const int first = database->first_phi[cell];
+        for (int p = first; p < GONIO_PHI_D_BINS - first; p++) {
+            stored[count++] = cell * GONIO_PHI_D_BINS + p;
+        }
+    }
+    return count;
+}
+
+static gonio_status lay_out(gonio_context *context, gonio_database *database)
+{
+    const bool full = database->options.representation == GONIO_FULL;
+    const size_t most = tile_cells(database);
+    const size_t slab = full ? GONIO_SLAB_BINS : GONIO_THETA_D_BINS;
+    const size_t tiles = GONIO_THETA_H_BINS * ((slab + most - 1) / most);
+    database->stored =
+        gonio_i_allocate(context, GONIO_THETA_H_BINS * slab, sizeof *database->stored);
+    database->tile = gonio_i_allocate(context, tiles + 1, sizeof *database->tile);
+    if (database->stored == NULL || database->tile == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    *descriptor = mkostemp(name, O_CLOEXEC);
-    const int reason = errno;
-    if (*descriptor >= 0) {
-        unlink(name);
+    find_valid_bins(database);
+    size_t first = 0;
+    for (int theta_h = 0; theta_h < GONIO_THETA_H_BINS; theta_h++) {
+        const size_t end = first + list_cells(database, theta_h, database->stored + first);
+        database->slab_tiles[theta_h] = database->tiles;
+        for (; first < end; first += database->tile[database->tiles++].count) {
+            const size_t count = end - first < most ? end - first : most;
+            database->tile[database->tiles] = (cell_tile){.first = first, .count = count};
+        }
     }
-    free(name);
-    if (*descriptor < 0) {
-        return gonio_i_fail(context, GONIO_ERROR_IO,
-                            "%s: cannot make a scratch file: %s; set TMPDIR to another folder",
-                            used, strerror(reason));
-    }
+    database->slab_tiles[GONIO_THETA_H_BINS] = database->tiles;
+    database->stored_count = first;
+    database->tile[database->tiles].first = first;
     return GONIO_OK;
 }
 
-static gonio_status scratch_write(gonio_context *context, int descriptor, const void *data,
-                                  size_t size, off_t offset)
+/* Where a tile's rows of a material begin in the scratch file. */
+static off_t tile_offset(const gonio_database *database, const cell_tile *t, size_t material)
 {
-    const char *from = data;
-    while (size > 0) {
-        const ssize_t done = pwrite(descriptor, from, size, offset);
-        if (done < 0 && errno == EINTR) {
-            continue;
-        }
-        if (done < 0) {
-            return gonio_i_fail(
-                context, GONIO_ERROR_IO,
-                "cannot write the scratch file: %s; set TMPDIR to a folder with room",
-                strerror(errno));
-        }
-        from += done;
-        offset += done;
-        size -= (size_t)done;
-    }
-    return GONIO_OK;
+    const size_t values = database->materials * t->first + material * t->count;
+    return (off_t)(values * GONIO_CHANNELS * sizeof(float));
 }
 
-static gonio_status scratch_read(gonio_context *context, int descriptor, void *data, size_t size,
-                                 off_t offset)
-{
-    char *to = data;
-    while (size > 0) {
-        const ssize_t done = pread(descriptor, to, size, offset);
-        if (done < 0 && errno == EINTR) {
-            continue;
-        }
-        if (done <= 0) {
-            return gonio_i_fail(context, GONIO_ERROR_IO, "cannot read the scratch file: %s",
-                                done < 0 ? strerror(errno) : "it ends early");
-        }
-        to += done;
-        offset += done;
-        size -= (size_t)done;
-    }
-    return GONIO_OK;
-}
+/* ---- reading materials ---- */
 
 /* What one thread needs to read materials. */
 typedef struct reader {
-    double *rho;  /* one slab */
-    double *rows; /* its part of the scratch file */
-    bool *data;
+    double *rho;   /* one slab */
+    double *g;     /* its stored cells in log space: [cell][channel] or [channel][cell] */
+    bool *data;    /* [cell] of the slab */
+    float *rows;   /* a tile's part of the scratch file */
+    uint8_t *seen; /* [stored cell] HAS_DATA, LACKS_DATA: of the materials of this thread */
 } reader;
 
-static bool make_reader(gonio_context *context, reader *r)
+static bool make_reader(gonio_context *context, const gonio_database *database, reader *r)
 {
     r->rho = gonio_i_allocate(context, GONIO_SLAB_VALUES, sizeof *r->rho);
-    r->rows = gonio_i_allocate(context, GONIO_SLAB_VALUES, sizeof *r->rows);
+    r->g = gonio_i_allocate(context, GONIO_SLAB_VALUES, sizeof *r->g);
     r->data = gonio_i_allocate(context, GONIO_SLAB_BINS, sizeof *r->data);
-    return r->rho != NULL && r->rows != NULL && r->data != NULL;
+    r->rows = gonio_i_allocate(context, GONIO_CHANNELS * tile_cells(database), sizeof *r->rows);
+    r->seen = gonio_i_allocate(context, database->stored_count, sizeof *r->seen);
+    return r->rho != NULL && r->g != NULL && r->data != NULL && r->rows != NULL && r->seen != NULL;
 }
 
 static void free_reader(reader *r)
 {
     free(r->rho);
-    free(r->rows);
+    free(r->g);
     free(r->data);
+    free(r->rows);
+    free(r->seen);
 }
 
-/* [cell][channel] of one slab of the full grid, where every bin is a cell. */
-static void full_rows(int theta_h, const reader *r)
+/* How the values of a slab lie in reader.g. */
+typedef struct strides {
+    size_t cell;
+    size_t channel;
+} strides;
+
+GONIO_I_VECTORISED static void scale_run(const double *rho, size_t count, double factor, double *x)
 {
-    gonio_slab_mask(theta_h, r->rho, r->data);
-    gonio_slab_to_log(r->rho, r->rho);
-    for (size_t k = 0; k < GONIO_SLAB_BINS; k++) {
-        for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
-            r->rows[k * GONIO_CHANNELS + channel] =
-                r->data[k] ? r->rho[channel * GONIO_SLAB_BINS + k] : NAN;
-        }
+    for (size_t k = 0; k < count; k++) {
+        x[k] = rho[k] > 0.0 ? rho[k] * factor : 0.0;
     }
 }
 
-/* Reads one slab of a material into the scratch file; counts the materials with data per cell, and
- * the material's cells with data. */
+GONIO_I_VECTORISED static void find_data(const double *rho, size_t count, bool *data)
+{
+    for (size_t k = 0; k < count; k++) {
+        data[k] = rho[k] >= 0.0;
+    }
+}
+
+/* The valid bins of a slab of the full grid, in log space, [channel][cell]. */
+static strides full_rows(const gonio_database *database, int theta_h, const reader *r)
+{
+    size_t count = 0;
+    for (size_t d = 0; d < GONIO_THETA_D_BINS; d++) {
+        const size_t first = database->first_phi[(size_t)theta_h * GONIO_THETA_D_BINS + d];
+        const size_t length = GONIO_PHI_D_BINS - 2 * first;
+        const double *rho = r->rho + d * GONIO_PHI_D_BINS + first;
+        find_data(rho, length, r->data + count);
+        for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
+            scale_run(rho + channel * GONIO_SLAB_BINS, length, 1.0 / gonio_log_scale((int)channel),
+                      r->g + channel * GONIO_SLAB_BINS + count);
+        }
+        count += length;
+    }
+    for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
+        double *g = r->g + channel * GONIO_SLAB_BINS;
+        gonio_i_log1p(count, g, g);
+    }
+    return (strides){1, GONIO_SLAB_BINS};
+}
+
+/* The cells of a slab of the bivariate grid, [cell][channel]. */
+static strides bivariate_rows(const gonio_database *database, int theta_h, const reader *r)
+{
+    gonio_i_slab_mean(database->first_phi + (size_t)theta_h * GONIO_THETA_D_BINS, r->rho, r->g);
+    for (size_t k = 0; k < GONIO_THETA_D_BINS; k++) {
+        r->data[k] = !isnan(r->g[k * GONIO_CHANNELS]);
+    }
+    return (strides){GONIO_CHANNELS, 1};
+}
+
+GONIO_I_VECTORISED static void to_float(const double *g, size_t step, const bool *data,
+                                        size_t count, float *row, size_t row_step)
+{
+    if (step == 1 && row_step == 1) { /* the case that counts */
+        for (size_t k = 0; k < count; k++) {
+            row[k] = data[k] ? (float)g[k] : NAN;
+        }
+        return;
+    }
+    for (size_t k = 0; k < count; k++) {
+        row[k * row_step] = data[k] ? (float)g[k * step] : NAN;
+    }
+}
+
+/* Writes a slab's tiles; from is its first stored cell. */
+static gonio_status write_tiles(gonio_context *context, const gonio_database *database,
+                                size_t column, int theta_h, const reader *r, strides step)
+{
+    const size_t from = database->tile[database->slab_tiles[theta_h]].first;
+    const bool joint = database->options.channels == GONIO_JOINT;
+    gonio_status status = GONIO_OK;
+    for (size_t j = database->slab_tiles[theta_h];
+         j < database->slab_tiles[theta_h + 1] && status == GONIO_OK; j++) {
+        const cell_tile *t = &database->tile[j];
+        const size_t k = t->first - from;
+        for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
+            to_float(r->g + k * step.cell + channel * step.channel, step.cell, r->data + k,
+                     t->count, r->rows + channel * (joint ? 1 : t->count), per_cell(database));
+        }
+        status = gonio_i_scratch_write(context, &database->scratch, j, r->rows,
+                                       GONIO_CHANNELS * t->count * sizeof *r->rows,
+                                       tile_offset(database, t, column));
+    }
+    return status;
+}
+
+/* Marks what a slab of a material has; returns its cells with data. */
+GONIO_I_VECTORISED static size_t mark_seen(const bool *data, size_t count, uint8_t *seen)
+{
+    size_t with_data = 0;
+    for (size_t k = 0; k < count; k++) {
+        seen[k] |= data[k] ? HAS_DATA : LACKS_DATA;
+        with_data += data[k];
+    }
+    return with_data;
+}
+
+/* Reads one slab of a material into the scratch file; counts the material's cells with data. */
 static gonio_status read_slab(gonio_context *context, const gonio_database *database, size_t column,
                               const gonio_material *material, int theta_h, const reader *r,
-                              gonio_fingerprint *fingerprint, uint32_t *present, size_t *with_data)
+                              gonio_fingerprint *fingerprint, size_t *with_data)
 {
     gonio_status status = gonio_material_read_slab(material, context, theta_h, r->rho);
     if (status != GONIO_OK) {
         return status;
     }
     gonio_fingerprint_add(fingerprint, r->rho, GONIO_SLAB_VALUES * sizeof *r->rho);
-    const bool bivariate = database->options.representation == GONIO_BIVARIATE;
-    if (bivariate) {
-        gonio_i_slab_mean(theta_h, r->rho, r->rows);
-    } else {
-        full_rows(theta_h, r);
-    }
-    const size_t cells = bivariate ? GONIO_THETA_D_BINS : GONIO_SLAB_BINS;
-    const size_t first = (size_t)theta_h * cells;
-    for (size_t k = 0; k < cells; k++) {
-        if (!isnan(r->rows[k * GONIO_CHANNELS])) {
-#pragma omp atomic
-            present[first + k]++;
-            (*with_data)++;
-        }
-    }
-    const size_t size = GONIO_CHANNELS * sizeof *r->rows;
-    const size_t start = column * grid_cells(database->options.representation) + first;
-    return scratch_write(context, database->scratch, r->rows, cells * size, (off_t)(start * size));
+    const strides step = database->options.representation == GONIO_BIVARIATE
+                             ? bivariate_rows(database, theta_h, r)
+                             : full_rows(database, theta_h, r);
+    const size_t first = database->tile[database->slab_tiles[theta_h]].first;
+    const size_t end = database->tile[database->slab_tiles[theta_h + 1]].first;
+    *with_data += mark_seen(r->data, end - first, r->seen + first);
+    return write_tiles(context, database, column, theta_h, r, step);
 }
 
 static gonio_status read_slabs(gonio_context *context, gonio_database *database, size_t column,
-                               const gonio_material *material, const reader *r, uint32_t *present,
-                               size_t *with_data)
+                               const gonio_material *material, const reader *r, size_t *with_data)
 {
     gonio_fingerprint *fingerprint = NULL;
     gonio_status status = gonio_fingerprint_create(&fingerprint);
     for (int theta_h = 0; theta_h < GONIO_THETA_H_BINS && status == GONIO_OK; theta_h++) {
-        status = read_slab(context, database, column, material, theta_h, r, fingerprint, present,
-                           with_data);
+        status = read_slab(context, database, column, material, theta_h, r, fingerprint, with_data);
     }
     if (status == GONIO_OK) {
         database->fingerprints[column] = gonio_fingerprint_value(fingerprint);
@@ -182,7 +296,7 @@ static gonio_status read_slabs(gonio_context *context, gonio_database *database,
 }
 
 static gonio_status read_material(gonio_context *context, gonio_database *database, size_t column,
-                                  const char *path, const reader *r, uint32_t *present)
+                                  const char *path, const reader *r)
 {
     gonio_material *material = NULL;
     gonio_status status = gonio_material_open(context, path, &material);
@@ -193,7 +307,7 @@ static gonio_status read_material(gonio_context *context, gonio_database *databa
     size_t with_data = 0;
     status = database->names[column] == NULL
                  ? GONIO_ERROR_MEMORY
-                 : read_slabs(context, database, column, material, r, present, &with_data);
+                 : read_slabs(context, database, column, material, r, &with_data);
     gonio_material_free(&material);
     if (status == GONIO_OK && with_data == 0) {
         status = gonio_i_fail(context, GONIO_ERROR_DATA,
@@ -203,7 +317,7 @@ static gonio_status read_material(gonio_context *context, gonio_database *databa
 }
 
 static gonio_status read_materials(gonio_context *context, gonio_database *database,
-                                   const char *const *paths, uint32_t *present)
+                                   const char *const *paths, uint8_t *seen)
 {
     gonio_status result = GONIO_OK;
     size_t finished = 0;
@@ -211,14 +325,14 @@ static gonio_status read_materials(gonio_context *context, gonio_database *datab
 #pragma omp parallel num_threads(gonio_context_threads(context))
     {
         reader r = {0};
-        gonio_status mine = make_reader(team, &r) ? GONIO_OK : GONIO_ERROR_MEMORY;
+        gonio_status mine = make_reader(team, database, &r) ? GONIO_OK : GONIO_ERROR_MEMORY;
 #pragma omp for schedule(dynamic)
         for (size_t k = 0; k < database->materials; k++) {
-            gonio_status seen;
+            gonio_status so_far;
 #pragma omp atomic read
-            seen = result;
-            if (mine == GONIO_OK && seen == GONIO_OK) {
-                mine = read_material(team, database, k, paths[k], &r, present);
+            so_far = result;
+            if (mine == GONIO_OK && so_far == GONIO_OK) {
+                mine = read_material(team, database, k, paths[k], &r);
             }
             size_t done;
 #pragma omp atomic capture
@@ -232,6 +346,10 @@ static gonio_status read_materials(gonio_context *context, gonio_database *datab
                 result = mine;
             }
         }
+#pragma omp critical(gonio_database_seen)
+        for (size_t k = 0; r.seen != NULL && k < database->stored_count; k++) {
+            seen[k] |= r.seen[k];
+        }
         free_reader(&r);
     }
     gonio_i_team_end(team, context);
@@ -241,14 +359,13 @@ static gonio_status read_materials(gonio_context *context, gonio_database *datab
 /* A cell stays if all materials have data there. Warns where that costs much, naming who lacks
  * most. */
 static gonio_status keep_common_cells(gonio_context *context, gonio_database *database,
-                                      const uint32_t *present)
+                                      const uint8_t *seen)
 {
-    const size_t all = grid_cells(database->options.representation);
     size_t any = 0;
     size_t kept = 0;
-    for (size_t k = 0; k < all; k++) {
-        any += present[k] > 0;
-        kept += present[k] == database->materials;
+    for (size_t k = 0; k < database->stored_count; k++) {
+        any += (seen[k] & HAS_DATA) != 0;
+        kept += seen[k] == HAS_DATA;
     }
     if (kept == 0) {
         return gonio_i_fail(context, GONIO_ERROR_DATA,
@@ -259,11 +376,16 @@ static gonio_status keep_common_cells(gonio_context *context, gonio_database *da
     if (database->cell == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    for (size_t k = 0; k < all; k++) {
-        if (present[k] == database->materials) {
-            database->cell[database->cells++] = (int32_t)k;
+    for (size_t j = 0; j < database->tiles; j++) {
+        cell_tile *t = &database->tile[j];
+        t->kept = database->cells;
+        for (size_t k = t->first; k < t->first + t->count; k++) {
+            if (seen[k] == HAS_DATA) {
+                database->cell[database->cells++] = database->stored[k];
+            }
         }
     }
+    database->tile[database->tiles].kept = database->cells;
     if ((double)kept < 0.95 * (double)any) {
         gonio_i_warn(context,
                      "%zu of %zu cells are left out because some material has no data there; "
@@ -300,23 +422,26 @@ static gonio_status check_names(gonio_context *context, const gonio_database *da
 
 static gonio_status fill(gonio_context *context, gonio_database *database, const char *const *paths)
 {
-    gonio_status status = open_scratch(context, database->options.scratch, &database->scratch);
+    gonio_status status =
+        gonio_i_scratch_open(context, database->options.scratch, &database->scratch);
+    if (status == GONIO_OK) {
+        status = lay_out(context, database);
+    }
     if (status != GONIO_OK) {
         return status;
     }
-    uint32_t *present =
-        gonio_i_allocate(context, grid_cells(database->options.representation), sizeof *present);
-    if (present == NULL) {
+    uint8_t *seen = gonio_i_allocate(context, database->stored_count, sizeof *seen);
+    if (seen == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    status = read_materials(context, database, paths, present);
+    status = read_materials(context, database, paths, seen);
     if (status == GONIO_OK) {
         status = check_names(context, database);
     }
     if (status == GONIO_OK) {
-        status = keep_common_cells(context, database, present);
+        status = keep_common_cells(context, database, seen);
     }
-    free(present);
+    free(seen);
     return status;
 }
 
@@ -333,7 +458,7 @@ gonio_status gonio_database_create(gonio_context *context, const char *const *pa
     if (options != NULL) {
         made->options = *options;
     }
-    made->scratch = -1;
+    gonio_i_scratch_init(&made->scratch);
     made->materials = count;
     made->names = gonio_i_allocate(context, count, sizeof *made->names);
     made->fingerprints = gonio_i_allocate(context, count, sizeof *made->fingerprints);
@@ -355,14 +480,14 @@ void gonio_database_free(gonio_database **database)
         return;
     }
     gonio_database *old = *database;
-    if (old->scratch >= 0) {
-        close(old->scratch);
-    }
+    gonio_i_scratch_close(&old->scratch);
     for (size_t k = 0; old->names != NULL && k < old->materials; k++) {
         free(old->names[k]);
     }
     free(old->names);
     free(old->fingerprints);
+    free(old->stored);
+    free(old->tile);
     free(old->cell);
     free(old);
     *database = NULL;
@@ -370,38 +495,77 @@ void gonio_database_free(gonio_database **database)
 
 gonio_database_view gonio_database_describe(const gonio_database *database)
 {
-    const bool joint = database->options.channels == GONIO_JOINT;
     return (gonio_database_view){
         .representation = database->options.representation,
         .channels = database->options.channels,
         .materials = database->materials,
         .names = (const char *const *)database->names,
         .fingerprints = database->fingerprints,
-        .columns = joint ? database->materials : GONIO_CHANNELS * database->materials,
+        .columns = per_material(database) * database->materials,
         .cells = database->cells,
         .cell = database->cell,
-        .rows = joint ? GONIO_CHANNELS * database->cells : database->cells,
+        .rows = per_cell(database) * database->cells,
     };
 }
 
-/* Picks rows first .. first + count - 1 out of one material's cells (the first of them being
- * cell[position] of the grid) into the material's column or columns. */
-static void pick_rows(const gonio_database *database, const double *cells, size_t position,
-                      size_t first, size_t count, double *columns)
+/* ---- reading the matrix ---- */
+
+size_t gonio_i_database_tiles(const gonio_database *database)
 {
-    const bool joint = database->options.channels == GONIO_JOINT;
-    const size_t origin = (size_t)database->cell[position];
-    for (size_t k = 0; k < count; k++) {
-        const size_t row = first + k;
-        const size_t cell = (size_t)database->cell[joint ? row / GONIO_CHANNELS : row] - origin;
-        if (joint) {
-            columns[k] = cells[cell * GONIO_CHANNELS + row % GONIO_CHANNELS];
-            continue;
-        }
-        for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
-            columns[channel * count + k] = cells[cell * GONIO_CHANNELS + channel];
+    return database->tiles;
+}
+
+gonio_i_row_range gonio_i_database_tile_rows(const gonio_database *database, size_t tile)
+{
+    const size_t first = database->tile[tile].kept;
+    const size_t end = database->tile[tile + 1].kept;
+    return (gonio_i_row_range){per_cell(database) * first, per_cell(database) * (end - first)};
+}
+
+size_t gonio_i_database_tile_room(const gonio_database *database)
+{
+    return per_cell(database) * tile_cells(database);
+}
+
+/* Closes the gaps that the cells that are left out make in the columns of a tile. */
+static void drop_rows(const gonio_database *database, size_t tile, size_t columns, float *block)
+{
+    const size_t rows = per_cell(database);
+    const size_t stored = database->tile[tile].count;
+    const int32_t *cell = database->stored + database->tile[tile].first;
+    const int32_t *kept = database->cell + database->tile[tile].kept;
+    const int32_t *end = database->cell + database->tile[tile + 1].kept;
+    float *to = block;
+    for (size_t column = 0; column < columns; column++) {
+        const int32_t *next = kept;
+        for (size_t k = 0; k < stored && next < end; k++) {
+            if (cell[k] == *next) {
+                memmove(to, block + (column * stored + k) * rows, rows * sizeof *to);
+                to += rows;
+                next++;
+            }
         }
     }
+}
+
+gonio_status gonio_i_database_read_tile(const gonio_database *database, gonio_context *context,
+                                        size_t tile, const size_t *subset, size_t subset_count,
+                                        float *block)
+{
+    const cell_tile *t = &database->tile[tile];
+    const size_t materials = subset != NULL ? subset_count : database->materials;
+    const size_t together = subset != NULL ? 1 : materials; /* all lie in one piece */
+    const size_t values = GONIO_CHANNELS * t->count;
+    gonio_status status = GONIO_OK;
+    for (size_t k = 0; k < materials && status == GONIO_OK; k += together) {
+        status = gonio_i_scratch_read(context, &database->scratch, tile, block + k * values,
+                                      together * values * sizeof *block,
+                                      tile_offset(database, t, subset != NULL ? subset[k] : 0));
+    }
+    if (status == GONIO_OK && t[1].kept - t->kept < t->count) {
+        drop_rows(database, tile, materials * per_material(database), block);
+    }
+    return status;
 }
 
 static gonio_status check_request(gonio_context *context, const gonio_database_view *view,
@@ -422,6 +586,20 @@ static gonio_status check_request(gonio_context *context, const gonio_database_v
     return GONIO_OK;
 }
 
+/* The rows of a tile that lie in first .. first + count - 1, into block[column][count]. */
+static void copy_rows(gonio_i_row_range rows, const float *values, size_t columns, size_t first,
+                      size_t count, double *block)
+{
+    const size_t from = first > rows.first ? first : rows.first;
+    const size_t last = rows.first + rows.count;
+    const size_t end = first + count < last ? first + count : last;
+    for (size_t column = 0; column < columns; column++) {
+        for (size_t row = from; row < end; row++) {
+            block[column * count + row - first] = values[column * rows.count + row - rows.first];
+        }
+    }
+}
+
 gonio_status gonio_database_read_rows(const gonio_database *database, gonio_context *context,
                                       size_t first, size_t count, const size_t *subset,
                                       size_t subset_count, double *block)
@@ -432,23 +610,20 @@ gonio_status gonio_database_read_rows(const gonio_database *database, gonio_cont
         return status;
     }
     const size_t materials = subset != NULL ? subset_count : view.materials;
-    const size_t per_cell = view.rows / view.cells;
-    const size_t per_material = view.columns / view.materials;
-    const size_t low = first / per_cell;
-    const size_t high = (first + count - 1) / per_cell;
-    const size_t span = (size_t)(view.cell[high] - view.cell[low]) + 1;
-    const size_t size = GONIO_CHANNELS * sizeof(double);
-    double *cells = gonio_i_allocate(context, span, size);
-    status = cells == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
-    for (size_t k = 0; k < materials && status == GONIO_OK; k++) {
-        const size_t material = subset != NULL ? subset[k] : k;
-        const size_t start = material * grid_cells(view.representation) + (size_t)view.cell[low];
-        status =
-            scratch_read(context, database->scratch, cells, span * size, (off_t)(start * size));
-        if (status == GONIO_OK) {
-            pick_rows(database, cells, low, first, count, block + k * per_material * count);
+    const size_t columns = per_material(database) * materials;
+    float *values =
+        gonio_i_allocate(context, columns * gonio_i_database_tile_room(database), sizeof *values);
+    status = values == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    for (size_t tile = 0; tile < database->tiles && status == GONIO_OK; tile++) {
+        const gonio_i_row_range rows = gonio_i_database_tile_rows(database, tile);
+        if (rows.first < first + count && rows.first + rows.count > first) {
+            status =
+                gonio_i_database_read_tile(database, context, tile, subset, subset_count, values);
+            if (status == GONIO_OK) {
+                copy_rows(rows, values, columns, first, count, block);
+            }
         }
     }
-    free(cells);
+    free(values);
     return status;
 }

@@ -11,7 +11,6 @@
 
 #include "../core/core.h"
 #include "../core/vector_math.h"
-#include "../direction/grid.h"
 
 enum { LANES = 8, LANE_ROWS = GONIO_THETA_D_BINS * GONIO_CHANNELS };
 
@@ -60,13 +59,13 @@ static double sum_logs(const double *rho, int first, int last, int channel)
     return sum;
 }
 
-void gonio_i_slab_mean(int theta_h, const double *rho, double *mean)
+void gonio_i_slab_mean(const uint8_t *first_phi, const double *rho, double *mean)
 {
     double lanes[LANE_ROWS][LANES];
     double rest[LANE_ROWS] = {0}; /* sums made the plain way */
     int count[GONIO_THETA_D_BINS];
     for (int theta_d = 0; theta_d < GONIO_THETA_D_BINS; theta_d++) {
-        const int first = gonio_i_first_valid_phi(theta_h, theta_d);
+        const int first = first_phi[theta_d];
         const int last = GONIO_PHI_D_BINS - first;
         const double *row = rho + (size_t)theta_d * GONIO_PHI_D_BINS;
         count[theta_d] = count_data(row, first, last);

@@ -5,7 +5,8 @@
 #include <gonio/database.h>
 
 /* mean[theta_d][channel]: the mean of g over the valid phi_d bins with data, NaN where there are
- * none. rho: a slab (material.h). Agrees with gonio_slab_reduce to rounding. */
-void gonio_i_slab_mean(int theta_h, const double *rho, double *mean);
+ * none. rho: a slab (material.h). first_phi[theta_d]: the slab's gonio_i_first_valid_phi. Agrees
+ * with gonio_slab_reduce to rounding. */
+void gonio_i_slab_mean(const uint8_t *first_phi, const double *rho, double *mean);
 
 #endif

@@ -32,7 +32,7 @@ static gonio_status check_info(gonio_context *context, const char *routine, lapa
     return GONIO_OK;
 }
 
-static void mirror(double *c, size_t n)
+void gonio_i_mirror(double *c, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
         for (size_t j = 0; j < i; j++) {
@@ -41,15 +41,25 @@ static void mirror(double *c, size_t n)
     }
 }
 
-gonio_status gonio_i_gram_columns(gonio_context *context, const double *a, size_t rows, size_t n,
-                                  double *c)
+gonio_status gonio_i_add_gram_columns(gonio_context *context, const double *a, size_t rows,
+                                      size_t n, double *c)
 {
     const gonio_status status = check_size(context, rows, n);
     if (status == GONIO_OK) {
         /* Column-major (rows x n) is row-major (n x rows). */
         cblas_dsyrk(CblasRowMajor, CblasUpper, CblasNoTrans, (int)n, (int)rows, 1.0, a, (int)rows,
-                    0.0, c, (int)n);
-        mirror(c, n);
+                    1.0, c, (int)n);
+    }
+    return status;
+}
+
+gonio_status gonio_i_add_gram_rows(gonio_context *context, const double *a, size_t rows, size_t n,
+                                   double *c)
+{
+    const gonio_status status = check_size(context, rows, n);
+    if (status == GONIO_OK) {
+        cblas_dsyrk(CblasRowMajor, CblasUpper, CblasTrans, (int)n, (int)rows, 1.0, a, (int)n, 1.0,
+                    c, (int)n);
     }
     return status;
 }
@@ -61,7 +71,7 @@ gonio_status gonio_i_gram_rows(gonio_context *context, const double *a, size_t r
     if (status == GONIO_OK) {
         cblas_dsyrk(CblasRowMajor, CblasUpper, CblasTrans, (int)n, (int)rows, 1.0, a, (int)leading,
                     0.0, c, (int)n);
-        mirror(c, n);
+        gonio_i_mirror(c, n);
     }
     return status;
 }
@@ -154,19 +164,10 @@ gonio_status gonio_i_inverse_gram(gonio_context *context, const double *v, size_
     return status;
 }
 
-gonio_status gonio_i_divide_cholesky(gonio_context *context, double *a, size_t rows, size_t n,
-                                     double *c)
+void gonio_i_divide_triangle(double *a, size_t rows, size_t n, const double *l)
 {
-    gonio_status status = check_size(context, rows, n);
-    if (status == GONIO_OK) {
-        status =
-            check_info(context, "dpotrf", LAPACKE_dpotrf(LAPACK_ROW_MAJOR, 'U', (int)n, c, (int)n));
-    }
-    if (status == GONIO_OK) {
-        cblas_dtrsm(CblasRowMajor, CblasRight, CblasUpper, CblasNoTrans, CblasNonUnit, (int)rows,
-                    (int)n, 1.0, c, (int)n, a, (int)n);
-    }
-    return status;
+    cblas_dtrsm(CblasRowMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, (int)rows, (int)n,
+                1.0, l, (int)n, a, (int)n);
 }
 
 /* The numerical rank from the diagonal of R, which pivoting leaves in falling order. */

@@ -8,9 +8,16 @@
 
 #include "../core/core.h"
 
-/* C (n x n, both triangles) = A'A for A (n columns of `rows` values, column-major). */
-gonio_status gonio_i_gram_columns(gonio_context *context, const double *a, size_t rows, size_t n,
-                                  double *c);
+/* A'A for A (n columns of `rows` values, column-major) added to the upper triangle of C (n x n). */
+gonio_status gonio_i_add_gram_columns(gonio_context *context, const double *a, size_t rows,
+                                      size_t n, double *c);
+
+/* Copies the upper triangle of C (n x n) to the lower one. */
+void gonio_i_mirror(double *c, size_t n);
+
+/* A'A for A (rows x n, row-major) added to the upper triangle of C (n x n). */
+gonio_status gonio_i_add_gram_rows(gonio_context *context, const double *a, size_t rows, size_t n,
+                                   double *c);
 
 /* C (n x n, both triangles) = A'A for A (rows x n, row-major, `leading` values apart). */
 gonio_status gonio_i_gram_rows(gonio_context *context, const double *a, size_t rows, size_t n,
@@ -43,10 +50,9 @@ gonio_status gonio_i_inverse_cholesky(gonio_context *context, double *c, size_t 
 gonio_status gonio_i_inverse_gram(gonio_context *context, const double *v, size_t leading, size_t n,
                                   const size_t *rows, size_t count, double *inverse);
 
-/* A (rows x n, row-major) becomes A R^-1, with R upper triangular from the Cholesky factorisation
- * C = R'R of the symmetric positive definite C (n x n, overwritten). */
-gonio_status gonio_i_divide_cholesky(gonio_context *context, double *a, size_t rows, size_t n,
-                                     double *c);
+/* A (rows x n, row-major) becomes A L'^-1 for a lower triangular L (n x n), of a matrix that fits
+ * LAPACK's integers. */
+void gonio_i_divide_triangle(double *a, size_t rows, size_t n, const double *l);
 
 /* argmin |A x - b| by QR with column pivoting. A: rows x n, row-major; b: `columns`
  * right-hand sides of `rows` values each; x: [columns][n]. rank: of A to working precision; if it

@@ -206,9 +206,23 @@ gonio_status gonio_fingerprint_create(gonio_fingerprint **fingerprint)
     return GONIO_OK;
 }
 
+/* The same for the widest vectors of the processor at hand, four times as fast. Only the shared
+ * xxhash of some systems has it, so it may be missing; only x86 needs it. */
+#if defined(__x86_64__) && defined(__ELF__)
+extern XXH_errorcode XXH3_64bits_update_dispatch(XXH3_state_t *state, const void *data, size_t size)
+    __attribute__((weak));
+#else
+static XXH_errorcode (*const XXH3_64bits_update_dispatch)(XXH3_state_t *, const void *,
+                                                          size_t) = NULL;
+#endif
+
 void gonio_fingerprint_add(gonio_fingerprint *fingerprint, const void *data, size_t size)
 {
-    XXH3_64bits_update(fingerprint->state, data, size);
+    if (XXH3_64bits_update_dispatch != NULL) {
+        XXH3_64bits_update_dispatch(fingerprint->state, data, size);
+    } else {
+        XXH3_64bits_update(fingerprint->state, data, size);
+    }
 }
 
 uint64_t gonio_fingerprint_value(const gonio_fingerprint *fingerprint)

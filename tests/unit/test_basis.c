@@ -169,6 +169,84 @@ static void test_threads_and_subsets_do_not_matter(void **state)
     gonio_database_free(&database);
 }
 
+static void test_the_full_grid_on_any_number_of_threads(void **state)
+{
+    (void)state;
+    uint64_t checksum = 0;
+    for (int threads = 1; threads <= 3; threads++) {
+        const gonio_context_options options = {.threads = threads};
+        gonio_context *context = NULL;
+        assert_int_equal(gonio_context_create(&context, &options), GONIO_OK);
+        gonio_database *database = make_database(context, 3, GONIO_FULL, GONIO_SEPARATE);
+        gonio_basis *basis = learn(context, database, 8);
+        const gonio_basis_view view = gonio_basis_describe(basis);
+        assert_int_equal(view.rows, 1096216);
+        checksum = threads == 1 ? view.checksum : checksum;
+        assert_true(view.checksum == checksum);
+        if (threads == 1) {
+            assert_orthonormal(&view);
+            assert_projection(database, &view);
+        }
+        gonio_basis_free(&basis);
+        gonio_database_free(&database);
+        gonio_context_free(&context);
+    }
+}
+
+/* Two materials that differ by little more than rounding from being copies: V'V needs mending. */
+static void test_nearly_dependent_columns(void **state)
+{
+    (void)state;
+    static const double red[4] = {1.0, 1.0 + 1e-5, 1.0, 2.0};
+    char *folder = support_folder();
+    char names[4][256];
+    const char *files[4];
+    for (size_t k = 0; k < 4; k++) {
+        const made_constant made = {{red[k], k == 2 ? 1.0 + 1e-5 : 1.0, 1.0}, NULL};
+        gonio_material *material = made_material(made);
+        files[k] = names[k];
+        snprintf(names[k], sizeof names[k], "%s/%zu.binary", folder, k);
+        assert_int_equal(gonio_material_write_merl(NULL, material, names[k]), GONIO_OK);
+        gonio_material_free(&material);
+    }
+    const gonio_database_options options = {GONIO_BIVARIATE, GONIO_JOINT, NULL};
+    gonio_database *database = NULL;
+    assert_int_equal(gonio_database_create(NULL, files, 4, &options, &database), GONIO_OK);
+    gonio_basis *basis = learn(NULL, database, 2);
+    const gonio_basis_view view = gonio_basis_describe(basis);
+    assert_true(view.variances[1] < 1e-8 * view.variances[0]);
+    assert_orthonormal(&view);
+    gonio_basis_free(&basis);
+    gonio_database_free(&database);
+    support_remove(folder);
+}
+
+static int stop_learning(void *user, const char *task, double fraction)
+{
+    double *last = user;
+    if (strcmp(task, "learning") != 0) {
+        return 0;
+    }
+    *last = fraction;
+    return fraction > 0.6; /* in the second pass */
+}
+
+static void test_learning_can_be_stopped(void **state)
+{
+    (void)state;
+    double last = 0.0;
+    const gonio_context_options options = {.progress = stop_learning, .user = &last};
+    gonio_context *context = NULL;
+    assert_int_equal(gonio_context_create(&context, &options), GONIO_OK);
+    gonio_database *database = make_database(context, 3, GONIO_BIVARIATE, GONIO_JOINT);
+    gonio_basis *basis = NULL;
+    assert_int_equal(gonio_basis_learn(context, database, NULL, &basis), GONIO_ERROR_CANCELLED);
+    assert_null(basis);
+    assert_true(last > 0.6 && last < 1.0);
+    gonio_database_free(&database);
+    gonio_context_free(&context);
+}
+
 static void test_what_cannot_be_learned(void **state)
 {
     (void)state;
@@ -350,6 +428,9 @@ int main(void)
         cmocka_unit_test(test_joint),
         cmocka_unit_test(test_separate),
         cmocka_unit_test(test_threads_and_subsets_do_not_matter),
+        cmocka_unit_test(test_the_full_grid_on_any_number_of_threads),
+        cmocka_unit_test(test_nearly_dependent_columns),
+        cmocka_unit_test(test_learning_can_be_stopped),
         cmocka_unit_test(test_what_cannot_be_learned),
         cmocka_unit_test(test_the_file_keeps_everything),
         cmocka_unit_test(test_row_at_a_centre_is_the_cells_own),

@@ -7,12 +7,14 @@
 #include <gonio/atlas.h>
 
 #include "database/slab_mean.h"
+#include "direction/grid.h"
 
 enum { THETA_H = 60 }; /* a slab with valid, partly valid and empty rows */
 
 /* Compares both ways on a slab; returns how many cells have data. */
 static int compare(const double *rho)
 {
+    uint8_t first_phi[GONIO_THETA_D_BINS];
     double mean[GONIO_THETA_D_BINS * GONIO_CHANNELS];
     double *g = malloc(GONIO_SLAB_VALUES * sizeof *g);
     bool *data = malloc(GONIO_SLAB_BINS * sizeof *data);
@@ -20,7 +22,10 @@ static int compare(const double *rho)
     gonio_slab_mask(THETA_H, rho, data);
     gonio_slab_to_log(rho, g);
     gonio_slab_reduce(g, data, &plain);
-    gonio_i_slab_mean(THETA_H, rho, mean);
+    for (int d = 0; d < GONIO_THETA_D_BINS; d++) {
+        first_phi[d] = (uint8_t)gonio_i_first_valid_phi(THETA_H, d);
+    }
+    gonio_i_slab_mean(first_phi, rho, mean);
     int cells = 0;
     for (int d = 0; d < GONIO_THETA_D_BINS; d++) {
         cells += plain.count[d] > 0;

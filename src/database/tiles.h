@@ -1,0 +1,28 @@
+/* The observation matrix tile by tile: the pieces in which it is written, and in which it is read
+ * fastest. */
+#ifndef GONIO_TILES_H
+#define GONIO_TILES_H
+
+#include <gonio/database.h>
+
+/* Tiles follow each other in the order of the rows. */
+size_t gonio_i_database_tiles(const gonio_database *database);
+
+/* The rows of a tile: `count` from `first`; none if all its cells are left out. */
+typedef struct gonio_i_row_range {
+    size_t first;
+    size_t count;
+} gonio_i_row_range;
+
+gonio_i_row_range gonio_i_database_tile_rows(const gonio_database *database, size_t tile);
+
+/* The most values a column that gonio_i_database_read_tile needs room for. */
+size_t gonio_i_database_tile_room(const gonio_database *database);
+
+/* Reads the rows of a tile into block[column][count] for the given materials, as
+ * gonio_database_read_rows does; block has room for tile_room values a column. Errors: _IO. */
+gonio_status gonio_i_database_read_tile(const gonio_database *database, gonio_context *context,
+                                        size_t tile, const size_t *subset, size_t subset_count,
+                                        float *block);
+
+#endif

@@ -1,0 +1,189 @@
+/* The observation matrix against the materials that it is made of. */
+#include "../support.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <gonio/gonio.h>
+
+#include "made_material.h"
+
+enum { MATERIALS = 3 };
+
+static const char *const paths[MATERIALS] = {"atlas:gold-polished", "atlas:oak-sawn",
+                                             "atlas:burgundy-velvet"};
+
+static gonio_database *make_database(const char *const *files, size_t count,
+                                     gonio_representation representation,
+                                     gonio_channel_model channels)
+{
+    const gonio_database_options options = {representation, channels, NULL};
+    gonio_database *database = NULL;
+    assert_int_equal(gonio_database_create(NULL, files, count, &options, &database), GONIO_OK);
+    return database;
+}
+
+/* g of a material by the plain way, [cell of the grid][channel], NAN where there is no data. */
+static double *plain_log(const char *path, gonio_representation representation)
+{
+    const bool full = representation == GONIO_FULL;
+    const size_t cells = full ? GONIO_BINS : GONIO_CELLS;
+    double *rho = malloc(GONIO_SLAB_VALUES * sizeof *rho);
+    bool *data = malloc(GONIO_SLAB_BINS * sizeof *data);
+    double *g = malloc(cells * GONIO_CHANNELS * sizeof *g);
+    gonio_material *material = NULL;
+    assert_int_equal(gonio_material_open(NULL, path, &material), GONIO_OK);
+    for (int h = 0; h < GONIO_THETA_H_BINS; h++) {
+        gonio_slab_statistics statistics;
+        assert_int_equal(gonio_material_read_slab(material, NULL, h, rho), GONIO_OK);
+        gonio_slab_mask(h, rho, data);
+        gonio_slab_to_log(rho, rho);
+        gonio_slab_reduce(rho, data, &statistics);
+        const size_t slab = cells / GONIO_THETA_H_BINS;
+        for (size_t k = 0; k < slab * GONIO_CHANNELS; k++) {
+            const size_t cell = k / GONIO_CHANNELS;
+            const size_t channel = k % GONIO_CHANNELS;
+            const bool present = full ? data[cell] : statistics.count[cell] > 0;
+            g[(size_t)h * slab * GONIO_CHANNELS + k] = !present ? NAN
+                                                       : full
+                                                           ? rho[channel * GONIO_SLAB_BINS + cell]
+                                                           : statistics.mean[cell][channel];
+        }
+    }
+    gonio_material_free(&material);
+    free(data);
+    free(rho);
+    return g;
+}
+
+/* Rows first .. first + count - 1 of some materials are their g, to float32. */
+static void assert_rows(const gonio_database *database, const char *const *files, size_t first,
+                        size_t count, const size_t *subset, size_t subset_count)
+{
+    const gonio_database_view view = gonio_database_describe(database);
+    const bool joint = view.channels == GONIO_JOINT;
+    const size_t per_material = joint ? 1 : GONIO_CHANNELS;
+    double *block = malloc(per_material * subset_count * count * sizeof *block);
+    assert_int_equal(
+        gonio_database_read_rows(database, NULL, first, count, subset, subset_count, block),
+        GONIO_OK);
+    for (size_t j = 0; j < per_material * subset_count; j++) {
+        double *g = plain_log(files[subset[j / per_material]], view.representation);
+        for (size_t i = 0; i < count; i++) {
+            const size_t row = first + i;
+            const size_t cell = (size_t)view.cell[joint ? row / GONIO_CHANNELS : row];
+            const double expected =
+                g[cell * GONIO_CHANNELS + (joint ? row % GONIO_CHANNELS : j % 3)];
+            assert_true(fabs(block[j * count + i] - expected) <= 1e-7 * expected);
+        }
+        free(g);
+    }
+    free(block);
+}
+
+static void test_rows_are_the_materials(void **state)
+{
+    (void)state;
+    static const size_t subset[] = {2, 0};
+    for (int full = 0; full < 2; full++) {
+        for (int separate = 0; separate < 2; separate++) {
+            gonio_database *database = make_database(paths, MATERIALS, (gonio_representation)full,
+                                                     (gonio_channel_model)separate);
+            const gonio_database_view view = gonio_database_describe(database);
+            const size_t third = view.rows / 3;
+            assert_int_equal(view.cells, full ? 1096216 : 8023);
+            assert_int_equal(view.rows, separate ? view.cells : 3 * view.cells);
+            assert_int_equal(view.columns, separate ? 3 * MATERIALS : MATERIALS);
+            assert_rows(database, paths, 0, third - 1, subset, 2);
+            assert_rows(database, paths, third - 1, view.rows - third + 1, subset, 2);
+            assert_rows(database, paths, third + 5, 1, subset + 1, 1);
+            gonio_database_free(&database);
+        }
+    }
+}
+
+static bool is_comb(gonio_bin bin)
+{
+    return bin.phi_d % 7 == 3 || bin.theta_d == 20;
+}
+
+static bool is_low(gonio_bin bin)
+{
+    return bin.theta_h < 30 || bin.phi_d == 90;
+}
+
+/* Two tables with holes of their own; the caller removes the folder. */
+static char *write_holes(char names[2][256])
+{
+    static const made_constant made[2] = {{{1.0, 2.0, 3.0}, is_comb}, {{0.1, 0.2, 0.3}, is_low}};
+    char *folder = support_folder();
+    for (int k = 0; k < 2; k++) {
+        snprintf(names[k], 256, "%s/%c.binary", folder, 'a' + k);
+        gonio_material *material = made_material(made[k]);
+        assert_int_equal(gonio_material_write_merl(NULL, material, names[k]), GONIO_OK);
+        gonio_material_free(&material);
+    }
+    return folder;
+}
+
+static void test_cells_that_some_material_lacks_are_left_out(void **state)
+{
+    (void)state;
+    static const size_t both[] = {0, 1};
+    char names[2][256];
+    char *folder = write_holes(names);
+    const char *const files[2] = {names[0], names[1]};
+    for (int separate = 0; separate < 2; separate++) {
+        gonio_database *database =
+            make_database(files, 2, GONIO_FULL, (gonio_channel_model)separate);
+        const gonio_database_view view = gonio_database_describe(database);
+        size_t k = 0;
+        for (int32_t index = 0; index < GONIO_BINS; index++) {
+            const gonio_bin bin = gonio_bin_from_index(index);
+            if (gonio_bin_is_valid(bin) && !is_comb(bin) && !is_low(bin)) {
+                assert_true(k < view.cells && view.cell[k] == index);
+                k++;
+            }
+        }
+        assert_int_equal(k, view.cells);
+        assert_rows(database, files, 1, view.rows - 2, both, 2);
+        gonio_database_free(&database);
+    }
+    support_remove(folder);
+}
+
+static void test_what_cannot_be_read(void **state)
+{
+    (void)state;
+    static const size_t no_such[] = {MATERIALS};
+    double value = 0.0;
+    gonio_context *context = support_context();
+    gonio_database *database = make_database(paths, MATERIALS, GONIO_BIVARIATE, GONIO_JOINT);
+    const size_t rows = gonio_database_describe(database).rows;
+    assert_int_equal(gonio_database_read_rows(database, context, rows, 1, NULL, 0, &value),
+                     GONIO_ERROR_ARGUMENT);
+    assert_int_equal(gonio_database_read_rows(database, context, 0, rows + 1, NULL, 0, &value),
+                     GONIO_ERROR_ARGUMENT);
+    assert_int_equal(gonio_database_read_rows(database, context, 0, 1, no_such, 1, &value),
+                     GONIO_ERROR_ARGUMENT);
+    assert_non_null(strstr(support_message(), "material 3 of a database of 3"));
+    gonio_database_free(&database);
+    const gonio_database_options nowhere = {.scratch = "/nonexistent"};
+    assert_int_equal(gonio_database_create(context, paths, MATERIALS, &nowhere, &database),
+                     GONIO_ERROR_IO);
+    assert_non_null(strstr(support_message(), "set TMPDIR"));
+    assert_null(database);
+    gonio_context_free(&context);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_rows_are_the_materials),
+        cmocka_unit_test(test_cells_that_some_material_lacks_are_left_out),
+        cmocka_unit_test(test_what_cannot_be_read),
+    };
+    return cmocka_run_group_tests_name("database", tests, NULL, NULL);
+}
