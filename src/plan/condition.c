@@ -12,6 +12,7 @@
  * the same swaps win as if kappa were computed for every one. A full turn without a swap proves a
  * local optimum. */
 #include <math.h>
+#include <sched.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -44,36 +45,50 @@ typedef struct search {
     double *q;            /* [K][K]: the eigenvectors of G as rows */
     double *columns;      /* [K][K]: and as columns */
     double *d;            /* [K] eigenvalues, ascending */
+    double *old_d;        /* [K] before a swap */
+    double *old_y;        /* [K] of the row that went out */
     double condition_number;
     gonio_i_filter filter;
     worker *workers; /* [threads] */
     size_t *winners; /* [chunks + 1]: scratch */
     int threads;
-    double began;   /* s */
-    double waiting; /* s, that the first thread waited for the others */
-    size_t from;    /* the row that the next position begins with */
+    double began;  /* s: when the descent began */
+    double worked; /* s: what to add to the thread's clock for the time that it did work */
+    size_t from;   /* the row that the next position begins with */
     gonio_i_random random;
     uint64_t tests;   /* that a search without the filter would have made */
     double share;     /* how far this search is, 0 to 1 */
     double *progress; /* the sum of all searches' shares */
 } search;
 
-static double now(void)
+static double seconds(clockid_t clock)
 {
     struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
+    clock_gettime(clock, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* Ends a time of waiting. The steps of a search are so short that on a busy machine, where a thread
- * may be without a processor just when it is waited for, threads only cost time: then it goes on
- * with one. (The plan is the same on any number.) */
+static void begin_watch(search *s)
+{
+    s->began = seconds(CLOCK_MONOTONIC);
+    s->worked = -seconds(CLOCK_THREAD_CPUTIME_ID);
+}
+
+/* Ends a time of waiting for the other threads. The steps of a search are so short that on a busy
+ * machine, where a thread may be without a processor just when it is waited for, threads only cost
+ * time: where a quarter of it was lost, the search goes on with one. (The plan is the same on any
+ * number.) */
 static void stop_waiting(search *s, double since)
 {
     static const double patience = 0.02;
-    const double time = now();
-    s->waiting += time - since;
-    if (s->waiting > patience && s->waiting > 0.5 * (time - s->began)) {
+    if (s->threads == 1) {
+        return;
+    }
+    const double time = seconds(CLOCK_MONOTONIC);
+    s->worked -= time - since; /* waiting looks like work to the processor */
+    const double passed = time - s->began;
+    const double lost = passed - (seconds(CLOCK_THREAD_CPUTIME_ID) + s->worked);
+    if (lost > patience && lost > 0.25 * passed) {
         s->threads = 1;
     }
 }
@@ -195,7 +210,7 @@ static void take_steps(search *s, size_t position, size_t from, size_t first, si
             s->winners[step] = first_winner_at(s, position, from, step, thread);
         }
         if (thread == 0) {
-            since = now();
+            since = seconds(CLOCK_MONOTONIC);
         }
     }
     stop_waiting(s, since);
@@ -234,26 +249,43 @@ static void put(search *s, size_t position, size_t row)
     s->chosen[position] = row;
 }
 
-/* Where there are several threads, one decomposes G while the others compute the gains that will be
- * needed first. */
-static gonio_status decompose_and_prepare(search *s)
+/* Computes the gains that will be needed first, as long as G is being decomposed. */
+static void prepare_ahead(search *s, size_t first, size_t apart, const _Atomic bool *decomposed)
 {
     const size_t chunks = gonio_i_panels_chunks(s->filter.panels);
+    for (size_t step = first; step < chunks && !*decomposed; step += apart) {
+        gonio_i_filter_prepare(&s->filter, (s->from / GONIO_I_CHUNK + step) % chunks,
+                               omp_get_thread_num());
+    }
+}
+
+/* Sets the filter and decomposes G after a swap. Where there are several threads, one decomposes;
+ * the eigenvalues that the filter needs are found without. */
+static gonio_status decompose_and_prepare(search *s, const gonio_i_exchange *swap)
+{
     gonio_status status = GONIO_OK;
-    _Atomic bool done = false;
+    _Atomic bool filtered = false;
+    _Atomic bool decomposed = false;
     double since = 0.0;
 #pragma omp parallel num_threads(s->threads) if (s->threads > 1)
     {
         const int thread = omp_get_thread_num();
-        const size_t others = (size_t)omp_get_num_threads() - 1;
+        const int others = omp_get_num_threads() - 1;
+        if (thread == others) {
+            set_filter(s, gonio_i_exchange_eigenvalue(swap, 0),
+                       gonio_i_exchange_eigenvalue(swap, swap->n - 2),
+                       gonio_i_exchange_eigenvalue(swap, swap->n - 1));
+            filtered = true;
+        }
         if (thread == 0) {
             status = decompose(s);
-            done = true;
-            since = now();
-        }
-        for (size_t step = (size_t)thread; step <= chunks && !done; step += others) {
-            gonio_i_filter_prepare(&s->filter, (s->from / GONIO_I_CHUNK + step - 1) % chunks,
-                                   thread);
+            decomposed = true;
+            since = seconds(CLOCK_MONOTONIC);
+        } else {
+            while (!filtered && !decomposed) {
+                sched_yield();
+            }
+            prepare_ahead(s, (size_t)thread - 1, (size_t)others, &decomposed);
         }
     }
     stop_waiting(s, since);
@@ -266,15 +298,15 @@ static gonio_status make_swap(search *s, size_t position, size_t row, bool *gain
     const size_t k = s->problem->components;
     const double before = s->condition_number;
     const size_t old = s->chosen[position];
-    const gonio_i_exchange exchange = exchange_of(s, position, row, s->workers[0].z);
-    const double smallest = gonio_i_exchange_eigenvalue(&exchange, 0);
-    const double second_largest = gonio_i_exchange_eigenvalue(&exchange, k - 2);
-    const double largest = gonio_i_exchange_eigenvalue(&exchange, k - 1);
+    gonio_i_exchange swap = exchange_of(s, position, row, s->workers[0].z);
+    memcpy(s->old_d, s->d, k * sizeof *s->d);
+    memcpy(s->old_y, swap.y, k * sizeof *s->y);
+    swap.d = s->old_d;
+    swap.y = s->old_y;
     put(s, position, row);
     gonio_status status = gather(s);
     if (status == GONIO_OK) {
-        set_filter(s, smallest, second_largest, largest);
-        status = decompose_and_prepare(s);
+        status = decompose_and_prepare(s, &swap);
     }
     *gained = s->condition_number < before;
     if (status == GONIO_OK && !*gained) {
@@ -320,7 +352,7 @@ static gonio_status report(search *s, double share)
 static gonio_status descend(search *s, int restart, gonio_i_selection *selection)
 {
     int swaps = 0;
-    s->began = now();
+    begin_watch(s);
     gonio_status status =
         gonio_i_selection_record(s->problem, selection, restart, swaps, s->condition_number);
     bool proved = s->problem->components < 2; /* kappa of one component is 1 */
@@ -410,12 +442,14 @@ static bool allocate_search(const gonio_i_selection_problem *problem, const goni
         .q = gonio_i_allocate(context, k * k, sizeof *s->q),
         .columns = gonio_i_allocate(context, k * k, sizeof *s->columns),
         .d = gonio_i_allocate(context, k, sizeof *s->d),
+        .old_d = gonio_i_allocate(context, k, sizeof *s->old_d),
+        .old_y = gonio_i_allocate(context, k, sizeof *s->old_y),
         .winners = gonio_i_allocate(context, gonio_i_panels_chunks(panels) + 1, sizeof *s->winners),
     };
     return gonio_i_filter_allocate(problem, panels, threads, &s->filter) && allocate_workers(s) &&
            s->chosen != NULL && s->taken != NULL && s->x != NULL && s->y != NULL &&
            s->gram != NULL && s->q != NULL && s->columns != NULL && s->d != NULL &&
-           s->winners != NULL;
+           s->old_d != NULL && s->old_y != NULL && s->winners != NULL;
 }
 
 static void free_search(search *s)
@@ -433,6 +467,8 @@ static void free_search(search *s)
     free(s->q);
     free(s->columns);
     free(s->d);
+    free(s->old_d);
+    free(s->old_y);
     free(s->winners);
     gonio_i_filter_free(&s->filter);
 }
@@ -488,19 +524,31 @@ static void run(starts *all, int restart)
     free_search(&s);
 }
 
+static void run_unless_failed(starts *all, int restart)
+{
+    if (all->status == GONIO_OK) {
+        run(all, restart);
+    }
+}
+
 /* Several starts at a time: they share nothing but the rows, while threads within one start wait
- * for each other at every step. Threads left over go into the starts. */
+ * for each other at every step. Threads left over go into the starts. (One at a time is no parallel
+ * region of one: regions inside another make their threads anew each time.) */
 static void run_all(starts *all)
 {
     const int restarts = all->problem->restarts;
     const int threads = gonio_context_threads(all->problem->context);
     const int teams = restarts < threads ? restarts : threads;
     all->threads = threads / teams;
+    if (teams == 1) {
+        for (int restart = 0; restart < restarts; restart++) {
+            run_unless_failed(all, restart);
+        }
+        return;
+    }
 #pragma omp parallel for schedule(dynamic) num_threads(teams)
     for (int restart = 0; restart < restarts; restart++) {
-        if (all->status == GONIO_OK) {
-            run(all, restart);
-        }
+        run_unless_failed(all, restart);
     }
 }
 
