@@ -31,19 +31,27 @@ static size_t size_of(const gonio_i_panels *panels, size_t rows)
 
 /* ---- layout ---- */
 
+/* The columns of a panel, from rows `stride` apart. */
+GONIO_I_VECTORISED static void transpose(const double *restrict rows, size_t stride, size_t count,
+                                         size_t k, float *restrict panel)
+{
+    for (size_t i = 0; i < count; i++) {
+        for (size_t a = 0; a < k; a++) {
+            panel[a * WIDTH + i] = (float)rows[i * stride + a];
+        }
+    }
+}
+
 /* A panel from row `first` on, of which there may be fewer than fill it. */
 static void lay_out(const gonio_i_panels *panels, size_t first, float *panel)
 {
     const gonio_i_selection_problem *p = panels->problem;
     const size_t rows = first < p->rows ? p->rows - first : 0;
     const size_t count = rows < WIDTH ? rows : WIDTH;
-    memset(panel, 0, size_of(panels, WIDTH) * sizeof *panel);
-    for (size_t i = 0; i < count; i++) {
-        const double *u = gonio_i_row(p, first + i);
-        for (size_t k = 0; k < p->components; k++) {
-            panel[k * WIDTH + i] = (float)u[k];
-        }
+    if (count < WIDTH || panels->components > p->components) {
+        memset(panel, 0, size_of(panels, WIDTH) * sizeof *panel);
     }
+    transpose(gonio_i_row(p, first), p->stride, count, p->components, panel);
 }
 
 static float length_of(const double *u, size_t k)

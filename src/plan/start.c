@@ -168,8 +168,6 @@ static const gonio_i_start starts[] = {
     {"random", "rows drawn at random (the paper's)", random_start},
     {"qr", "QR with row pivoting, over and over", qr_start},
     {"volume", "the rows that make det(X'X) largest, one after another", volume_start},
-    {"coarse", "a local optimum among a few rows, then among more: for very many rows",
-     gonio_i_coarse_start},
 };
 
 const gonio_i_start *gonio_i_start_at(int index)

@@ -12,10 +12,6 @@ typedef struct gonio_i_start {
     gonio_status (*choose)(const gonio_i_selection_problem *problem, int restart, size_t *chosen);
 } gonio_i_start;
 
-/* See coarse.c. */
-gonio_status gonio_i_coarse_start(const gonio_i_selection_problem *problem, int restart,
-                                  size_t *chosen);
-
 /* By name; NULL if there is none. By index from 0; NULL past the last. */
 const gonio_i_start *gonio_i_find_start(const char *name);
 const gonio_i_start *gonio_i_start_at(int index);

@@ -1,0 +1,92 @@
+/* A search of very many rows in rounds: see narrow.h. */
+#include "narrow.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_WINNERS = 200, MOST_ROUNDS = 50 }; /* winners at each position */
+
+/* A round that lowers kappa by less than this share is the last. */
+static const double least_gain = 1e-4;
+
+/* The chosen rows, and up to MOST_WINNERS winners for each position, each once, into rows[]. */
+static size_t gather_rows(gonio_i_search *s, unsigned char *used, size_t *rows)
+{
+    const gonio_i_selection_problem *p = s->problem;
+    size_t count = p->count;
+    memcpy(rows, s->chosen, count * sizeof *rows);
+    memcpy(used, s->taken, p->rows);
+    for (size_t position = 0; position < p->count; position++) {
+        const size_t from = (size_t)gonio_i_random_below(&s->random, p->rows);
+        const size_t found = gonio_i_search_winners(s, position, from, MOST_WINNERS, rows + count);
+        const size_t end = count + found;
+        for (size_t k = count; k < end; k++) {
+            const size_t row = rows[k];
+            rows[count] = row;
+            count += !used[row];
+            used[row] = 1;
+        }
+    }
+    return count;
+}
+
+/* Searches rows[count] alone, from the chosen ones, which are its first; turns to the result. */
+static gonio_status search_among(gonio_i_search *s, const size_t *rows, size_t count)
+{
+    const gonio_i_selection_problem *p = s->problem;
+    const size_t k = p->components;
+    double *few = gonio_i_allocate(p->context, count * k, sizeof *few);
+    size_t *chosen = gonio_i_allocate(p->context, p->count, sizeof *chosen);
+    gonio_status status = few == NULL || chosen == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    for (size_t j = 0; j < count && status == GONIO_OK; j++) {
+        memcpy(few + j * k, gonio_i_row(p, rows[j]), k * sizeof *few);
+    }
+    if (status == GONIO_OK) {
+        for (size_t j = 0; j < p->count; j++) {
+            chosen[j] = j;
+        }
+        gonio_i_selection_problem part = *p;
+        part.vectors = few;
+        part.stride = k;
+        part.rows = count;
+        part.restarts = 1;
+        part.keep_history = false;
+        part.given = chosen;
+        gonio_i_selection selection = {.chosen = chosen};
+        status = gonio_i_condition_method.select(&part, &selection);
+        s->tests += selection.tests;
+    }
+    if (status == GONIO_OK) {
+        for (size_t j = 0; j < p->count; j++) {
+            chosen[j] = rows[chosen[j]];
+        }
+        status = gonio_i_search_begin(s, chosen);
+    }
+    free(few);
+    free(chosen);
+    return status;
+}
+
+gonio_status gonio_i_narrow(gonio_i_search *s)
+{
+    const gonio_i_selection_problem *p = s->problem;
+    unsigned char *used = gonio_i_allocate(p->context, p->rows, 1);
+    size_t *rows =
+        gonio_i_allocate(p->context, p->count * (MOST_WINNERS + 1) + MOST_WINNERS, sizeof *rows);
+    gonio_status status = used == NULL || rows == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    bool worth = true;
+    for (int round = 0; round < MOST_ROUNDS && worth && status == GONIO_OK; round++) {
+        const double before = s->condition_number;
+        const size_t count = gather_rows(s, used, rows);
+        if (count > p->count) {
+            status = search_among(s, rows, count);
+        }
+        worth = s->condition_number < before * (1.0 - least_gain);
+        if (status == GONIO_OK) {
+            status = gonio_i_search_report(s, round / (round + 10.0));
+        }
+    }
+    free(used);
+    free(rows);
+    return status;
+}
