@@ -165,7 +165,7 @@ static gonio_status select_by_condition(const gonio_i_selection_problem *problem
         qsort(selection->chosen, problem->count, sizeof *selection->chosen, compare_rows);
         status = join_histories(&all);
     }
-    if (status == GONIO_OK) {
+    if (status == GONIO_OK && !problem->part) {
         status = gonio_i_progress(context, "planning", 1.0);
     }
     for (size_t k = 0; all.histories != NULL && k < restarts; k++) {

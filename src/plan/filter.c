@@ -31,9 +31,9 @@ bool gonio_i_filter_allocate(const gonio_i_selection_problem *problem, const gon
     f->root = gonio_i_allocate(context, k * k, sizeof *f->root);
     f->t = gonio_i_allocate(context, padded * padded, sizeof *f->t);
     f->image = gonio_i_allocate(context, 2 * k, sizeof *f->image);
-    f->columns = gonio_i_allocate(context, padded * GONIO_I_COLUMNS, sizeof *f->columns);
+    f->columns = gonio_i_allocate(context, padded * GONIO_I_BATCH, sizeof *f->columns);
     f->gain = gonio_i_allocate(context, panels->rows, sizeof *f->gain);
-    f->pass = gonio_i_allocate(context, GONIO_I_COLUMNS * panels->rows, 1);
+    f->pass = gonio_i_allocate(context, GONIO_I_BATCH * panels->rows, 1);
     f->gain_is_set = gonio_i_allocate(context, chunks, sizeof *f->gain_is_set);
     f->batch_is_set = gonio_i_allocate(context, chunks, sizeof *f->batch_is_set);
     return allocate_scratch(f) && f->root != NULL && f->t != NULL && f->image != NULL &&
@@ -83,7 +83,7 @@ void gonio_i_filter_set(gonio_i_filter *f, const double *gram, double mu)
     f->gain_margin = (float)(product_error(f) * sqrt(squares));
     memset(f->gain_is_set, 0, gonio_i_panels_chunks(f->panels) * sizeof *f->gain_is_set);
     f->batch = 0;
-    f->fresh = true;
+    f->next = 1;
 }
 
 /* Bv = T'(T v); returns v'Bv = |T v|^2. */
@@ -108,20 +108,24 @@ GONIO_I_VECTORISED static double apply(size_t k, const double *restrict root, co
     return squares;
 }
 
-/* Bv of one position as a column in single precision, with what goes with it. */
+/* Bv of the j-th position of the batch as a column in single precision, with what goes with it. */
 static void fill_column(gonio_i_filter *f, const double *v, size_t j)
 {
     const size_t k = f->problem->components;
+    gonio_i_test *test = &f->tests[j / GONIO_I_COLUMNS];
+    const size_t column = j % GONIO_I_COLUMNS;
+    float *c = f->columns + j / GONIO_I_COLUMNS * GONIO_I_COLUMNS * f->panels->components;
     double *bv = f->image + k;
     const double loss = apply(k, f->root, v, f->image, bv) - 1.0;
     double squares = 0.0;
     for (size_t a = 0; a < k; a++) {
-        f->columns[a * f->test.columns + j] = (float)bv[a];
+        c[a * test->columns + column] = (float)bv[a];
         squares += bv[a] * bv[a];
     }
+    test->c = c;
     f->all_pass[j] = f->blind || loss < 1e-6;
-    f->test.loss[j] = (float)(loss * (1.0 - 1e-6));
-    f->test.margin[j] = (float)(product_error(f) * sqrt(squares));
+    test->loss[column] = (float)(loss * (1.0 - 1e-6));
+    test->margin[column] = (float)(product_error(f) * sqrt(squares));
 }
 
 void gonio_i_filter_turn_to(gonio_i_filter *f, const double *x, size_t position)
@@ -130,13 +134,17 @@ void gonio_i_filter_turn_to(gonio_i_filter *f, const double *x, size_t position)
     if (position >= f->first && position < f->first + f->batch) {
         return;
     }
-    const size_t columns = f->fresh ? 1 : GONIO_I_COLUMNS;
     const size_t rest = f->problem->count - position;
-    f->fresh = false;
+    const size_t columns = f->next == 1 ? 1 : GONIO_I_COLUMNS;
     f->first = position;
-    f->batch = rest < columns ? rest : columns;
-    f->test = (gonio_i_test){.columns = columns, .c = f->columns};
-    memset(f->columns, 0, f->panels->components * columns * sizeof *f->columns);
+    f->batch = rest < f->next ? rest : f->next;
+    /* Where chunks are many, fetching them costs more than tests that a swap makes useless. */
+    const bool many = gonio_i_panels_chunks(f->panels) >= 64;
+    f->next = many && f->next > 1 ? GONIO_I_BATCH : GONIO_I_COLUMNS;
+    memset(f->columns, 0, f->panels->components * GONIO_I_BATCH * sizeof *f->columns);
+    for (size_t j = 0; j < f->batch; j += columns) {
+        f->tests[j / GONIO_I_COLUMNS] = (gonio_i_test){.columns = columns};
+    }
     for (size_t j = 0; j < f->batch; j++) {
         fill_column(f, x + (position + j) * k, j);
     }
@@ -165,9 +173,12 @@ static void look_at(gonio_i_filter *f, size_t index, int thread)
     }
     const gonio_i_chunk chunk = gonio_i_panels_chunk(f->panels, index, f->scratch[thread]);
     set_gain(f, &chunk, index);
-    gonio_i_test test = f->test;
-    test.gain = f->gain + chunk.first;
-    gonio_i_chunk_mark(&chunk, &test, f->pass + chunk.first, f->panels->rows);
+    for (size_t j = 0; j < f->batch; j += GONIO_I_COLUMNS) {
+        gonio_i_test test = f->tests[j / GONIO_I_COLUMNS];
+        test.gain = f->gain + chunk.first;
+        gonio_i_chunk_mark(&chunk, &test, f->pass + j * f->panels->rows + chunk.first,
+                           f->panels->rows);
+    }
     f->batch_is_set[index] = true;
 }
 

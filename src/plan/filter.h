@@ -6,7 +6,7 @@
  * law on G - vv' + uu' - mu (inertia.h) reads, in terms of gain b_u = 1 + u'Bu = 1 + |T u|^2, loss
  * p_v = v'Bv - 1,   w = u'Bv: u passes if and only if w^2 > p_v b_u   (p_v < 0: all do). Rows are
  * looked at a chunk at a time, as the search comes to them: the gains of a chunk are computed once
- * for each G, the w for one position after a swap, and for several once one has failed.
+ * for each G, the w for one position after a swap, and for more and more as positions fail.
  *
  * All this is done in single precision, with bounds of the rounding errors from
  *   |fl(x'y) - x'y| <= n eps |x| |y|                       (Higham 2002, section 3.1),
@@ -19,23 +19,26 @@
 #include "method.h"
 #include "panels.h"
 
+/* Positions that are looked at together, and tests that takes. */
+enum { GONIO_I_TESTS = 4, GONIO_I_BATCH = GONIO_I_TESTS * GONIO_I_COLUMNS };
+
 typedef struct gonio_i_filter {
     const gonio_i_selection_problem *problem;
     const gonio_i_panels *panels;
     int threads;
-    float **scratch;     /* [threads]: a chunk's panels, where these are not kept */
-    double *root;        /* T, [K][K] */
-    float *t;            /* T as panels.h wants it */
-    double *image;       /* scratch, [2][K] */
-    float *columns;      /* Bv of the batch, padded */
-    float *gain;         /* lower bounds of b_u, [rows] */
-    float gain_margin;   /* panels.h */
-    unsigned char *pass; /* [GONIO_I_COLUMNS][rows] */
-    gonio_i_test test;   /* of the batch */
-    bool all_pass[GONIO_I_COLUMNS];
+    float **scratch;                   /* [threads]: a chunk's panels, where these are not kept */
+    double *root;                      /* T, [K][K] */
+    float *t;                          /* T as panels.h wants it */
+    double *image;                     /* scratch, [2][K] */
+    float *columns;                    /* Bv of the batch, padded */
+    float *gain;                       /* lower bounds of b_u, [rows] */
+    float gain_margin;                 /* panels.h */
+    unsigned char *pass;               /* [GONIO_I_BATCH][rows] */
+    gonio_i_test tests[GONIO_I_TESTS]; /* of the batch */
+    bool all_pass[GONIO_I_BATCH];
     size_t first;       /* position that the batch begins with */
     size_t batch;       /* positions in it; 0 if there is none */
-    bool fresh;         /* no position has failed since G was set */
+    size_t next;        /* and how many the next batch will have */
     bool *gain_is_set;  /* [chunks]: for this G */
     bool *batch_is_set; /* [chunks]: for this batch */
     bool blind;         /* G is too near singular for the filter: everything passes */

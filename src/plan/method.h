@@ -20,6 +20,7 @@ typedef struct gonio_i_selection_problem {
     bool keep_history;
     const char *start;   /* a name that start.h knows */
     const size_t *given; /* [count] or NULL: rows to start from instead; may be the result's */
+    bool part;           /* of the work on another problem, which reports the progress */
 } gonio_i_selection_problem;
 
 static inline const double *gonio_i_row(const gonio_i_selection_problem *problem, size_t row)

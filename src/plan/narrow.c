@@ -30,8 +30,26 @@ static size_t gather_rows(gonio_i_search *s, unsigned char *used, size_t *rows)
     return count;
 }
 
+/* Swaps within the problem `part`, added to the history of the whole; but for the last, whose kappa
+ * is computed anew from the rows of the whole. */
+static gonio_status search_part(gonio_i_search *s, const gonio_i_selection_problem *part,
+                                size_t *chosen, int restart, int *swaps,
+                                gonio_i_selection *selection)
+{
+    gonio_i_selection found = {.chosen = chosen};
+    gonio_status status = gonio_i_condition_method.select(part, &found);
+    s->tests += found.tests;
+    for (size_t k = 1; k + 1 < found.steps && status == GONIO_OK; k++) {
+        status = gonio_i_selection_record(s->problem, selection, restart, ++*swaps,
+                                          found.history[k].condition_number);
+    }
+    free(found.history);
+    return status;
+}
+
 /* Searches rows[count] alone, from the chosen ones, which are its first; turns to the result. */
-static gonio_status search_among(gonio_i_search *s, const size_t *rows, size_t count)
+static gonio_status search_among(gonio_i_search *s, const size_t *rows, size_t count, int restart,
+                                 int *swaps, gonio_i_selection *selection)
 {
     const gonio_i_selection_problem *p = s->problem;
     const size_t k = p->components;
@@ -50,11 +68,9 @@ static gonio_status search_among(gonio_i_search *s, const size_t *rows, size_t c
         part.stride = k;
         part.rows = count;
         part.restarts = 1;
-        part.keep_history = false;
         part.given = chosen;
-        gonio_i_selection selection = {.chosen = chosen};
-        status = gonio_i_condition_method.select(&part, &selection);
-        s->tests += selection.tests;
+        part.part = true;
+        status = search_part(s, &part, chosen, restart, swaps, selection);
     }
     if (status == GONIO_OK) {
         for (size_t j = 0; j < p->count; j++) {
@@ -62,12 +78,16 @@ static gonio_status search_among(gonio_i_search *s, const size_t *rows, size_t c
         }
         status = gonio_i_search_begin(s, chosen);
     }
+    if (status == GONIO_OK) {
+        status = gonio_i_selection_record(p, selection, restart, ++*swaps, s->condition_number);
+    }
     free(few);
     free(chosen);
     return status;
 }
 
-gonio_status gonio_i_narrow(gonio_i_search *s)
+gonio_status gonio_i_narrow(gonio_i_search *s, int restart, int *swaps,
+                            gonio_i_selection *selection)
 {
     const gonio_i_selection_problem *p = s->problem;
     unsigned char *used = gonio_i_allocate(p->context, p->rows, 1);
@@ -79,7 +99,7 @@ gonio_status gonio_i_narrow(gonio_i_search *s)
         const double before = s->condition_number;
         const size_t count = gather_rows(s, used, rows);
         if (count > p->count) {
-            status = search_among(s, rows, count);
+            status = search_among(s, rows, count, restart, swaps, selection);
         }
         worth = s->condition_number < before * (1.0 - least_gain);
         if (status == GONIO_OK) {

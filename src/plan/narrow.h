@@ -12,6 +12,8 @@
 
 enum { GONIO_I_MANY_ROWS = 100000 };
 
-gonio_status gonio_i_narrow(gonio_i_search *search);
+/* Makes those swaps; counts and records them. */
+gonio_status gonio_i_narrow(gonio_i_search *search, int restart, int *swaps,
+                            gonio_i_selection *selection);
 
 #endif

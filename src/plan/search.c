@@ -29,21 +29,22 @@ static void begin_watch(gonio_i_search *s)
     s->worked = -seconds(CLOCK_THREAD_CPUTIME_ID);
 }
 
-/* Ends a time of waiting for the other threads. The steps of a search are so short that on a busy
- * machine, where a thread may be without a processor just when it is waited for, threads only cost
- * time: where a quarter of it was lost, the search goes on with one. (The plan is the same on any
- * number.) */
+/* Ends a time of waiting for the other threads. Steps may be so short that on a busy machine, where
+ * a thread may be without a processor just when it is waited for, threads only cost time: where a
+ * quarter of it was lost, the search goes on with one. (The plan is the same on any number.) */
 static void stop_waiting(gonio_i_search *s, double since)
 {
     static const double patience = 0.02;
+    static const double short_step = 0.002;
     if (s->threads == 1) {
         return;
     }
+    s->waits++;
     const double time = seconds(CLOCK_MONOTONIC);
     s->worked -= time - since; /* waiting looks like work to the processor */
     const double passed = time - s->began;
     const double lost = passed - (seconds(CLOCK_THREAD_CPUTIME_ID) + s->worked);
-    if (lost > patience && lost > 0.25 * passed) {
+    if (lost > patience && lost > 0.25 * passed && passed < short_step * (double)s->waits) {
         s->threads = 1;
     }
 }
@@ -323,7 +324,9 @@ gonio_status gonio_i_search_report(gonio_i_search *s, double share)
         *s->progress += gained;
         sum = *s->progress;
     }
-    return gonio_i_progress(s->problem->context, "planning", 0.999 * sum / s->problem->restarts);
+    return s->problem->part ? GONIO_OK
+                            : gonio_i_progress(s->problem->context, "planning",
+                                               0.999 * sum / s->problem->restarts);
 }
 
 gonio_status gonio_i_search_descend(gonio_i_search *s, int restart, gonio_i_selection *selection)
@@ -334,7 +337,7 @@ gonio_status gonio_i_search_descend(gonio_i_search *s, int restart, gonio_i_sele
         gonio_i_selection_record(s->problem, selection, restart, swaps, s->condition_number);
     bool proved = s->problem->components < 2; /* kappa of one component is 1 */
     if (status == GONIO_OK && !proved && s->problem->rows >= GONIO_I_MANY_ROWS) {
-        status = gonio_i_narrow(s);
+        status = gonio_i_narrow(s, restart, &swaps, selection);
     }
     for (int turn = 0; status == GONIO_OK && !proved; turn++) {
         const int before = swaps;

@@ -43,9 +43,10 @@ typedef struct gonio_i_search {
     gonio_i_search_worker *workers; /* [threads] */
     size_t *winners;                /* [chunks + 1]: scratch */
     int threads;
-    double began;  /* s: when the descent began */
-    double worked; /* s: what to add to the thread's clock for the time that it did work */
-    size_t from;   /* the row that the next position begins with */
+    double began;   /* s: when the descent began */
+    uint64_t waits; /* for other threads */
+    double worked;  /* s: what to add to the thread's clock for the time that it did work */
+    size_t from;    /* the row that the next position begins with */
     gonio_i_random random;
     uint64_t tests;   /* that a search without the filter would have made */
     double share;     /* how far this search is, 0 to 1 */

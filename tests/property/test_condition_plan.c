@@ -81,9 +81,9 @@ static void test_local_optimum(void **state)
     static const struct {
         size_t rows, k, n;
     } cases[] = {{60, 2, 2},   {60, 2, 5}, {120, 5, 5}, {120, 5, 12},
-                 {200, 8, 20}, {90, 1, 3}, {12, 3, 12}};
+                 {200, 8, 20}, {90, 1, 3}, {12, 3, 12}, {110000, 3, 4}}; /* searched in rounds */
     for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
-        for (uint64_t seed = 0; seed < 4; seed++) {
+        for (uint64_t seed = 0; seed < (cases[c].rows > 1000 ? 1 : 4); seed++) {
             const size_t rows = cases[c].rows, k = cases[c].k, n = cases[c].n;
             double *v = make_rows(rows, k, seed);
             size_t chosen[32];
@@ -212,39 +212,47 @@ static void test_nearly_singular(void **state)
         gonio_plan_options options;
         gonio_plan_options_default(&options);
         options.count = N;
-        assert_int_equal(gonio_plan_select(NULL, v, ROWS, K, K, &options, chosen, &report), GONIO_OK);
+        assert_int_equal(gonio_plan_select(NULL, v, ROWS, K, K, &options, chosen, &report),
+                         GONIO_OK);
         assert_true(isfinite(report.condition_number));
         free(report.history);
         free(v);
     }
 }
 
+/* The same plan on any number of threads: several starts, one, and one in rounds. */
 static void test_any_number_of_threads(void **state)
 {
     (void)state;
-    enum { ROWS = 3000, K = 10, N = 24, RESTARTS = 3 };
-    double *v = make_rows(ROWS, K, 5);
-    size_t first[N] = {0};
-    gonio_plan_options options;
-    gonio_plan_options_default(&options);
-    options.count = N;
-    options.restarts = RESTARTS;
-    for (int threads = 1; threads <= 5; threads++) {
-        gonio_context *context = NULL;
-        const gonio_context_options settings = {.threads = threads};
-        size_t chosen[N];
-        gonio_selection_report report;
-        assert_int_equal(gonio_context_create(&context, &settings), GONIO_OK);
-        assert_int_equal(gonio_plan_select(context, v, ROWS, K, K, &options,
-                                           threads == 1 ? first : chosen, &report),
-                         GONIO_OK);
-        if (threads > 1) {
-            assert_memory_equal(first, chosen, sizeof first);
+    enum { K = 10, N = 24 };
+    static const struct {
+        size_t rows;
+        int restarts;
+    } cases[] = {{3000, 3}, {20000, 1}, {110000, 1}};
+    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+        double *v = make_rows(cases[c].rows, K, 5);
+        size_t first[N] = {0};
+        gonio_plan_options options;
+        gonio_plan_options_default(&options);
+        options.count = N;
+        options.restarts = cases[c].restarts;
+        for (int threads = 1; threads <= 4; threads++) {
+            gonio_context *context = NULL;
+            const gonio_context_options settings = {.threads = threads};
+            size_t chosen[N];
+            gonio_selection_report report;
+            assert_int_equal(gonio_context_create(&context, &settings), GONIO_OK);
+            assert_int_equal(gonio_plan_select(context, v, cases[c].rows, K, K, &options,
+                                               threads == 1 ? first : chosen, &report),
+                             GONIO_OK);
+            if (threads > 1) {
+                assert_memory_equal(first, chosen, sizeof first);
+            }
+            free(report.history);
+            gonio_context_free(&context);
         }
-        free(report.history);
-        gonio_context_free(&context);
+        free(v);
     }
-    free(v);
 }
 
 /* The count of eigenvalues above x after an exchange, against LAPACK. */
@@ -277,6 +285,11 @@ static void test_inertia(void **state)
                 above += values[k] > x;
             }
             assert_int_equal(gonio_i_exchange_count_above(&exchange, x), above);
+        }
+        for (size_t k = 0; k < K && values[0] > 0.0; k++) {
+            const double found = gonio_i_exchange_eigenvalue(&exchange, k);
+            assert_true(found <= values[k] * (1.0 + 1e-12));
+            assert_true(found >= values[k] * (1.0 - 1e-9));
         }
         if (values[0] > 0.0) {
             const double kappa = values[K - 1] / values[0];
