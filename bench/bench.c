@@ -1,6 +1,7 @@
 /* How fast gonio is, as ratios to what it is compared with, measured side by side in one run.
  *
- *   gonio-bench [MATERIALS] [SECTION...]     sections: plan starts growth learn reconstruct
+ *   gonio-bench [MATERIALS] [SECTION...]     sections: learn plan starts
+ *                                            reconstruct full growth
  *
  * MATERIALS is a folder of at least 81 materials (default: the built-in ones). Prints a table and
  * writes bench.json in the working directory. docs/performance.md explains each line. */
@@ -287,7 +288,8 @@ static double synthetic_plan_seconds(size_t rows, size_t k, size_t n)
         options.seed = (uint64_t)run;
         options.keep_history = false;
         const double start = now();
-        check(gonio_plan_select(one, v, rows, k, k, &options, chosen, &found) == GONIO_OK, "planning");
+        check(gonio_plan_select(one, v, rows, k, k, &options, chosen, &found) == GONIO_OK,
+              "planning");
         seconds[run] = now() - start;
     }
     free(chosen);
@@ -325,16 +327,6 @@ static void bench_growth_axis(bench *b, const char *axis, const size_t sizes[][3
     }
     snprintf(name, sizeof name, "growth: exponent of the time in %s", axis);
     report(b, name, exponent(x, y, count), "");
-}
-
-static void bench_growth(bench *b)
-{
-    static const size_t rows[][3] = {{24000, 20, 40}, {96000, 20, 40}, {480000, 20, 40}};
-    static const size_t components[][3] = {{24000, 10, 100}, {24000, 20, 100}, {24000, 40, 100}};
-    static const size_t counts[][3] = {{24000, 20, 40}, {24000, 20, 80}, {24000, 20, 160}};
-    bench_growth_axis(b, "M", rows, 3, 0);
-    bench_growth_axis(b, "K", components, 3, 1);
-    bench_growth_axis(b, "L", counts, 3, 2);
 }
 
 /* ---- learning ---- */
@@ -479,6 +471,124 @@ static void bench_learn(bench *b)
         rmdir(folder);
         free(folder);
     }
+}
+
+/* ---- growth in the number of materials ---- */
+
+/* Seconds to learn from `count` tables: links to the same hundred, under names of their own. */
+static double learn_links_seconds(const char *folder, char *const *tables, size_t count)
+{
+    gonio_context *all = make_context(0);
+    char **links = calloc(count, sizeof *links);
+    check(links != NULL, "memory");
+    for (size_t k = 0; k < count; k++) {
+        check(asprintf(&links[k], "%s/link-%05zu.binary", folder, k) > 0 &&
+                  symlink(tables[k % TABLES], links[k]) == 0,
+              "linking tables");
+    }
+    const double start = now();
+    gonio_basis *basis = learn(all, links, count, 45, NULL);
+    const double seconds = now() - start;
+    gonio_basis_free(&basis);
+    for (size_t k = 0; k < count; k++) {
+        unlink(links[k]);
+        free(links[k]);
+    }
+    free(links);
+    gonio_context_free(&all);
+    return seconds;
+}
+
+static void bench_growth_materials(bench *b)
+{
+    static const size_t counts[] = {100, 500, 2000};
+    enum { COUNTS = sizeof counts / sizeof *counts };
+    double x[COUNTS];
+    double y[COUNTS];
+    char name[128];
+    if (!are_tables(b)) {
+        printf("growth in N: needs a folder of %d MERL tables\n", TABLES);
+        return;
+    }
+    char *folder = scratch_folder();
+    cat_seconds(b->paths);
+    for (size_t k = 0; k < COUNTS; k++) {
+        x[k] = (double)counts[k];
+        y[k] = learn_links_seconds(folder, b->paths, counts[k]);
+        snprintf(name, sizeof name, "growth: N = %zu materials, learning", counts[k]);
+        report(b, name, y[k], "s");
+    }
+    report(b, "growth: exponent of the time in N", exponent(x, y, COUNTS), "");
+    rmdir(folder);
+    free(folder);
+}
+
+static void bench_growth(bench *b)
+{
+    static const size_t rows[][3] = {
+        {24000, 20, 40}, {48000, 20, 40}, {96000, 20, 40}, {480000, 20, 40}};
+    static const size_t components[][3] = {{24000, 10, 100}, {24000, 20, 100}, {24000, 40, 100}};
+    static const size_t counts[][3] = {{24000, 20, 40}, {24000, 20, 80}, {24000, 20, 160}};
+    bench_growth_axis(b, "M", rows, 4, 0);
+    bench_growth_axis(b, "K", components, 3, 1);
+    bench_growth_axis(b, "L", counts, 3, 2);
+    bench_growth_materials(b);
+}
+
+/* ---- planning on the full grid ---- */
+
+static const char plan_child[] = "--plan"; /* how the benchmark starts itself for one such plan */
+
+/* In a process of its own, for its peak memory: reads a basis and plans 100 readings. */
+static int plan_as_child(const char *path)
+{
+    gonio_context *context = make_context(0);
+    gonio_basis *basis = NULL;
+    check(gonio_basis_read(context, path, &basis) == GONIO_OK, "reading a basis");
+    plan_once(basis, context, 60, 100, 0, 1, "random");
+    gonio_basis_free(&basis);
+    gonio_context_free(&context);
+    return 0;
+}
+
+static void bench_full_plan(bench *b, const char *folder, gonio_channel_model channels,
+                            const char *kind)
+{
+    enum { FULL_RUNS = 3 };
+    char name[128];
+    char *path = NULL;
+    gonio_context *context = make_context(0);
+    gonio_database_options how;
+    gonio_database_options_default(&how);
+    how.representation = GONIO_FULL;
+    how.channels = channels;
+    gonio_basis *basis = learn(context, b->paths, BASIS_MATERIALS, 60, &how);
+    check(asprintf(&path, "%s/full.gonio", folder) > 0 &&
+              gonio_basis_write(context, basis, NULL, path) == GONIO_OK,
+          "writing a basis");
+    gonio_basis_free(&basis);
+    gonio_context_free(&context);
+    double seconds[FULL_RUNS];
+    struct rusage usage;
+    char *argv[] = {"gonio-bench", (char *)(uintptr_t)plan_child, path, NULL};
+    for (int run = 0; run < FULL_RUNS; run++) {
+        seconds[run] = run_seconds("/proc/self/exe", argv, &usage);
+    }
+    snprintf(name, sizeof name, "plan (60, 100) of the full grid, %s", kind);
+    report(b, name, median(seconds, FULL_RUNS), "s");
+    snprintf(name, sizeof name, "plan (60, 100) of the full grid, %s: peak memory", kind);
+    report(b, name, (double)usage.ru_maxrss / 1024.0, "MiB");
+    unlink(path);
+    free(path);
+}
+
+static void bench_full_plans(bench *b)
+{
+    char *folder = scratch_folder();
+    bench_full_plan(b, folder, GONIO_SEPARATE, "separate");
+    bench_full_plan(b, folder, GONIO_JOINT, "joint");
+    rmdir(folder);
+    free(folder);
 }
 
 /* ---- reconstructing ---- */
@@ -676,9 +786,9 @@ static const struct {
     const char *name;
     void (*run)(bench *b);
 } sections[] = {
-    {"learn", bench_learn},   {"plan", bench_plan},
-    {"starts", bench_starts}, {"reconstruct", bench_reconstruct},
-    {"growth", bench_growth},
+    {"learn", bench_learn},     {"plan", bench_plan},
+    {"starts", bench_starts},   {"reconstruct", bench_reconstruct},
+    {"full", bench_full_plans}, {"growth", bench_growth},
 };
 
 static bool wanted(const char *name, int argc, char **argv)
@@ -695,6 +805,9 @@ int main(int argc, char **argv)
 {
     if (argc > 4 && strcmp(argv[1], learn_child) == 0) {
         return learn_as_child(argv + 2, (size_t)argc - 2);
+    }
+    if (argc == 3 && strcmp(argv[1], plan_child) == 0) {
+        return plan_as_child(argv[2]);
     }
     bench b = {.results = json_object(), .processors = (int)sysconf(_SC_NPROCESSORS_ONLN)};
     find_materials(&b, argc > 1 && strcmp(argv[1], "atlas:") != 0 ? argv[1] : NULL);
