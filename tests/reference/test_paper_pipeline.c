@@ -359,7 +359,8 @@ static void test_condition_plans(void **state)
             size_t *rows = malloc(goals[k].count * sizeof *rows);
             gonio_selection_report report;
             assert_int_equal(gonio_plan_select(data.context, s.view.vectors, s.view.rows,
-                                               goals[k].components, goals[k].components, &options, rows, &report),
+                                               goals[k].components, goals[k].components, &options,
+                                               rows, &report),
                              GONIO_OK);
             condition[k] += report.condition_number / 10.0;
             free(report.history);
