@@ -337,7 +337,9 @@ void gonio_i_digest_free(gonio_i_digest **digest)
 
 void gonio_i_digest_mean(const gonio_i_digest *digest, double *g)
 {
-    memset(g, 0, (size_t)GONIO_CELLS * GONIO_CHANNELS * sizeof *g);
+    for (size_t k = 0; k < (size_t)GONIO_CELLS * GONIO_CHANNELS; k++) {
+        g[k] = NAN;
+    }
     for (size_t i = 0; i < digest->cells; i++) {
         for (size_t c = 0; c < GONIO_CHANNELS; c++) {
             g[(size_t)digest->cell[i] * GONIO_CHANNELS + c] = digest->mean[c][i];

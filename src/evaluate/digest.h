@@ -41,7 +41,7 @@ void gonio_i_digest_free(gonio_i_digest **digest);
 gonio_status gonio_i_digest_compare(gonio_context *context, const gonio_i_digest *digest,
                                     const double *g, gonio_error *error);
 
-/* The mean of g in each cell, [GONIO_CELLS][GONIO_CHANNELS], 0 where there is no data. */
+/* The mean of g in each cell, [GONIO_CELLS][GONIO_CHANNELS], NaN where there is no data. */
 void gonio_i_digest_mean(const gonio_i_digest *digest, double *g);
 
 #endif
