@@ -182,6 +182,23 @@ static double least_of(const double *values, size_t count)
     return least;
 }
 
+enum { MOST_LEVELS = 8 };
+
+/* Numbers of two digits, closer together near the best. */
+static size_t choose_levels(double least, double level[MOST_LEVELS])
+{
+    static const double above[MOST_LEVELS] = {1.02, 1.05, 1.1, 1.17, 1.25, 1.4, 1.6, 1.8};
+    const double digit = pow(10.0, floor(log10(least)) - 1.0);
+    size_t count = 0;
+    for (size_t k = 0; k < MOST_LEVELS; k++) {
+        const double next = digit * ceil(least * above[k] / digit);
+        if (count == 0 || next > level[count - 1] + 0.5 * digit) {
+            level[count++] = next;
+        }
+    }
+    return count;
+}
+
 static size_t add_marks(const gonio_i_study *study, gonio_i_mark *mark, char **name)
 {
     size_t count = 0;
@@ -203,18 +220,15 @@ static gonio_status draw_map_of(drawer *d, const double *x, const double *y, dou
     const double least = least_of(values, cells);
     char *name[GONIO_I_CHOSEN] = {NULL};
     gonio_i_mark mark[GONIO_I_CHOSEN];
-    double level[9];
+    double level[MOST_LEVELS];
     for (size_t k = 0; k < cells; k++) {
         values[k] = values[k] > worst_shown * least ? worst_shown * least : values[k];
     }
-    for (size_t k = 0; k < 9; k++) { /* 3, 6, 10, 15 ... per cent above the best */
-        static const double above[] = {1.02, 1.05, 1.1, 1.15, 1.2, 1.3, 1.4, 1.6, 1.8};
-        level[k] = round(100.0 * least * above[k]) / 100.0;
-    }
+    char *value = gonio_i_format("mean error E6 (the darkest: %.1f or more)", worst_shown * least);
     const gonio_i_map figure = {.name = "fig3a",
                                 .x = {.name = "samples"},
                                 .y = {.name = "components"},
-                                .value = {.name = "mean error E6 (as the highest: that or more)",
+                                .value = {.name = value != NULL ? value : "mean error E6",
                                           .unit = "%",
                                           .low = least,
                                           .high = worst_shown * least},
@@ -223,11 +237,12 @@ static gonio_status draw_map_of(drawer *d, const double *x, const double *y, dou
                                 .at_x = x,
                                 .at_y = y,
                                 .values = values,
-                                .levels = 9,
+                                .levels = choose_levels(least, level),
                                 .level = level,
                                 .marks = add_marks(study, mark, name),
                                 .mark = mark};
     const gonio_status status = gonio_i_figure_map(d->context, &d->figures, &figure);
+    free(value);
     for (size_t c = 0; c < GONIO_I_CHOSEN; c++) {
         free(name[c]);
     }
@@ -287,9 +302,8 @@ static gonio_status draw_lines(drawer *d)
                                               .x = {.name = "samples"},
                                               .y = {.name = "mean error E6",
                                                     .unit = "%",
-                                                    .logarithmic = true,
                                                     .low = 0.9 * least,
-                                                    .high = 4.0 * least}});
+                                                    .high = worst_shown * least}});
     }
     free(all);
     free_curves(&set);
@@ -333,7 +347,8 @@ static gonio_status draw_methods(drawer *d)
 {
     const size_t count = gonio_i_methods();
     size_t used = 0;
-    size_t most = 0;
+    double least = HUGE_VAL;
+    double most = 0.0;
     curve_set set;
     gonio_status status = make_curves(d->context, count, count, &set);
     if (status == GONIO_OK) {
@@ -342,7 +357,8 @@ static gonio_status draw_methods(drawer *d)
             const gonio_i_size size = gonio_i_method_size(d->study, method);
             const double e6 = d->findings->method[m].e6;
             const size_t curve = curve_of(&set, &used, method->label);
-            most = size.samples > most ? size.samples : most;
+            least = fmin(least, (double)size.samples);
+            most = fmax(most, (double)size.samples);
             add_point(&set, curve, (double)size.samples, e6);
             add_spread(&set, curve, e6 - deviation(d, m), e6 + deviation(d, m));
         }
@@ -350,9 +366,13 @@ static gonio_status draw_methods(drawer *d)
         set.count = used;
         status = draw_curves(d, &set,
                              (gonio_i_curves){.name = "fig3b",
-                                              .x = {.name = "samples", .logarithmic = most > 300},
+                                              .x = {.name = "samples",
+                                                    .logarithmic = most > 300,
+                                                    .low = 0.8 * least,
+                                                    .high = 1.1 * most},
                                               .y = e6_axis,
-                                              .spread = GONIO_I_ERROR_BARS});
+                                              .spread = GONIO_I_ERROR_BARS,
+                                              .apart = most > 300 ? 1.02 : 2.0});
         set.count = used + unused;
     }
     free_curves(&set);
@@ -410,18 +430,27 @@ static gonio_status draw_left_out_of(drawer *d, const char **material, double *v
     const size_t count = d->study->left_out_count;
     gonio_i_series series[GONIO_I_LEFT_OUT_SERIES];
     char text[GONIO_I_LEFT_OUT_SERIES][32];
+    double least = HUGE_VAL;
+    double most = 0.0;
     for (size_t k = 0; k < count; k++) {
         material[k] = gonio_i_name_of(&d->study->collection, d->study->left_out[k]);
     }
     for (size_t s = 0; s < GONIO_I_LEFT_OUT_SERIES; s++) {
         for (size_t k = 0; k < count; k++) {
-            values[s * count + k] = d->findings->left_out[k * GONIO_I_LEFT_OUT_SERIES + s].e6;
+            const double e6 = d->findings->left_out[k * GONIO_I_LEFT_OUT_SERIES + s].e6;
+            values[s * count + k] = e6;
+            least = fmin(least, e6);
+            most = fmax(most, e6);
         }
         series[s] = (gonio_i_series){gonio_i_series_name(d->study, s, text[s]), values + s * count};
     }
     const gonio_i_categories figure = {.name = "fig5",
                                        .kind = "material",
-                                       .y = {.name = "error E6", .unit = "%", .logarithmic = true},
+                                       .y = {.name = "error E6",
+                                             .unit = "%",
+                                             .logarithmic = true,
+                                             .low = 0.9 * least,
+                                             .high = 1.1 * most},
                                        .categories = count,
                                        .category = material,
                                        .count = GONIO_I_LEFT_OUT_SERIES,

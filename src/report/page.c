@@ -70,18 +70,20 @@ static void put_introduction(const page *p)
     for (size_t k = 0; k < p->claims->count; k++) {
         verdicts[p->claims->claim[k].verdict]++;
     }
+    fprintf(
+        p->f,
+        "# Ali et al., *Optimal Sampling for Efficient BRDF Acquisition*, reproduced\n\n"
+        "By gonio %s%s: %zu materials, %zu splits (%zu materials to learn from and "
+        "%zu to test on), seed %llu. Of %zu claims %zu agree, %zu differ, %zu could not be tested "
+        "here.\n\n",
+        gonio_version(), s->quick ? ", the quick version" : "", s->collection.count,
+        s->splits.count, s->splits.split[0].basis_count, s->splits.split[0].test_count,
+        (unsigned long long)s->seed, p->claims->count, verdicts[GONIO_I_AGREES],
+        verdicts[GONIO_I_DIFFERS], verdicts[GONIO_I_NOT_TESTED]);
     fprintf(p->f,
-            "# Ali et al., *Optimal Sampling for Efficient BRDF Acquisition*, reproduced\n\n"
-            "By gonio %s%s: %zu materials, %zu splits (%zu to learn from, %zu to test on in the "
-            "first), seed %llu. Of %zu claims %zu agree, %zu differ, %zu could not be tested "
-            "here.\n\n",
-            gonio_version(), s->quick ? ", the quick version" : "", s->collection.count,
-            s->splits.count, s->splits.split[0].basis_count, s->splits.split[0].test_count,
-            (unsigned long long)s->seed, p->claims->count, verdicts[GONIO_I_AGREES],
-            verdicts[GONIO_I_DIFFERS], verdicts[GONIO_I_NOT_TESTED]);
-    fprintf(p->f,
-            "Readings are noise-free averages of cells. Plans have one random start, in Fig. 2(b) "
-            "and Fig. 4 %d. Errors are those of the whole BRDF against the original table, all "
+            "Readings are noise-free averages of cells. Plans have one random start; those of "
+            "Fig. 2(b) and Fig. 4 have %d. Errors are those of the whole BRDF against the original "
+            "table, all "
             "bins and channels, averaged over the test materials and the splits: E6 is the paper's "
             "eq. (6); beside it the cube-root error (Fores et al. 2012) and the log-relative one "
             "(Nielsen et al. 2015). All raw numbers are in `tables/` and `results.json`, the data "
