@@ -151,6 +151,7 @@ static void put_grid(const page *p)
 
 static void put_methods(const page *p)
 {
+    fputs("Bars: the standard deviation over the splits, whose test materials differ.\n\n", p->f);
     fputs("| method | components | samples | condition number | " ERROR_HEADINGS
           "| --- | --- | --- | --- | --- | --- | --- |\n",
           p->f);
