@@ -15,6 +15,7 @@ _gonio_options()
         reconstruct) echo "--output --basis --all-channels --average-repeats --negative-to-zero" \
                           "--other-basis --json -o -K $common" ;;
         compare)     echo "--verbose --json -v $common" ;;
+        reproduce)   echo "--output --quick --only --splits --seed --skip-bad -o $common" ;;
         demo)        echo "--output -o $common" ;;
     esac
 }
@@ -25,6 +26,7 @@ _gonio_values()
     case $1 in
         --grid)     echo "bivariate full" ;;
         --channels) echo "joint separate" ;;
+        --only)     echo "fig2a fig2b fig3a fig3b fig4 fig5" ;;
         --method)   echo "condition random" ;;
         --start)    echo "random qr volume" ;;
         --basis|--number|--restarts|--seed|--phi-d|--noise|--floor|--threads|--without|-K|-n) echo "" ;;
@@ -45,7 +47,7 @@ _gonio()
 
     if [[ $COMP_CWORD -eq 1 ]]; then
         mapfile -t COMPREPLY < <(compgen -W "info convert learn plan measure reconstruct compare \
-                                             demo help --help --version" -- "$current")
+                                             reproduce demo help --help --version" -- "$current")
         return
     fi
 

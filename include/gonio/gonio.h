@@ -13,5 +13,6 @@
 #include <gonio/measurement.h>
 #include <gonio/reconstruct.h>
 #include <gonio/evaluate.h>
+#include <gonio/report.h>
 
 #endif

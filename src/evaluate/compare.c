@@ -1,22 +1,15 @@
 /* Errors between two BRDFs: see evaluate.h. */
 #include <gonio/evaluate.h>
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "../core/core.h"
 #include "../core/vector_math.h"
-
-/* Sums over bins for one channel; the errors are ratios of these. */
-typedef struct channel_sums {
-    double log_difference, log_reference;   /* squares of g - g', g */
-    double cube_difference, cube_reference; /* squares of r - r', r */
-    double ratio;                           /* squares of the log ratio */
-} channel_sums;
+#include "metrics.h"
 
 typedef struct slab_sums {
-    channel_sums channel[GONIO_CHANNELS];
+    gonio_i_error_sums channel[GONIO_CHANNELS];
     int64_t bins;
     int64_t missing;
 } slab_sums;
@@ -56,23 +49,6 @@ static void free_scratch(scratch *s)
     free(s->data_other);
 }
 
-static void fill_cosines(int theta_h, double *cosines)
-{
-    double cos_phi[GONIO_PHI_D_BINS];
-    for (int p = 0; p < GONIO_PHI_D_BINS; p++) {
-        cos_phi[p] = cos(gonio_bin_centre((gonio_bin){0, 0, p}).phi_d);
-    }
-    for (int theta_d = 0; theta_d < GONIO_THETA_D_BINS; theta_d++) {
-        const gonio_half_difference c = gonio_bin_centre((gonio_bin){theta_h, theta_d, 0});
-        const double even = cos(c.theta_h) * cos(c.theta_d);
-        const double odd = sin(c.theta_h) * sin(c.theta_d);
-        for (int p = 0; p < GONIO_PHI_D_BINS; p++) {
-            const double swing = odd * cos_phi[p];
-            cosines[theta_d * GONIO_PHI_D_BINS + p] = (even - swing) * (even + swing);
-        }
-    }
-}
-
 GONIO_I_VECTORISED static void add_squares(const double *a, const double *b, double *difference,
                                            double *reference)
 {
@@ -89,7 +65,7 @@ GONIO_I_VECTORISED static void add_squares(const double *a, const double *b, dou
 
 /* Bins without data are 0 in both, and so add nothing to any sum. */
 static void sum_channel(const double *x, const double *y, const scratch *s, int channel,
-                        channel_sums *sums)
+                        gonio_i_error_sums *sums)
 {
     const double scale = 1.0 / gonio_log_scale(channel);
     for (size_t k = 0; k < GONIO_SLAB_BINS; k++) {
@@ -107,8 +83,8 @@ static void sum_channel(const double *x, const double *y, const scratch *s, int 
     gonio_i_cbrt(GONIO_SLAB_BINS, s->b, s->b);
     add_squares(s->a, s->b, &sums->cube_difference, &sums->cube_reference);
     for (size_t k = 0; k < GONIO_SLAB_BINS; k++) {
-        const double w = fmin(fmax(s->cosines[k], 0.01), 1.0);
-        s->a[k] = (x[k] * w + 0.001) / (y[k] * w + 0.001);
+        const double w = gonio_i_ratio_weight(s->cosines[k]);
+        s->a[k] = (x[k] * w + GONIO_I_RATIO_OFFSET) / (y[k] * w + GONIO_I_RATIO_OFFSET);
     }
     gonio_i_log(GONIO_SLAB_BINS, s->a, s->a);
     memset(s->b, 0, GONIO_SLAB_BINS * sizeof *s->b);
@@ -129,7 +105,7 @@ static gonio_status sum_slab(gonio_context *context, const gonio_material *refer
     }
     gonio_slab_mask(theta_h, s->reference, s->data);
     gonio_slab_mask(theta_h, s->other, s->data_other);
-    fill_cosines(theta_h, s->cosines);
+    gonio_i_slab_cosines(theta_h, s->cosines);
     for (size_t k = 0; k < GONIO_SLAB_BINS; k++) {
         const bool both = s->data[k] && s->data_other[k];
         sums->bins += both;
@@ -169,24 +145,6 @@ static gonio_status sum_slabs(gonio_context *context, const gonio_material *refe
     return result;
 }
 
-static void add_channel(channel_sums *total, const channel_sums *part)
-{
-    total->log_difference += part->log_difference;
-    total->log_reference += part->log_reference;
-    total->cube_difference += part->cube_difference;
-    total->cube_reference += part->cube_reference;
-    total->ratio += part->ratio;
-}
-
-static gonio_error error_of(const channel_sums *s, double values)
-{
-    return (gonio_error){
-        .e6 = 100.0 * sqrt(s->log_difference / s->log_reference),
-        .cube_root = 100.0 * sqrt(s->cube_difference / s->cube_reference),
-        .log_relative = sqrt(s->ratio / values),
-    };
-}
-
 gonio_status gonio_compare(gonio_context *context, const gonio_material *reference,
                            const gonio_material *other, gonio_comparison *comparison)
 {
@@ -196,13 +154,13 @@ gonio_status gonio_compare(gonio_context *context, const gonio_material *referen
     }
     const gonio_status status = sum_slabs(context, reference, other, slabs);
     slab_sums sums = {0};
-    channel_sums all = {0};
+    gonio_i_error_sums all = {0};
     for (int theta_h = 0; theta_h < GONIO_THETA_H_BINS; theta_h++) {
         sums.bins += slabs[theta_h].bins;
         sums.missing += slabs[theta_h].missing;
         for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
-            add_channel(&sums.channel[channel], &slabs[theta_h].channel[channel]);
-            add_channel(&all, &slabs[theta_h].channel[channel]);
+            gonio_i_error_add(&sums.channel[channel], &slabs[theta_h].channel[channel]);
+            gonio_i_error_add(&all, &slabs[theta_h].channel[channel]);
         }
     }
     free(slabs);
@@ -217,9 +175,9 @@ gonio_status gonio_compare(gonio_context *context, const gonio_material *referen
     }
     comparison->bins = sums.bins;
     comparison->missing = sums.missing;
-    comparison->all = error_of(&all, (double)sums.bins * GONIO_CHANNELS);
+    comparison->all = gonio_i_error_of(&all, (double)sums.bins * GONIO_CHANNELS);
     for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
-        comparison->channel[channel] = error_of(&sums.channel[channel], (double)sums.bins);
+        comparison->channel[channel] = gonio_i_error_of(&sums.channel[channel], (double)sums.bins);
     }
     return GONIO_OK;
 }

@@ -117,6 +117,20 @@ static void put_plot(FILE *script, const gonio_i_curves *figure)
     fputc('\n', script);
 }
 
+/* Where a curve's points stand, in the middle of those that are drawn apart. */
+static void put_place(FILE *script, const gonio_i_curves *figure)
+{
+    const double middle = 0.5 * (double)(figure->count + 1);
+    fputs("x_of(curve) = column(5) == curve ? column(1)", script);
+    if (figure->apart != 0.0) {
+        fprintf(script,
+                figure->x.logarithmic ? " * %.10g ** (curve - %.10g)"
+                                      : " + %.10g * (curve - %.10g)",
+                figure->apart, middle);
+    }
+    fputs(" : NaN\n", script);
+}
+
 gonio_status gonio_i_figure_curves(gonio_context *context, gonio_i_figures *figures,
                                    const gonio_i_curves *figure)
 {
@@ -133,10 +147,8 @@ gonio_status gonio_i_figure_curves(gonio_context *context, gonio_i_figures *figu
     put_data(sheet.data, figure);
     gonio_i_put_axis(sheet.script, "x", &figure->x, &x);
     gonio_i_put_axis(sheet.script, "y", &figure->y, &y);
-    fprintf(sheet.script,
-            "\ndata = '%s.csv'\n"
-            "x_of(curve) = column(5) == curve ? column(1) : NaN\n",
-            figure->name);
+    fprintf(sheet.script, "\ndata = '%s.csv'\n", figure->name);
+    put_place(sheet.script, figure);
     gonio_i_sheet_begin_drawing(&sheet, 640, 420);
     put_plot(sheet.script, figure);
     gonio_i_sheet_end_drawing(&sheet);

@@ -53,6 +53,8 @@ typedef struct gonio_i_curves {
     gonio_i_spread spread;
     size_t count;
     const gonio_i_curve *curves;
+    double apart; /* if not 0, how far each curve is drawn to the right of the one before, so that
+                   * error bars do not hide each other; on a logarithmic axis a factor */
 } gonio_i_curves;
 
 gonio_status gonio_i_figure_curves(gonio_context *context, gonio_i_figures *figures,

@@ -10,10 +10,10 @@
 #ifndef GONIO_REPORT_PIECES_H
 #define GONIO_REPORT_PIECES_H
 
+#include <gonio/report.h>
 #include <jansson.h>
 
 #include "../core/core.h"
-#include "team.h"
 
 typedef struct gonio_i_pieces gonio_i_pieces;
 

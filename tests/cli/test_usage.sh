@@ -11,7 +11,7 @@ expect_ok measure p.csv atlas:white-linen -o r.csv
 expect_output 'gonio 0.' --version
 expect_output 'Usage: gonio COMMAND' --help
 expect_output 'Usage: gonio COMMAND' help
-for command in info convert learn plan measure reconstruct compare demo; do
+for command in info convert learn plan measure reconstruct compare reproduce demo; do
     expect_output "Usage: gonio $command" $command -h
     expect_output "Usage: gonio $command" $command --help
     expect_fail 2 '--nonsense: unknown option (see gonio' $command --nonsense

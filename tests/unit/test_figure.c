@@ -493,7 +493,7 @@ static gonio_status draw_hostile(fixture *f, const char *text)
     const gonio_i_panel panel = {text, 1, &pair};
     const gonio_i_series series = {text, x};
     const char *const categories[] = {text, "plain", text};
-    const gonio_i_curves curves = {"a", text, axis, axis, GONIO_I_BAND, 1, &curve};
+    const gonio_i_curves curves = {"a", text, axis, axis, GONIO_I_BAND, 1, &curve, 0.0};
     const gonio_i_map map = {"b", text, axis, axis, axis, 3, 3, x, x, grid, 0, NULL, 1, &mark};
     const gonio_i_directions directions = {"c", text, GONIO_I_EQUAL_ANGLE, 1, &panel};
     const gonio_i_categories many = {"d", text, text, axis, 3, categories, 1, &series, 0};
@@ -534,7 +534,8 @@ static void test_the_data(void **state)
     const double x[] = {1.0, 0.1, 1e-300}, y[] = {1.0 / 3.0, NAN, INFINITY};
     const gonio_i_curve curve = {"a \"b\", c", 3, x, y, NULL, NULL, false};
     const gonio_i_curves figure = {
-        "data", NULL, {"x", "cm", false, 0, 0}, {"y", NULL, false, 0, 0}, GONIO_I_BAND, 1, &curve};
+        "data", NULL, {"x", "cm", false, 0, 0}, {"y", NULL, false, 0, 0}, GONIO_I_BAND, 1,
+        &curve, 0.0};
     const gonio_i_axis axis = {"E6", "%", false, 0, 0};
     const double a[] = {3.0, NAN, 1.0, 2.0}, b[] = {30.0, 40.0, 10.0, 20.0};
     const gonio_i_series series[] = {{"a", a}, {"b", b}};
@@ -607,7 +608,7 @@ static void test_what_cannot_be_shown(void **state)
     const double x[] = {1.0, 0.0}, values[] = {1.0, 2.0, 3.0, 4.0};
     const gonio_i_axis plain = {"x", NULL, false, 0, 0}, logarithmic = {"y", NULL, true, 0, 0};
     const gonio_i_curve curve = {"c", 2, x, x, NULL, NULL, false};
-    gonio_i_curves curves = {"c", NULL, plain, logarithmic, GONIO_I_NO_SPREAD, 1, &curve};
+    gonio_i_curves curves = {"c", NULL, plain, logarithmic, GONIO_I_NO_SPREAD, 1, &curve, 0.0};
     const gonio_i_map map = {"m", NULL, plain, plain, plain, 2, 2, x, x, values, 0, NULL, 0, NULL};
     const gonio_i_directions directions = {"d", NULL, GONIO_I_EQUAL_ANGLE, 0, NULL};
     const gonio_i_categories none = {.name = "n", .y = plain};

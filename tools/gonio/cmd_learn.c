@@ -1,12 +1,9 @@
 /* gonio learn: a basis from measured materials. */
-#include "tool.h"
+#include "paths.h"
 
-#include <dirent.h>
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 typedef struct options {
     const char *output;
@@ -16,92 +13,6 @@ typedef struct options {
     int components;
     int json;
 } options;
-
-/* A growing list of paths. */
-typedef struct path_list {
-    size_t count;
-    char **path;
-} path_list;
-
-static bool add_path(path_list *list, char *path)
-{
-    char **more = path != NULL ? reallocarray(list->path, list->count + 1, sizeof *more) : NULL;
-    if (more == NULL) {
-        free(path);
-        return false;
-    }
-    more[list->count++] = path;
-    list->path = more;
-    return true;
-}
-
-static void free_paths(path_list *list)
-{
-    for (size_t k = 0; k < list->count; k++) {
-        free(list->path[k]);
-    }
-    free(list->path);
-}
-
-static char *joined(const char *a, const char *b)
-{
-    char *text = NULL;
-    return asprintf(&text, "%s%s", a, b) < 0 ? NULL : text;
-}
-
-static bool is_material_name(const char *name)
-{
-    const char *dot = strrchr(name, '.');
-    return name[0] != '.' && dot != NULL &&
-           (strcmp(dot, ".binary") == 0 || strcmp(dot, ".h5") == 0 || strcmp(dot, ".hdf5") == 0);
-}
-
-static int only_materials(const struct dirent *entry)
-{
-    return is_material_name(entry->d_name);
-}
-
-/* The materials of a folder, by name. */
-static int add_folder(const tool *t, path_list *list, const char *folder)
-{
-    struct dirent **entries = NULL;
-    const int count = scandir(folder, &entries, only_materials, alphasort);
-    const int reason = errno;
-    bool done = true;
-    for (int k = 0; k < count; k++) {
-        char *path = NULL;
-        done = asprintf(&path, "%s/%s", folder, entries[k]->d_name) >= 0 && add_path(list, path) &&
-               done;
-        free(entries[k]);
-    }
-    free(entries);
-    if (count < 0) {
-        fprintf(stderr, "gonio %s: %s: cannot read: %s\n", t->name, folder, strerror(reason));
-        return EXIT_DATA;
-    }
-    if (count == 0) {
-        fprintf(stderr, "gonio %s: %s: no materials (*.binary, *.h5) in this folder\n", t->name,
-                folder);
-        return EXIT_DATA;
-    }
-    return done ? 0 : EXIT_DATA;
-}
-
-static int add_argument(const tool *t, path_list *list, const char *argument)
-{
-    struct stat status;
-    if (strcmp(argument, "atlas:") == 0) {
-        bool done = true;
-        for (int k = 0; k < gonio_atlas_count(); k++) {
-            done = add_path(list, joined("atlas:", gonio_atlas_name(k))) && done;
-        }
-        return done ? 0 : EXIT_DATA;
-    }
-    if (stat(argument, &status) == 0 && S_ISDIR(status.st_mode)) {
-        return add_folder(t, list, argument);
-    }
-    return add_path(list, strdup(argument)) ? 0 : EXIT_DATA;
-}
 
 /* A path's material name: what follows "atlas:", or the base name without its extension. */
 static size_t name_in(const char *path, const char **name)
@@ -113,7 +24,7 @@ static size_t name_in(const char *path, const char **name)
 }
 
 /* Takes the materials of a comma-separated list of names out of the paths. */
-static int leave_out(const tool *t, path_list *list, const char *without)
+static int leave_out(const tool *t, tool_paths *list, const char *without)
 {
     for (const char *next = without; next != NULL && *next != '\0';) {
         const size_t length = strcspn(next, ",");
@@ -168,7 +79,7 @@ static int report(const tool *t, const gonio_basis *basis, const options *o)
     return 0;
 }
 
-static int learn(tool *t, const options *o, const path_list *list,
+static int learn(tool *t, const options *o, const tool_paths *list,
                  const gonio_database_options *how)
 {
     gonio_database *database = NULL;
@@ -196,7 +107,7 @@ static int run(tool *t, const options *o)
     int representation = 0;
     int channels = 0;
     const char **arguments = tool_arguments(t, &count);
-    path_list list = {0};
+    tool_paths list = {0};
     int code = count == 0 ? tool_usage_error(t, "no materials given") : 0;
     if (code == 0) {
         code = tool_check_count(t, "--basis", o->components, o->components == 0 ? 0 : 1);
@@ -208,7 +119,7 @@ static int run(tool *t, const options *o)
         code = choose(t, "--channels", o->channels, channel_models, &channels);
     }
     for (size_t k = 0; k < count && code == 0; k++) {
-        code = add_argument(t, &list, arguments[k]);
+        code = tool_add_materials(t, &list, arguments[k]);
     }
     if (code == 0) {
         code = leave_out(t, &list, o->without);
@@ -221,7 +132,7 @@ static int run(tool *t, const options *o)
                                             .channels = (gonio_channel_model)channels};
         code = learn(t, o, &list, &how);
     }
-    free_paths(&list);
+    tool_free_paths(&list);
     return code;
 }
 

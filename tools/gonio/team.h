@@ -2,7 +2,7 @@
 #ifndef GONIO_TOOL_TEAM_H
 #define GONIO_TOOL_TEAM_H
 
-#include "report/team.h"
+#include <gonio/report.h>
 
 /* Joins the team that mpirun (Open MPI, or another MPI with PMI or PMIx) has started, or makes a
  * team of one. False, after a message, if that cannot be. Must be called once, from main's thread;

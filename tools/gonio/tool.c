@@ -61,6 +61,16 @@ static void on_message(void *user, gonio_message_level level, const char *text)
     fprintf(stderr, "gonio %s: %s%s\n", t->name, kind, text);
 }
 
+/* In minutes when there is no need for more. */
+static void draw_time_left(double seconds)
+{
+    if (seconds >= 120.0) {
+        fprintf(stderr, ", %.0f min left", seconds / 60.0);
+    } else {
+        fprintf(stderr, ", %.0f s left", seconds);
+    }
+}
+
 static void draw_progress(const char *task, double fraction, double elapsed)
 {
     enum { WIDTH = 30 };
@@ -71,6 +81,9 @@ static void draw_progress(const char *task, double fraction, double elapsed)
     }
     bar[WIDTH] = '\0';
     fprintf(stderr, "\r\033[K%s [%s] %3.0f%% %.0f s", task, bar, 100.0 * fraction, elapsed);
+    if (fraction > 0.02 && elapsed > 5.0) {
+        draw_time_left(elapsed * (1.0 - fraction) / fraction);
+    }
     fflush(stderr);
 }
 

@@ -1,0 +1,61 @@
+/* Report: the experiments of Ali et al. on a database of one's own, as figures, tables and a page
+ * that sets them beside the paper's. */
+#ifndef GONIO_REPORT_H
+#define GONIO_REPORT_H
+
+#include <gonio/evaluate.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Several processes, perhaps on several machines, that do one piece of work together. The library
+ * does not know how they talk (MPI, say): the program that starts them tells it here. */
+typedef struct gonio_team {
+    int rank; /* which of them this process is: 0 .. size - 1 */
+    int size; /* 1 for a process on its own */
+    /* Waits until all have come here; false if that failed. May be NULL if size is 1. */
+    bool (*barrier)(void *user);
+    void *user; /* handed to the barrier */
+} gonio_team;
+
+typedef struct gonio_reproduce_options {
+    /* A JSON file {"splits": [{"basis": [names], "test": [names]}, ...]}; NULL for random splits,
+     * 80 per cent of the materials to learn from and 20 to test on. */
+    const char *splits;
+    uint64_t seed;    /* of the splits and the plans */
+    bool quick;       /* fewer splits and plans: about a minute for 100 materials */
+    const char *only; /* "fig3a,fig5": these experiments (gonio_experiment_name); NULL for all */
+    bool skip_bad;    /* leave out materials that cannot be used, instead of refusing to start */
+    const gonio_team *team; /* NULL for a process on its own */
+} gonio_reproduce_options;
+
+/* Random splits from seed 0, all experiments in full, bad materials refused. */
+GONIO_API void gonio_reproduce_options_default(gonio_reproduce_options *options);
+
+/* The experiments: "fig2a", "fig2b" ...; NULL past the last. */
+GONIO_API const char *gonio_experiment_name(int index);
+
+/* Runs the experiments on the materials at the given paths (material.h) and leaves in `folder`
+ *   report.md       a section for each figure: the paper's numbers, these, and whether they agree
+ *   results.json    the same numbers for programs
+ *   figures/        data, gnuplot script and pictures
+ *   tables/         all raw numbers as CSV: per split, material, and cell of the grid
+ *   run.json, pieces/  what is finished: a run that was stopped goes on there, to the same bytes
+ * The results do not depend on the number of threads or processes. All processes of a team call
+ * this with the same arguments and a folder that all see.
+ *
+ * Memory: about 4 MB a material, and 10 MB a thread.
+ *
+ * Errors: _ARGUMENT for an unknown experiment, fewer than 4 materials, or a folder that is not
+ * empty; _DATA for materials that cannot be used, all of them named, and splits that do not fit;
+ * _FORMAT for another kind of splits file; _MISMATCH for the folder of another run; _IO; _MEMORY;
+ * _CANCELLED. */
+GONIO_API gonio_status gonio_reproduce(gonio_context *context, const char *const *paths,
+                                       size_t count, const char *folder,
+                                       const gonio_reproduce_options *options);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

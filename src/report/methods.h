@@ -1,0 +1,35 @@
+/* The methods that Fig. 3(b) compares. To add one, add a line to the table in methods.c. */
+#ifndef GONIO_REPORT_METHODS_H
+#define GONIO_REPORT_METHODS_H
+
+#include "study.h"
+
+/* As gonio_basis_learn and gonio_reconstruct_rows. */
+typedef gonio_status gonio_i_learn(gonio_context *context, const gonio_database *database,
+                                   const gonio_basis_options *options, gonio_basis **basis);
+typedef gonio_status gonio_i_solve(gonio_context *context, const gonio_basis *basis,
+                                   size_t components, const size_t *rows, size_t count,
+                                   const double *b, gonio_reconstruction **reconstruction);
+
+enum { GONIO_I_OWN_SIZE = -1 };
+
+typedef struct gonio_i_method_entry {
+    const char *name;  /* for files and programs */
+    const char *label; /* for people */
+    /* What it learns from, and how. */
+    gonio_representation representation;
+    gonio_channel_model channels;
+    gonio_i_learn *learn;
+    const char *plan; /* gonio_plan_method_name */
+    gonio_i_solve *solve;
+    int chosen;        /* the size is the study's chosen[]; or GONIO_I_OWN_SIZE */
+    gonio_i_size size; /* then */
+} gonio_i_method_entry;
+
+size_t gonio_i_methods(void);
+const gonio_i_method_entry *gonio_i_method_at(size_t index);
+
+/* K and L of a method, K no more than the materials allow. */
+gonio_i_size gonio_i_method_size(const gonio_i_study *study, const gonio_i_method_entry *method);
+
+#endif

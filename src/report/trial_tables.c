@@ -1,0 +1,187 @@
+/* Trials with any basis, by way of whole tables: see trial.h. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "trial.h"
+
+typedef struct trial {
+    gonio_context *context;
+    const gonio_i_method_entry *method;
+    gonio_i_size size;
+    const gonio_basis *basis;
+    gonio_basis_view view;
+    const gonio_plan *plan;
+} trial;
+
+/* g of a plan's entry in one channel; NaN where the material has no data. */
+static double reading(const trial *t, const gonio_table *table, const double *mean, int32_t cell,
+                      size_t channel)
+{
+    if (t->view.representation == GONIO_BIVARIATE) {
+        return mean[(size_t)cell * GONIO_CHANNELS + channel];
+    }
+    const size_t slab = (size_t)cell / GONIO_SLAB_BINS;
+    const size_t bin = (size_t)cell % GONIO_SLAB_BINS;
+    const double rho =
+        gonio_table_values(table)[slab * GONIO_SLAB_VALUES + channel * GONIO_SLAB_BINS + bin];
+    return rho >= 0.0 ? gonio_log_from_brdf(rho, (int)channel) : NAN;
+}
+
+/* The plan's rows where the material has data, and how many these are. */
+static size_t find_rows(const trial *t, const gonio_table *table, const double *mean,
+                        const gonio_plan_entry **entries, size_t *rows)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < t->plan->count; i++) {
+        const gonio_plan_entry *entry = &t->plan->entries[i];
+        const size_t position = gonio_basis_position(t->basis, entry->cell);
+        if (!isnan(reading(t, table, mean, entry->cell, 0))) {
+            rows[count] = t->view.channels == GONIO_JOINT
+                              ? position * GONIO_CHANNELS + (size_t)entry->channel
+                              : position;
+            entries[count++] = entry;
+        }
+    }
+    return count;
+}
+
+/* b[column][count]. */
+static void read_values(const trial *t, const gonio_table *table, const double *mean,
+                        const gonio_plan_entry *const *entries, size_t count, double *b)
+{
+    const bool joint = t->view.channels == GONIO_JOINT;
+    for (size_t column = 0; column < (joint ? 1 : GONIO_CHANNELS); column++) {
+        for (size_t i = 0; i < count; i++) {
+            const size_t channel = joint ? (size_t)entries[i]->channel : column;
+            b[column * count + i] = reading(t, table, mean, entries[i]->cell, channel);
+        }
+    }
+}
+
+static gonio_status compare(const trial *t, const gonio_material *material,
+                            const gonio_reconstruction *made, gonio_error *error)
+{
+    gonio_material *other = NULL;
+    gonio_comparison comparison;
+    gonio_status status = gonio_reconstruction_material(t->context, t->basis, made,
+                                                        gonio_material_name(material), &other);
+    if (status == GONIO_OK) {
+        status = gonio_compare(t->context, material, other, &comparison);
+    }
+    if (status == GONIO_OK) {
+        *error = comparison.all;
+    }
+    gonio_material_free(&other);
+    return status;
+}
+
+static gonio_status test_material(const trial *t, const gonio_material *material,
+                                  const double *mean, gonio_error *error)
+{
+    gonio_table *table = NULL;
+    gonio_reconstruction *made = NULL;
+    const size_t most = t->plan->count;
+    const gonio_plan_entry **entries = gonio_i_allocate(t->context, most, sizeof *entries);
+    size_t *rows = gonio_i_allocate(t->context, most, sizeof *rows);
+    double *b = gonio_i_allocate(t->context, GONIO_CHANNELS * most, sizeof *b);
+    gonio_status status =
+        entries == NULL || rows == NULL || b == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    if (status == GONIO_OK && t->view.representation == GONIO_FULL) {
+        status = gonio_table_load(t->context, material, &table);
+    }
+    if (status == GONIO_OK) {
+        const size_t count = find_rows(t, table, mean, entries, rows);
+        read_values(t, table, mean, entries, count, b);
+        status = t->method->solve(t->context, t->basis, t->size.components, rows, count, b, &made);
+    }
+    if (status == GONIO_OK) {
+        status = compare(t, material, made, error);
+    }
+    gonio_reconstruction_free(&made);
+    gonio_table_free(&table);
+    free(entries);
+    free(rows);
+    free(b);
+    return status;
+}
+
+static gonio_status test_all(const trial *t, const gonio_i_collection *collection,
+                             const gonio_i_split *split, gonio_error *errors)
+{
+    gonio_status status = GONIO_OK;
+    for (size_t k = 0; k < split->test_count && status == GONIO_OK; k++) {
+        gonio_material *material = NULL;
+        status = gonio_material_open(t->context, collection->path[split->test[k]], &material);
+        if (status == GONIO_OK) {
+            status = test_material(t, material, collection->mean[split->test[k]], &errors[k]);
+        }
+        gonio_material_free(&material);
+    }
+    return status;
+}
+
+/* Learns from the materials of the split alone, in the method's representation. */
+static gonio_status learn(gonio_context *context, const gonio_i_collection *collection,
+                          const gonio_i_method_entry *method, gonio_i_size size,
+                          const gonio_i_split *split, gonio_basis **basis)
+{
+    const gonio_database_options how = {.representation = method->representation,
+                                        .channels = method->channels};
+    const gonio_basis_options options = {.components = size.components};
+    gonio_database *database = NULL;
+    const char **paths = gonio_i_allocate(context, split->basis_count, sizeof(char *));
+    if (paths == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    for (size_t k = 0; k < split->basis_count; k++) {
+        paths[k] = collection->path[split->basis[k]];
+    }
+    gonio_status status =
+        gonio_database_create(context, paths, split->basis_count, &how, &database);
+    if (status == GONIO_OK) {
+        status = method->learn(context, database, &options, basis);
+    }
+    gonio_database_free(&database);
+    free(paths);
+    return status;
+}
+
+static gonio_status run(gonio_context *context, const gonio_i_collection *collection,
+                        const gonio_i_method_entry *method, gonio_i_size size,
+                        const gonio_i_split *split, uint64_t seed, double *condition,
+                        gonio_error *errors)
+{
+    gonio_basis *basis = NULL;
+    gonio_plan *plan = NULL;
+    gonio_plan_options options;
+    gonio_plan_options_default(&options);
+    options.method = method->plan;
+    options.components = size.components;
+    options.count = size.samples;
+    options.restarts = 1;
+    options.seed = seed;
+    options.keep_history = false;
+    gonio_status status = learn(context, collection, method, size, split, &basis);
+    if (status == GONIO_OK) {
+        status = gonio_plan_create(context, basis, &options, &plan);
+    }
+    if (status == GONIO_OK) {
+        const trial t = {context, method, size, basis, gonio_basis_describe(basis), plan};
+        *condition = plan->condition_number;
+        status = test_all(&t, collection, split, errors);
+    }
+    gonio_plan_free(&plan);
+    gonio_basis_free(&basis);
+    return status;
+}
+
+gonio_status gonio_i_trial_tables(gonio_context *context, const gonio_i_collection *collection,
+                                  const gonio_i_method_entry *method, gonio_i_size size,
+                                  const gonio_i_split *split, uint64_t seed, double *condition,
+                                  gonio_error *errors)
+{
+    gonio_status status = GONIO_OK;
+#pragma omp critical(gonio_trial_tables)
+    status = run(context, collection, method, size, split, seed, condition, errors);
+    return status;
+}

@@ -1,0 +1,166 @@
+/* Trials by digests and by whole tables are the same; splits. */
+#include "../support.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "report/splits.h"
+#include "report/trial.h"
+
+static const char *const paths[] = {"atlas:gold-polished", "atlas:oak-sawn",    "atlas:red-cotton",
+                                    "atlas:plaster-cast",  "atlas:brass-satin", "atlas:red-eraser",
+                                    "atlas:navy-lacquer",  "atlas:jade-carved"};
+
+enum { PATHS = sizeof paths / sizeof *paths };
+
+static gonio_i_collection collection;
+static gonio_i_splits splits;
+
+static int set_up(void **state)
+{
+    (void)state;
+    assert_int_equal(gonio_i_collect(NULL, paths, PATHS, false, &collection), GONIO_OK);
+    assert_int_equal(gonio_i_splits_make(NULL, &collection, 10, 3, &splits), GONIO_OK);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    gonio_i_splits_free(&splits);
+    gonio_i_collection_free(&collection);
+    return 0;
+}
+
+static void assert_close(double value, double expected, double relative)
+{
+    if (!(fabs(value - expected) <= relative * fabs(expected))) {
+        fail_msg("%.17g where %.17g is expected (relative %g)", value, expected, relative);
+    }
+}
+
+static void assert_same_error(gonio_error a, gonio_error b)
+{
+    assert_close(a.e6, b.e6, 1e-6);
+    assert_close(a.cube_root, b.cube_root, 1e-6);
+    assert_close(a.log_relative, b.log_relative, 1e-6);
+}
+
+/* For all methods of the paper's basis. The tables' way learns from the split alone, and so from
+ * the same cells here, where no material has holes. */
+static void test_digests_and_tables_agree(void **state)
+{
+    (void)state;
+    const gonio_i_size size = {4, 12};
+    const gonio_i_split *split = &splits.split[0];
+    for (size_t m = 0; m < gonio_i_methods(); m += 3) {
+        const gonio_i_method_entry *method = gonio_i_method_at(m);
+        gonio_error *errors[2];
+        double condition[2] = {NAN, NAN};
+        for (int k = 0; k < 2; k++) {
+            errors[k] = calloc(split->test_count, sizeof **errors);
+            assert_int_equal((k == 0 ? gonio_i_trial_method
+                                     : gonio_i_trial_tables)(NULL, &collection, method, size, split,
+                                                             1, &condition[k], errors[k]),
+                             GONIO_OK);
+        }
+        assert_close(condition[0], condition[1], 1e-9);
+        for (size_t t = 0; t < split->test_count; t++) {
+            assert_same_error(errors[0][t], errors[1][t]);
+            assert_true(errors[0][t].e6 > 0.0);
+        }
+        free(errors[0]);
+        free(errors[1]);
+    }
+}
+
+/* Other bases go by tables. */
+static void test_other_bases(void **state)
+{
+    (void)state;
+    const gonio_i_size size = {3, 20};
+    const gonio_i_split *split = &splits.split[1];
+    gonio_i_method_entry method = *gonio_i_method_at(GONIO_I_CHOSEN);
+    gonio_error *errors = calloc(split->test_count, sizeof *errors);
+    for (int k = 0; k < 3; k++) {
+        double condition = NAN;
+        method.representation = k == 0 ? GONIO_BIVARIATE : GONIO_FULL;
+        method.channels = k == 2 ? GONIO_JOINT : GONIO_SEPARATE;
+        assert_int_equal(
+            gonio_i_trial_method(NULL, &collection, &method, size, split, 1, &condition, errors),
+            GONIO_OK);
+        assert_true(condition >= 1.0);
+        for (size_t t = 0; t < split->test_count; t++) {
+            assert_true(errors[t].e6 > 0.0 && errors[t].e6 < 1000.0);
+        }
+    }
+    free(errors);
+}
+
+/* Least squares from all rows is V'(b - m). */
+static void test_all_rows(void **state)
+{
+    (void)state;
+    const gonio_i_split *split = &splits.split[0];
+    gonio_i_trial trial;
+    gonio_error by_product = {0};
+    gonio_error by_solving = {0};
+    assert_int_equal(gonio_i_trial_begin(NULL, &collection, split->basis, split->basis_count, 4,
+                                         split->test, 1, &trial),
+                     GONIO_OK);
+    size_t *rows = calloc(trial.view.rows, sizeof *rows);
+    for (size_t k = 0; k < trial.view.rows; k++) {
+        rows[k] = k;
+    }
+    assert_int_equal(gonio_i_trial_all_rows(NULL, &trial, &by_product), GONIO_OK);
+    assert_int_equal(gonio_i_trial_rows(NULL, &trial, rows, trial.view.rows, &by_solving),
+                     GONIO_OK);
+    assert_same_error(by_product, by_solving);
+    rows[3] = rows[0];
+    rows[2] = rows[0];
+    assert_int_equal(gonio_i_trial_rows(NULL, &trial, rows, 4, &by_solving), GONIO_OK);
+    assert_true(isnan(by_solving.e6)); /* two independent rows for four components */
+    free(rows);
+    gonio_i_trial_end(&trial);
+}
+
+static void test_splits_are_splits(void **state)
+{
+    (void)state;
+    bool differ = false;
+    for (size_t s = 0; s < splits.count; s++) {
+        const gonio_i_split *split = &splits.split[s];
+        int seen[PATHS] = {0};
+        assert_int_equal(split->basis_count, 6);
+        assert_int_equal(split->test_count, 2);
+        for (size_t k = 0; k < split->basis_count; k++) {
+            seen[split->basis[k]]++;
+        }
+        for (size_t k = 0; k < split->test_count; k++) {
+            seen[split->test[k]]++;
+            differ = differ || split->test[k] != splits.split[0].test[k];
+        }
+        for (size_t k = 0; k < PATHS; k++) {
+            assert_int_equal(seen[k], 1);
+        }
+    }
+    assert_true(differ);
+    gonio_i_splits again;
+    assert_int_equal(gonio_i_splits_make(NULL, &collection, 10, 3, &again), GONIO_OK);
+    for (size_t s = 0; s < splits.count; s++) {
+        assert_memory_equal(again.split[s].test, splits.split[s].test, 2 * sizeof(size_t));
+    }
+    gonio_i_splits_free(&again);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_digests_and_tables_agree),
+        cmocka_unit_test(test_other_bases),
+        cmocka_unit_test(test_all_rows),
+        cmocka_unit_test(test_splits_are_splits),
+    };
+    return cmocka_run_group_tests_name("trial", tests, set_up, tear_down);
+}

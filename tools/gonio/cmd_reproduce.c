@@ -1,0 +1,101 @@
+/* gonio reproduce: the paper's experiments on a database of one's own. */
+#include "paths.h"
+#include "team.h"
+
+#include <stdio.h>
+
+typedef struct options {
+    const char *output;
+    const char *splits;
+    const char *only;
+    long seed;
+    int quick;
+    int skip_bad;
+} options;
+
+/* What was asked for, the built-in materials by default. */
+static int list_materials(const tool *t, tool_paths *list)
+{
+    size_t count = 0;
+    const char **arguments = tool_arguments(t, &count);
+    int code = count == 0 ? tool_add_materials(t, list, "atlas:") : 0;
+    for (size_t k = 0; k < count && code == 0; k++) {
+        code = tool_add_materials(t, list, arguments[k]);
+    }
+    return code;
+}
+
+static int reproduce(const tool *t, const options *o, const tool_paths *list,
+                     const gonio_team *team)
+{
+    const gonio_reproduce_options how = {.splits = o->splits,
+                                         .seed = (uint64_t)o->seed,
+                                         .quick = o->quick != 0,
+                                         .only = o->only,
+                                         .skip_bad = o->skip_bad != 0,
+                                         .team = team};
+    const gonio_status status =
+        gonio_reproduce(t->context, (const char *const *)list->path, list->count, o->output, &how);
+    if (status == GONIO_OK && team->rank == 0 && !tool_quiet) {
+        printf("%s: see report.md, figures, tables and results.json in it\n", o->output);
+    }
+    return tool_exit_code(status);
+}
+
+static int run(const tool *t, const options *o, const gonio_team *team)
+{
+    tool_paths list = {0};
+    int code = tool_check_count(t, "--seed", o->seed, 0);
+    if (code == 0 && (o->output == NULL || *o->output == '\0')) {
+        code = tool_usage_error(t, "no output: give -o FOLDER");
+    }
+    if (code == 0) {
+        code = list_materials(t, &list);
+    }
+    if (code == 0) {
+        code = reproduce(t, o, &list, team);
+    }
+    tool_free_paths(&list);
+    return code;
+}
+
+/* All ranks do the same; rank 0 alone says what is not an error. */
+static int run_in_team(const tool *t, const options *o)
+{
+    gonio_team team;
+    if (!tool_team_begin(&team, t->name)) {
+        return EXIT_DATA;
+    }
+    tool_quiet = tool_quiet || team.rank != 0;
+    return tool_team_end(run(t, o, &team));
+}
+
+int cmd_reproduce(int argc, const char **argv)
+{
+    options o = {.output = NULL};
+    const struct poptOption table[] = {
+        {"output", 'o', POPT_ARG_STRING, &o.output, 0,
+         "The folder to write: a new one, or one to go on with", "OUT"},
+        {"quick", '\0', POPT_ARG_NONE, &o.quick, 0,
+         "Fewer splits and plans: about a minute for 100 materials", NULL},
+        {"only", '\0', POPT_ARG_STRING, &o.only, 0,
+         "Only these: fig2a, fig2b, fig3a, fig3b, fig4, fig5", "NAME[,NAME...]"},
+        {"splits", '\0', POPT_ARG_STRING, &o.splits, 0,
+         "Take the splits from this JSON file instead of random ones", "FILE"},
+        {"seed", '\0', POPT_ARG_LONG, &o.seed, 0, "Of splits and plans (default: 0)", "N"},
+        {"skip-bad", '\0', POPT_ARG_NONE, &o.skip_bad, 0, "Leave out materials that cannot be used",
+         NULL},
+        TOOL_OPTIONS};
+    tool t;
+    int code = tool_begin(&t, argc, argv, table, "[OPTION...] [DIR|FILE...] -o OUT",
+                          "Runs the experiments of Ali et al. and sets them beside the paper's: "
+                          "OUT/report.md, figures, tables.\nDIR stands for the *.binary and *.h5 "
+                          "files in it; without one the built-in materials serve.\nA run that was "
+                          "stopped goes on when the command is given again; with mpirun several "
+                          "machines share\nthe work. Example: gonio reproduce merl -o paper");
+    if (code < 0) {
+        code = run_in_team(&t, &o);
+    }
+    tool_end(&t);
+    return code;
+}
