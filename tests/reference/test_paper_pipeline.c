@@ -236,7 +236,8 @@ static void open_split(size_t index, size_t components, split *s)
     for (size_t k = 0; k < s->tests; k++) {
         s->test[k] = index_of(json_string_value(json_array_get(test, k)));
     }
-    const gonio_basis_options options = {components, subset, json_array_size(basis)};
+    const gonio_basis_options options = {
+        .components = components, .subset = subset, .subset_count = json_array_size(basis)};
     assert_int_equal(gonio_basis_learn(data.context, data.database, &options, &s->basis), GONIO_OK);
     s->view = gonio_basis_describe(s->basis);
 }
@@ -359,7 +360,8 @@ static void test_condition_plans(void **state)
             size_t *rows = malloc(goals[k].count * sizeof *rows);
             gonio_selection_report report;
             assert_int_equal(gonio_plan_select(data.context, s.view.vectors, s.view.rows,
-                                               goals[k].components, goals[k].components, &options, rows, &report),
+                                               goals[k].components, goals[k].components, &options,
+                                               rows, &report),
                              GONIO_OK);
             condition[k] += report.condition_number / 10.0;
             free(report.history);
