@@ -10,7 +10,7 @@
 #include "../core/random.h"
 #include "method.h"
 
-enum { POOL = 24000 };
+enum { POOL = 8000 };
 
 /* A stream of random numbers that no start uses. */
 static const uint64_t pool_stream = UINT64_MAX;
