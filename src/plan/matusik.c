@@ -2,9 +2,9 @@
  * without mean, with a low condition number.
  *
  * H = V S W' with all components, so H and V S have the same singular values on any rows, and the
- * swaps of condition.c are made on rows of V S. Of the millions of rows of the full grid 8,000 drawn
- * at random take part: such rows have condition numbers near a million, where the search can filter
- * little, so that its time grows with them, while the reconstruction does not improve. */
+ * swaps of condition.c are made on rows of V S. Of the millions of rows of the full grid 8,000
+ * drawn at random take part: such rows have condition numbers near a million, where the search can
+ * filter little, so that its time grows with them, while the reconstruction does not improve. */
 #include <stdlib.h>
 #include <string.h>
 
