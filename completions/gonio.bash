@@ -8,11 +8,12 @@ _gonio_options()
     case $1 in
         info)        echo "--json $common" ;;
         convert)     echo "$common" ;;
-        learn)       echo "--output --basis --grid --channels --without --json -o -K $common" ;;
+        learn)       echo "--output --basis --grid --channels --mapping --no-mean --without --json -o -K" \
+                          "$common" ;;
         plan)        echo "--output --number --basis --method --start --restarts --seed --phi-d --history" \
                           "--json -o -n -K $common" ;;
         measure)     echo "--output --noise --floor --seed -o $common" ;;
-        reconstruct) echo "--output --basis --all-channels --average-repeats --negative-to-zero" \
+        reconstruct) echo "--output --basis --method --eta --all-channels --average-repeats --negative-to-zero" \
                           "--other-basis --json -o -K $common" ;;
         compare)     echo "--verbose --json -v $common" ;;
         reproduce)   echo "--output --quick --only --splits --seed --skip-bad -o $common" ;;
@@ -20,16 +21,18 @@ _gonio_options()
     esac
 }
 
-# Words for the value of an option; fails if there is nothing to say (a file, or no option).
+# Words for the value of an option of a command; fails if there is nothing to say (a file, or no option).
 _gonio_values()
 {
     case $1 in
         --grid)     echo "bivariate full" ;;
         --channels) echo "joint separate" ;;
         --only)     echo "fig2a fig2b fig3a fig3b fig4 fig5" ;;
-        --method)   echo "condition random" ;;
+        --mapping)  echo "log relative" ;;
+        --method)   [[ $2 == reconstruct ]] && echo "least-squares ridge" ||
+                        echo "condition random matusik nielsen frost" ;;
         --start)    echo "random qr volume" ;;
-        --basis|--number|--restarts|--seed|--phi-d|--noise|--floor|--threads|--without|-K|-n) echo "" ;;
+        --basis|--number|--restarts|--seed|--phi-d|--eta|--noise|--floor|--threads|--without|-K|-n) echo "" ;;
         *)          return 1 ;;
     esac
 }
@@ -64,7 +67,7 @@ _gonio()
         return
     fi
 
-    if values=$(_gonio_values "$previous"); then
+    if values=$(_gonio_values "$previous" "$command"); then
         mapfile -t COMPREPLY < <(compgen -W "$values" -- "$current")
         compopt +o default +o bashdefault 2>/dev/null
     elif [[ $current == -* ]]; then

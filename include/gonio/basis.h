@@ -1,6 +1,8 @@
-/* A basis: the mean and the principal components of a database, in log space.
+/* A basis: the mean and the principal components of a database, in its log space.
  *
- * m = mean column; H - m = V S W' (Ali et al., section 3.6). V is rows x components, orthonormal,
+ * H - m = V S W' (Ali et al., section 3.6). m is the mean column. Learned without mean, m is 0, and
+ * in the relative mapping ln((median + e)/e) with the median of rho w over the columns learned
+ * from, so that H - m = ln((rho w + e)/(median + e)). V is rows x components, orthonormal,
  * stored row by row: the K values of a row are next to each other, so a row is what one reading
  * sees. Rows are numbered as in database.h: joint, row = 3 x (position of the cell) + channel;
  * separate, row = position of the cell. The k-th component's sign makes its largest entry positive.
@@ -19,9 +21,10 @@ typedef struct gonio_basis gonio_basis;
 enum { GONIO_DEFAULT_COMPONENTS = 45 };
 
 typedef struct gonio_basis_options {
-    size_t components;    /* K; 0 for the smaller of 45 and columns - 1 */
+    size_t components;    /* K; 0 for the smaller of 45 and columns - 1, without mean all columns */
     const size_t *subset; /* learn from these materials of the database only; NULL for all */
     size_t subset_count;
+    bool without_mean; /* components of H itself: all of them span the materials */
 } gonio_basis_options;
 
 GONIO_API void gonio_basis_options_default(gonio_basis_options *options);
@@ -30,8 +33,8 @@ GONIO_API void gonio_basis_options_default(gonio_basis_options *options);
  * precision. max |V'V - I| is at most 1e-11: where it would be more, V is orthonormalised again
  * (Cholesky QR), to rounding. The result does not depend on the number of threads. Memory: the
  * basis, and a few MB a thread.
- * Errors: _ARGUMENT if K > columns - 1; _DATA if the columns span fewer than K dimensions; _MEMORY;
- * those of gonio_database_read_rows. */
+ * Errors: _ARGUMENT if K > columns - 1 (without mean, > columns); _DATA if the columns span fewer
+ * than K dimensions; _MEMORY; those of gonio_database_read_rows. */
 GONIO_API gonio_status gonio_basis_learn(gonio_context *context, const gonio_database *database,
                                          const gonio_basis_options *options, gonio_basis **basis);
 
@@ -52,17 +55,21 @@ GONIO_API gonio_status gonio_basis_read(gonio_context *context, const char *path
 typedef struct gonio_basis_view {
     gonio_representation representation;
     gonio_channel_model channels;
+    gonio_mapping mapping;
+    bool without_mean;
     size_t materials;
+    size_t columns; /* materials, or 3 x materials if separate */
     const char *const *names;
     const uint64_t *fingerprints; /* of the materials */
     size_t cells;
     const int32_t *cell; /* [cells], database.h */
     size_t rows;
     size_t components;
-    const double *mean;      /* [rows] */
+    const double *mean;      /* m, [rows] */
     const double *vectors;   /* V, [rows][components] */
     size_t variance_count;   /* all of them, not only the first `components` */
     const double *variances; /* lambda_k = S_k^2/(columns - 1), descending */
+    const double *loadings;  /* W, [columns][components], orthonormal; NULL in files without */
     uint64_t
         fingerprint; /* which basis it is: its cells, materials' names and leading variances to six
                       * digits, so that the same one learned on another processor is the same */
@@ -72,6 +79,9 @@ typedef struct gonio_basis_view {
 } gonio_basis_view;
 
 GONIO_API gonio_basis_view gonio_basis_describe(const gonio_basis *basis);
+
+/* S_k, k from 0. */
+GONIO_API double gonio_basis_singular_value(const gonio_basis_view *view, size_t k);
 
 /* sum of the first k variances over the sum of all: what Fig. 2(a) of the paper plots. */
 GONIO_API double gonio_basis_cumulative_variance(const gonio_basis *basis, size_t k);

@@ -1,7 +1,11 @@
 /* A database: many materials on one grid, in log space, as the observation matrix H.
  *
- * Log space: g = ln(1 + rho/s_c), s = (1, 1.15, 1.66)/1500 1/sr for R, G, B, which is ln(1 + x) of
- * the numbers a MERL file stores.
+ * Log space is one of two mappings g = ln(1 + rho/s):
+ *   log       s = (1, 1.15, 1.66)/1500 1/sr for R, G, B: ln(1 + x) of the numbers a MERL file
+ *             stores (Ali et al.);
+ *   relative  s = e/w, e = 0.001, w = cos theta_i cos theta_o clipped to 0.01 .. 1, so that
+ *             g = ln((rho w + e)/e) (Nielsen et al. 2015: theirs, ln((rho w + e)/(median + e)),
+ *             differs by a constant in each row, which basis.h takes out).
  *
  * Representation: bivariate (Romeiro et al. 2008), where a cell (theta_h, theta_d) holds the mean
  * of g over its phi_d bins with data; or full, where every bin is a cell of its own.
@@ -30,6 +34,20 @@ GONIO_API double gonio_log_scale(int channel);
 GONIO_API double gonio_log_from_brdf(double rho, int channel);
 GONIO_API double gonio_brdf_from_log(double g, int channel);
 
+typedef enum gonio_mapping { GONIO_LOG = 0, GONIO_LOG_RELATIVE = 1 } gonio_mapping;
+
+/* s of a mapping at a direction, 1/sr. */
+GONIO_API double gonio_mapping_scale(gonio_mapping mapping, int channel, gonio_half_difference at);
+
+/* g = ln(1 + rho/s); and back, rho = s (e^g - 1), clamped at 0. */
+GONIO_API double gonio_mapped_from_brdf(gonio_mapping mapping, double rho, int channel,
+                                        gonio_half_difference at);
+GONIO_API double gonio_brdf_from_mapped(gonio_mapping mapping, double g, int channel,
+                                        gonio_half_difference at);
+
+/* The scale of each bin of a slab: scale[theta_d][phi_d], s at its centre. */
+GONIO_API void gonio_slab_scale(gonio_mapping mapping, int channel, int theta_h, double *scale);
+
 typedef enum gonio_representation { GONIO_BIVARIATE = 0, GONIO_FULL = 1 } gonio_representation;
 typedef enum gonio_channel_model { GONIO_JOINT = 0, GONIO_SEPARATE = 1 } gonio_channel_model;
 
@@ -48,6 +66,10 @@ GONIO_API void gonio_slab_mask(int theta_h, const double *rho, bool *data);
  * rho is allowed. */
 GONIO_API void gonio_slab_to_log(const double *rho, double *g);
 
+/* The same for either mapping. */
+GONIO_API void gonio_slab_to_mapped(gonio_mapping mapping, int theta_h, const double *rho,
+                                    double *g);
+
 /* Reduces a slab in log space to its bivariate statistics over the bins that count; mean and
  * scatter are 0 where count is. */
 GONIO_API void gonio_slab_reduce(const double *g, const bool *data,
@@ -59,9 +81,10 @@ typedef struct gonio_database_options {
     gonio_representation representation;
     gonio_channel_model channels;
     const char *scratch; /* folder for the scratch files; NULL for $TMPDIR or /tmp */
+    gonio_mapping mapping;
 } gonio_database_options;
 
-/* Bivariate, joint: the paper's. */
+/* Bivariate, joint, log: the paper's. */
 GONIO_API void gonio_database_options_default(gonio_database_options *options);
 
 /* Reads the materials at the given paths (as gonio_material_open takes them), several at a time.
@@ -78,6 +101,7 @@ GONIO_API void gonio_database_free(gonio_database **database);
 typedef struct gonio_database_view {
     gonio_representation representation;
     gonio_channel_model channels;
+    gonio_mapping mapping;
     size_t materials;
     const char *const *names;     /* [materials] */
     const uint64_t *fingerprints; /* [materials], material.h */

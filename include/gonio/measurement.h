@@ -46,9 +46,10 @@ GONIO_API void gonio_readings_free(gonio_readings **readings);
 typedef struct gonio_readings_view {
     size_t count;
     const gonio_reading *reading;
-    const char *path;  /* where it was read from, for messages */
-    uint64_t basis;    /* fingerprint of the basis the plan was made for; 0 if not stated */
-    size_t components; /* K of the plan; 0 if not stated */
+    const char *path;   /* where it was read from, for messages */
+    uint64_t basis;     /* fingerprint of the basis the plan was made for; 0 if not stated */
+    size_t components;  /* K of the plan; 0 if not stated */
+    const char *method; /* of the plan; "" if not stated */
 } gonio_readings_view;
 
 GONIO_API gonio_readings_view gonio_readings_describe(const gonio_readings *readings);

@@ -1,7 +1,8 @@
 /* A plan: where to measure.
  *
  * Selection (Ali et al., section 3.8): of the rows of V_K choose n, X, that minimise the condition
- * number kappa = lambda_max(X'X)/lambda_min(X'X), by swaps until no single one lowers it. */
+ * number kappa = lambda_max(X'X)/lambda_min(X'X), by swaps until no single one lowers it. The other
+ * methods are those that it is compared with: docs/method.md. */
 #ifndef GONIO_PLAN_H
 #define GONIO_PLAN_H
 
@@ -31,7 +32,8 @@ typedef struct gonio_plan {
     size_t count;
     gonio_plan_entry *entries; /* ascending row of the basis */
     size_t components;         /* K that the plan was made for */
-    double condition_number;   /* kappa of X'X; infinity if singular */
+    double condition_number;   /* kappa of X'X, infinity if singular; of matusik, nielsen and
+                                * frost, that of the rows of V S */
     uint64_t basis;            /* fingerprint of the basis */
     char method[32];
     uint64_t
@@ -41,11 +43,11 @@ typedef struct gonio_plan {
 } gonio_plan;
 
 typedef struct gonio_plan_options {
-    const char *method; /* "condition" (default) or "random": gonio_plan_method_name */
+    const char *method; /* "condition" by default: gonio_plan_method_name */
     const char *start;  /* of the swaps: "random" (default): gonio_plan_start_name */
-    size_t components;  /* K; 0 for all of the basis */
+    size_t components;  /* K; 0 for all of the basis, with nielsen and frost for n if it is less */
     size_t count;       /* n, rows to choose; 80 by default */
-    int restarts;       /* starts, of which the best is kept; 5 by default */
+    int restarts;       /* starts of swaps, of which the best is kept; 5 by default */
     uint64_t seed;      /* same seed, same plan, on any number of threads */
     bool keep_history;  /* true by default; a search of very many starts may do without */
     double phi_d;       /* where on the free angle to measure a bivariate cell; pi/2 by default */
@@ -57,6 +59,10 @@ GONIO_API void gonio_plan_options_default(gonio_plan_options *options);
 GONIO_API const char *gonio_plan_method_name(int index);
 GONIO_API const char *gonio_plan_method_summary(int index);
 
+/* The reconstruction method (reconstruct.h) that plans of a method are made for; NULL if there is
+ * no such method. */
+GONIO_API const char *gonio_plan_method_reconstruction(const char *method);
+
 /* The same of the starts that the condition method's swaps may begin with. */
 GONIO_API const char *gonio_plan_start_name(int index);
 GONIO_API const char *gonio_plan_start_summary(int index);
@@ -64,12 +70,15 @@ GONIO_API const char *gonio_plan_start_summary(int index);
 /* Makes a plan. A chosen cell becomes the pair at its centre with phi_h = 0 and the given phi_d (of
  * a full basis, the bin's own phi_d); where that pair would be at or below the horizon, the valid
  * phi_d nearest to it is taken. Errors: _ARGUMENT (unknown method, K more than the basis has, n < K
- * for the condition method, n more than there are rows, phi_d outside [0, pi)); _DATA (rows of rank
- * less than K); _CANCELLED. */
+ * for the condition method, n more than there are rows, phi_d outside [0, pi), a method that works
+ * on another kind of basis); _DATA (rows of rank less than K); _CANCELLED. */
 GONIO_API gonio_status gonio_plan_create(gonio_context *context, const gonio_basis *basis,
                                          const gonio_plan_options *options, gonio_plan **plan);
 
 GONIO_API void gonio_plan_free(gonio_plan **plan);
+
+/* The rows of the basis that a plan made for it reads: rows[plan->count]. */
+GONIO_API void gonio_plan_rows(const gonio_plan *plan, const gonio_basis *basis, size_t *rows);
 
 /* What gonio_plan_select found besides the rows. */
 typedef struct gonio_selection_report {
@@ -81,7 +90,7 @@ typedef struct gonio_selection_report {
 
 /* Chooses n of `rows` rows of a matrix V[rows][leading], of which the first `components` of each
  * row count, ascending, into chosen[n]; the engine under gonio_plan_create, for rows that come from
- * elsewhere. V is neither copied nor changed. */
+ * elsewhere. V is neither copied nor changed. Methods that need to know the basis are refused. */
 GONIO_API gonio_status gonio_plan_select(gonio_context *context, const double *vectors, size_t rows,
                                          size_t leading, size_t components,
                                          const gonio_plan_options *options, size_t *chosen,

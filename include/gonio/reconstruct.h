@@ -1,7 +1,10 @@
-/* Reconstruction: from a few readings to the whole BRDF.
+/* Reconstruction: from a few readings to the whole BRDF, g = m + V_K c.
  *
- * Ali et al., eq. (5): c = argmin |X c - (b_X - m_X)|, X the rows of V_K that the readings see, b_X
- * the readings in log space, solved by QR with column pivoting; then g = m + V_K c. */
+ * With X the rows of V_K that the readings see and b_X the readings in the basis's log space:
+ *   least-squares  c = argmin |X c - (b_X - m_X)| (Ali et al., eq. (5));
+ *   ridge          c = S d, d = argmin |X S d - (b_X - m_X)|^2 + eta |d|^2 with the first
+ *                  min(readings, K) components (Nielsen et al. 2015; Miandji et al. 2024).
+ * Both are solved by QR with column pivoting. */
 #ifndef GONIO_RECONSTRUCT_H
 #define GONIO_RECONSTRUCT_H
 
@@ -12,38 +15,70 @@ extern "C" {
 #endif
 
 typedef struct gonio_reconstruct_options {
-    size_t components; /* K; 0 for the plan's, or if it states none the basis's */
-    bool all_channels; /* use all that was read, not only the planned channel of each direction */
-    bool other_basis;  /* accept readings planned with another basis */
+    size_t components;  /* K; 0 for the plan's, or if it states none as many as the basis has, with
+                         * ridge no more than there are readings */
+    bool all_channels;  /* use all that was read, not only the planned channel of each direction */
+    bool other_basis;   /* accept readings planned with another basis */
+    const char *method; /* gonio_reconstruct_method_name; NULL for what belongs to the plan
+                         * (gonio_plan_method_reconstruction), least-squares if it states none */
+    double eta;         /* of ridge, > 0; 0 for 40 */
 } gonio_reconstruct_options;
 
 GONIO_API void gonio_reconstruct_options_default(gonio_reconstruct_options *options);
 
+/* Names and one-line descriptions of the methods; NULL past the last. */
+GONIO_API const char *gonio_reconstruct_method_name(int index);
+GONIO_API const char *gonio_reconstruct_method_summary(int index);
+
 typedef struct gonio_reconstruction {
     size_t components;
     size_t columns;          /* 1 for a joint basis, 3 (R, G, B) for a separate one */
-    double *coefficients;    /* [columns][components] */
+    double *coefficients;    /* c, [columns][components] */
     size_t readings;         /* equations used, per column */
-    double condition_number; /* kappa of X'X of the readings used */
+    double condition_number; /* kappa of X'X of the readings used; of S X'X S + eta I with ridge */
     double residual;         /* root mean square of X c - (b - m), log units */
 } gonio_reconstruction;
 
 /* Solves for the coefficients.
  * Errors: _UNDETERMINED if the readings have fewer than K independent rows (the message says how
  * many and what to do); _MISMATCH if they were planned with another basis, or for more components
- * than the basis has; _ARGUMENT (options->components more than the basis has); _DATA (a planned
- * channel was not read). */
+ * than the basis has; _ARGUMENT (options->components more than the basis has, an unknown method, a
+ * negative eta); _DATA (a planned channel was not read). */
 GONIO_API gonio_status gonio_reconstruct(gonio_context *context, const gonio_basis *basis,
                                          const gonio_readings *readings,
                                          const gonio_reconstruct_options *options,
                                          gonio_reconstruction **reconstruction);
 
-/* The same for rows of the basis given by number, with b in log space: c for columns x count values
- * b[column][count]. */
+/* The same by least squares for rows of the basis given by number, with b in the basis's log space:
+ * c for columns x count values b[column][count]. */
 GONIO_API gonio_status gonio_reconstruct_rows(gonio_context *context, const gonio_basis *basis,
                                               size_t components, const size_t *rows, size_t count,
                                               const double *b,
                                               gonio_reconstruction **reconstruction);
+
+/* The same by any method: options' components, method (NULL for least-squares) and eta count. */
+GONIO_API gonio_status gonio_reconstruct_rows_with(gonio_context *context, const gonio_basis *basis,
+                                                   const gonio_reconstruct_options *options,
+                                                   const size_t *rows, size_t count,
+                                                   const double *b,
+                                                   gonio_reconstruction **reconstruction);
+
+/* What an instrument without noise would read of a material at rows of the basis, in its log space:
+ * a cell's value is that of database.h (of a bivariate cell the mean over phi_d).
+ * b[column][count]: of a joint basis one column; of a separate one R, G, B.
+ * Errors: _DATA if the material has no data in a cell; _MEMORY; those of the material. */
+GONIO_API gonio_status gonio_material_rows(gonio_context *context, const gonio_basis *basis,
+                                           const gonio_material *material, const size_t *rows,
+                                           size_t count, double *b);
+
+/* Both at once, without files: a known material, read at rows of the basis (gonio_plan_rows) and
+ * reconstructed. With options->all_channels every channel is read in the cells of the rows. The
+ * basis must outlive the result, the original need not. Errors: those of the parts. */
+GONIO_API gonio_status gonio_reconstruct_material(gonio_context *context, const gonio_basis *basis,
+                                                  const gonio_material *original,
+                                                  const size_t *rows, size_t count,
+                                                  const gonio_reconstruct_options *options,
+                                                  gonio_material **material);
 
 GONIO_API void gonio_reconstruction_free(gonio_reconstruction **reconstruction);
 

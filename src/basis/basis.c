@@ -13,6 +13,11 @@ size_t gonio_i_basis_rows(size_t cells, gonio_channel_model channels)
     return channels == GONIO_JOINT ? GONIO_CHANNELS * cells : cells;
 }
 
+size_t gonio_i_basis_columns(size_t materials, gonio_channel_model channels)
+{
+    return channels == GONIO_JOINT ? materials : GONIO_CHANNELS * materials;
+}
+
 static size_t grid_cells(const gonio_basis *basis)
 {
     return basis->representation == GONIO_BIVARIATE ? GONIO_CELLS : GONIO_BINS;
@@ -39,8 +44,11 @@ gonio_basis *gonio_i_basis_allocate(gonio_context *context, size_t materials, si
     made->mean = gonio_i_allocate(context, rows, sizeof *made->mean);
     made->vectors = gonio_i_allocate(context, rows * components, sizeof *made->vectors);
     made->variances = gonio_i_allocate(context, variance_count, sizeof *made->variances);
+    made->loadings = gonio_i_allocate(
+        context, gonio_i_basis_columns(materials, channels) * components, sizeof *made->loadings);
     if (made->names == NULL || made->fingerprints == NULL || made->cell == NULL ||
-        made->mean == NULL || made->vectors == NULL || made->variances == NULL) {
+        made->mean == NULL || made->vectors == NULL || made->variances == NULL ||
+        made->loadings == NULL) {
         gonio_basis_free(&made);
     }
     return made;
@@ -61,6 +69,7 @@ void gonio_basis_free(gonio_basis **basis)
     free(old->mean);
     free(old->vectors);
     free(old->variances);
+    free(old->loadings);
     free(old->program);
     free(old->command);
     free(old->position);
@@ -161,10 +170,17 @@ static gonio_status map_cells(gonio_context *context, gonio_basis *basis)
     return GONIO_OK;
 }
 
+/* A basis in the first mapping with a mean has the fingerprint that it had before there were
+ * others.
+ */
 static void add_kind(const gonio_basis *basis, gonio_fingerprint *fingerprint)
 {
     const int32_t kind[2] = {basis->representation, basis->channels};
+    const int32_t more[2] = {basis->mapping, basis->without_mean};
     gonio_fingerprint_add(fingerprint, kind, sizeof kind);
+    if (more[0] != GONIO_LOG || more[1] != 0) {
+        gonio_fingerprint_add(fingerprint, more, sizeof more);
+    }
     gonio_fingerprint_add(fingerprint, basis->cell, basis->cells * sizeof *basis->cell);
 }
 
@@ -195,6 +211,14 @@ static void add_everything(const gonio_basis *basis, gonio_fingerprint *fingerpr
                           basis->variance_count * sizeof *basis->variances);
 }
 
+/* Apart from the rest, so that programs that know nothing of loadings find theirs. */
+static void add_loadings(const gonio_basis *basis, gonio_fingerprint *fingerprint)
+{
+    const size_t columns = gonio_i_basis_columns(basis->materials, basis->channels);
+    gonio_fingerprint_add(fingerprint, basis->loadings,
+                          columns * basis->components * sizeof *basis->loadings);
+}
+
 static gonio_status hash(const gonio_basis *basis,
                          void (*add)(const gonio_basis *, gonio_fingerprint *), uint64_t *value)
 {
@@ -214,6 +238,9 @@ gonio_status gonio_i_basis_finish(gonio_context *context, gonio_basis *basis)
     if (status == GONIO_OK) {
         status = hash(basis, add_everything, &basis->checksum);
     }
+    if (status == GONIO_OK && basis->loadings != NULL) {
+        status = hash(basis, add_loadings, &basis->loadings_checksum);
+    }
     return status == GONIO_OK ? map_cells(context, basis) : status;
 }
 
@@ -222,7 +249,10 @@ gonio_basis_view gonio_basis_describe(const gonio_basis *basis)
     return (gonio_basis_view){
         .representation = basis->representation,
         .channels = basis->channels,
+        .mapping = basis->mapping,
+        .without_mean = basis->without_mean,
         .materials = basis->materials,
+        .columns = gonio_i_basis_columns(basis->materials, basis->channels),
         .names = (const char *const *)basis->names,
         .fingerprints = basis->fingerprints,
         .cells = basis->cells,
@@ -233,11 +263,17 @@ gonio_basis_view gonio_basis_describe(const gonio_basis *basis)
         .vectors = basis->vectors,
         .variance_count = basis->variance_count,
         .variances = basis->variances,
+        .loadings = basis->loadings,
         .fingerprint = basis->fingerprint,
         .checksum = basis->checksum,
         .program = basis->program != NULL ? basis->program : "",
         .command = basis->command != NULL ? basis->command : "",
     };
+}
+
+double gonio_basis_singular_value(const gonio_basis_view *view, size_t k)
+{
+    return sqrt(view->variances[k] * (double)(view->columns - 1));
 }
 
 double gonio_basis_cumulative_variance(const gonio_basis *basis, size_t k)

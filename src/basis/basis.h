@@ -9,6 +9,8 @@
 struct gonio_basis {
     gonio_representation representation;
     gonio_channel_model channels;
+    gonio_mapping mapping;
+    bool without_mean;
     size_t materials;
     char **names;
     uint64_t *fingerprints;
@@ -20,8 +22,10 @@ struct gonio_basis {
     double *vectors;
     size_t variance_count;
     double *variances;
-    uint64_t fingerprint; /* what it is, the same on every processor */
-    uint64_t checksum;    /* of every bit of it, against damage */
+    double *loadings;           /* NULL where a file has none */
+    uint64_t fingerprint;       /* what it is, the same on every processor */
+    uint64_t checksum;          /* of every bit of it but the loadings, against damage */
+    uint64_t loadings_checksum; /* the same of the loadings; 0 without */
     char *program;
     char *command;
     int32_t *position; /* of the whole grid: which of `cell` stands for it */
@@ -36,5 +40,6 @@ gonio_basis *gonio_i_basis_allocate(gonio_context *context, size_t materials, si
 gonio_status gonio_i_basis_finish(gonio_context *context, gonio_basis *basis);
 
 size_t gonio_i_basis_rows(size_t cells, gonio_channel_model channels);
+size_t gonio_i_basis_columns(size_t materials, gonio_channel_model channels);
 
 #endif

@@ -18,6 +18,8 @@ enum { FORMAT_VERSION = 1, MOST_MATERIALS = 1 << 20 };
 static const char format_name[] = "gonio basis";
 static const char *const representations[] = {"bivariate", "full"};
 static const char *const channel_models[] = {"joint", "separate"};
+static const char *const mappings[] = {"log", "relative"};
+static const char *const centrings[] = {"mean", "none"};
 
 /* ---- writing ---- */
 
@@ -53,23 +55,38 @@ static bool write_materials(hid_t file, const gonio_basis *basis)
     return done;
 }
 
+static bool write_hash(hid_t file, const char *name, uint64_t value)
+{
+    char text[32];
+    snprintf(text, sizeof text, "%016" PRIx64, value);
+    return gonio_i_hdf_write_string(file, name, text);
+}
+
+static bool write_loadings(hid_t file, const gonio_basis *basis)
+{
+    const size_t shape[2] = {gonio_i_basis_columns(basis->materials, basis->channels),
+                             basis->components};
+    return basis->loadings == NULL ||
+           (write_hash(file, "loadings_checksum", basis->loadings_checksum) &&
+            gonio_i_hdf_write_array(file, "loadings", 2, shape, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE,
+                                    basis->loadings));
+}
+
 static bool write_contents(hid_t file, const gonio_basis *basis, const char *command)
 {
     const size_t scales = GONIO_CHANNELS;
     const double scale[GONIO_CHANNELS] = {gonio_log_scale(0), gonio_log_scale(1),
                                           gonio_log_scale(2)};
     const size_t shape[2] = {basis->rows, basis->components};
-    char fingerprint[32];
-    char checksum[32];
-    snprintf(fingerprint, sizeof fingerprint, "%016" PRIx64, basis->fingerprint);
-    snprintf(checksum, sizeof checksum, "%016" PRIx64, basis->checksum);
     return gonio_i_hdf_write_string(file, "format", format_name) &&
            gonio_i_hdf_write_number(file, "format_version", FORMAT_VERSION) &&
            gonio_i_hdf_write_string(file, "program", basis->program) &&
            gonio_i_hdf_write_string(file, "command", command != NULL ? command : "") &&
-           gonio_i_hdf_write_string(file, "fingerprint", fingerprint) &&
-           gonio_i_hdf_write_string(file, "checksum", checksum) && write_grid(file, basis) &&
-           write_materials(file, basis) &&
+           gonio_i_hdf_write_string(file, "mapping", mappings[basis->mapping]) &&
+           gonio_i_hdf_write_string(file, "centring", centrings[basis->without_mean]) &&
+           write_hash(file, "fingerprint", basis->fingerprint) &&
+           write_hash(file, "checksum", basis->checksum) && write_grid(file, basis) &&
+           write_materials(file, basis) && write_loadings(file, basis) &&
            gonio_i_hdf_write_array(file, "log_scale", 1, &scales, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE,
                                    scale) &&
            gonio_i_hdf_write_array(file, "mean", 1, &basis->rows, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE,
@@ -123,12 +140,12 @@ typedef struct contents {
     gonio_context *context;
     const char *path;
     hid_t file;
-    int64_t representation, channels;
-    void *cell, *mean, *vectors, *variances, *fingerprints;
+    int64_t representation, channels, mapping, without_mean;
+    void *cell, *mean, *vectors, *variances, *loadings, *fingerprints;
     size_t cells, rows, components, variance_count, materials;
     char **names;
     char *program, *command;
-    uint64_t fingerprint, checksum;
+    uint64_t fingerprint, checksum, loadings_checksum;
 } contents;
 
 static gonio_status damaged(const contents *c, const char *what, const char *problem)
@@ -149,6 +166,20 @@ static gonio_status read_word(const contents *c, hid_t parent, const char *name,
     }
     free(text);
     return *value >= 0 ? GONIO_OK : damaged(c, name, "is missing or unknown");
+}
+
+/* What a file of gonio 0.1.0 does not say: then it is the first of the words. */
+static gonio_status read_new_word(const contents *c, const char *name, const char *const words[2],
+                                  int64_t *value)
+{
+    *value = 0;
+    return H5Aexists(c->file, name) > 0 ? read_word(c, c->file, name, words, value) : GONIO_OK;
+}
+
+static gonio_status read_space(contents *c)
+{
+    const gonio_status status = read_new_word(c, "mapping", mappings, &c->mapping);
+    return status == GONIO_OK ? read_new_word(c, "centring", centrings, &c->without_mean) : status;
 }
 
 static gonio_status read_grid(contents *c)
@@ -293,9 +324,29 @@ static gonio_status read_hash(const contents *c, const char *name, uint64_t *val
     return status;
 }
 
+/* W, which files of gonio 0.1.0 lack. */
+static gonio_status read_loadings(contents *c)
+{
+    const size_t columns = gonio_i_basis_columns(c->materials, (gonio_channel_model)c->channels);
+    size_t shape[2] = {0, 0};
+    if (H5Lexists(c->file, "loadings", H5P_DEFAULT) <= 0) {
+        return GONIO_OK;
+    }
+    const char *problem = gonio_i_hdf_read_array(c->file, "loadings", 2, columns * c->components,
+                                                 H5T_NATIVE_DOUBLE, &c->loadings, shape);
+    if (problem == NULL && (shape[0] != columns || shape[1] != c->components)) {
+        problem = "has a shape that does not fit the materials and the components";
+    }
+    return problem != NULL ? damaged(c, "loadings", problem)
+                           : read_hash(c, "loadings_checksum", &c->loadings_checksum);
+}
+
 static gonio_status read_contents(contents *c)
 {
     gonio_status status = check_kind(c);
+    if (status == GONIO_OK) {
+        status = read_space(c);
+    }
     if (status == GONIO_OK) {
         status = read_grid(c);
     }
@@ -307,6 +358,9 @@ static gonio_status read_contents(contents *c)
     }
     if (status == GONIO_OK) {
         status = read_numbers(c);
+    }
+    if (status == GONIO_OK) {
+        status = read_loadings(c);
     }
     if (status == GONIO_OK) {
         status = read_text(c, "program", &c->program);
@@ -329,6 +383,7 @@ static void free_contents(contents *c)
     free(c->mean);
     free(c->vectors);
     free(c->variances);
+    free(c->loadings);
     free(c->fingerprints);
     free(c->names);
     free(c->program);
@@ -386,6 +441,10 @@ static gonio_status check_values(const contents *c)
         !all_finite(c->variances, c->variance_count)) {
         return damaged(c, "mean, components or variances", "holds a number that is not finite");
     }
+    const size_t columns = gonio_i_basis_columns(c->materials, (gonio_channel_model)c->channels);
+    if (c->loadings != NULL && !all_finite(c->loadings, columns * c->components)) {
+        return damaged(c, "loadings", "holds a number that is not finite");
+    }
     return check_orthonormal(c);
 }
 
@@ -412,6 +471,8 @@ static gonio_status assemble(contents *c, gonio_basis **basis)
     *made = (gonio_basis){
         .representation = (gonio_representation)c->representation,
         .channels = (gonio_channel_model)c->channels,
+        .mapping = (gonio_mapping)c->mapping,
+        .without_mean = c->without_mean != 0,
         .materials = c->materials,
         .names = gonio_i_allocate(c->context, c->materials, sizeof *made->names),
         .fingerprints = take(&c->fingerprints),
@@ -423,6 +484,7 @@ static gonio_status assemble(contents *c, gonio_basis **basis)
         .vectors = take(&c->vectors),
         .variance_count = c->variance_count,
         .variances = take(&c->variances),
+        .loadings = take(&c->loadings),
         .program = c->program,
         .command = c->command,
     };
@@ -439,6 +501,9 @@ static gonio_status assemble(contents *c, gonio_basis **basis)
     }
     if (status == GONIO_OK) {
         status = check_hash(c, "fingerprint", c->fingerprint, made->fingerprint);
+    }
+    if (status == GONIO_OK) {
+        status = check_hash(c, "loadings_checksum", c->loadings_checksum, made->loadings_checksum);
     }
     if (status != GONIO_OK) {
         gonio_basis_free(&made);

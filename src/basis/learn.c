@@ -44,7 +44,7 @@ void gonio_basis_options_default(gonio_basis_options *options)
 /* What a thread works on. */
 typedef struct workspace {
     float *values; /* a tile, [column][row] */
-    double *h;     /* the same, less the mean of each row */
+    double *h;     /* the same, less m */
     double *part;  /* of a sum over tiles, [columns][columns] */
 } workspace;
 
@@ -88,21 +88,63 @@ GONIO_I_VECTORISED static void subtract_means(const float *values, size_t rows, 
     }
 }
 
-/* Reads a tile and takes the mean of each row out of it. */
+static int compare_values(const void *a, const void *b)
+{
+    const double x = *(const double *)a;
+    const double y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* The middle value of sorted g = ln(1 + x), or of two middle ones the g of the mean of their x. */
+static double median_of(const double *sorted, size_t count)
+{
+    const double upper = sorted[count / 2];
+    if (count % 2 == 1) {
+        return upper;
+    }
+    return log1p(0.5 * (expm1(sorted[count / 2 - 1]) + expm1(upper)));
+}
+
+/* Of each row; `row` is scratch of `columns` values. */
+static void find_medians(const float *values, size_t rows, size_t columns, double *row,
+                         double *median)
+{
+    for (size_t i = 0; i < rows; i++) {
+        for (size_t j = 0; j < columns; j++) {
+            row[j] = (double)values[j * rows + i];
+        }
+        qsort(row, columns, sizeof *row, compare_values);
+        median[i] = median_of(row, columns);
+    }
+}
+
+/* m of a tile's rows; without mean and relation it is 0, as allocated. */
+static void find_origin(const learner *l, gonio_i_row_range rows, const workspace *w)
+{
+    double *mean = l->basis->mean + rows.first;
+    if (!l->basis->without_mean) {
+        find_means(w->values, rows.count, l->columns, mean);
+    } else if (l->basis->mapping == GONIO_LOG_RELATIVE) {
+        find_medians(w->values, rows.count, l->columns, w->h, mean);
+    }
+}
+
+/* Reads a tile and takes m out of it, which the first pass finds. */
 static gonio_status read_centred(const learner *l, size_t tile, gonio_i_row_range rows,
-                                 const workspace *w)
+                                 const workspace *w, bool first_pass)
 {
     const gonio_status status = gonio_i_database_read_tile(l->database, l->context, tile, l->subset,
                                                            l->materials, w->values);
     if (status == GONIO_OK) {
-        double *mean = l->basis->mean + rows.first;
-        find_means(w->values, rows.count, l->columns, mean);
-        subtract_means(w->values, rows.count, l->columns, mean, w->h);
+        if (first_pass) {
+            find_origin(l, rows, w);
+        }
+        subtract_means(w->values, rows.count, l->columns, l->basis->mean + rows.first, w->h);
     }
     return status;
 }
 
-/* One turn's work on one tile: adds to w->part. */
+/* One turn's work on one tile: adds to w->part. p is NULL in the first pass. */
 typedef gonio_status tile_work(const learner *l, gonio_i_row_range rows, const workspace *w,
                                const double *p);
 
@@ -116,7 +158,7 @@ static gonio_status work_turn(const learner *l, tile_work *work, size_t turn, co
     for (size_t tile = first; tile < end && status == GONIO_OK; tile++) {
         const gonio_i_row_range rows = gonio_i_database_tile_rows(l->database, tile);
         if (rows.count > 0) {
-            status = read_centred(l, tile, rows, w);
+            status = read_centred(l, tile, rows, w, p == NULL);
             status = status == GONIO_OK ? work(l, rows, w, p) : status;
         }
     }
@@ -282,31 +324,33 @@ static gonio_status fix_signs(const learner *l)
                           sign);
         }
     }
+    scale_columns(basis->loadings, l->columns, k, sign);
     free(largest);
     return GONIO_OK;
 }
 
-/* From the eigenvalues (ascending) and eigenvectors (rows) of G: the variances and P = W S^-1. */
+/* From the eigenvalues (ascending) and eigenvectors (rows) of G: the variances, W and P = W S^-1.
+ */
 static gonio_status split_gram(const learner *l, const double *w, const double *values, double *p)
 {
     const size_t n = l->columns;
     const size_t k = l->basis->components;
     const double noise = values[n - 1] * 1e-13 * (double)n;
     size_t rank = 0;
-    for (size_t j = 0; j < n - 1; j++) {
+    for (size_t j = 0; j < l->basis->variance_count; j++) {
         const double value = fmax(values[n - 1 - j], 0.0);
         l->basis->variances[j] = value / (double)(n - 1);
         rank += value > noise;
     }
     if (rank < k) {
-        return gonio_i_fail(
-            l->context, GONIO_ERROR_DATA,
-            "the materials span only %zu dimensions around their mean, %zu components "
-            "were asked for; are some of them copies of others?",
-            rank, k);
+        return gonio_i_fail(l->context, GONIO_ERROR_DATA,
+                            "the materials span only %zu dimensions%s, %zu components "
+                            "were asked for; are some of them copies of others?",
+                            rank, l->basis->without_mean ? "" : " around their mean", k);
     }
     for (size_t j = 0; j < k; j++) {
         for (size_t i = 0; i < n; i++) {
+            l->basis->loadings[i * k + j] = w[(n - 1 - j) * n + i];
             p[i * k + j] = w[(n - 1 - j) * n + i] / sqrt(values[n - 1 - j]);
         }
     }
@@ -348,6 +392,7 @@ static gonio_status describe_origin(const learner *l)
 {
     gonio_basis *basis = l->basis;
     basis->representation = l->view.representation;
+    basis->mapping = l->view.mapping;
     memcpy(basis->cell, l->view.cell, basis->cells * sizeof *basis->cell);
     basis->program = gonio_i_format("gonio %s", gonio_version());
     bool done = basis->program != NULL;
@@ -376,22 +421,23 @@ static gonio_status learn(const learner *l)
 }
 
 /* K: what was asked for, or as many as the default and the columns allow. */
-static gonio_status choose_components(gonio_context *context, size_t columns, size_t asked,
-                                      size_t *components)
+static gonio_status choose_components(gonio_context *context, size_t columns,
+                                      const gonio_basis_options *options, size_t *components)
 {
+    const size_t asked = options->components;
+    const size_t most = options->without_mean ? columns : columns - 1;
     if (columns < 2) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
                             "a basis needs at least 2 materials, there is %zu", columns);
     }
-    if (asked > columns - 1) {
+    if (asked > most) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
                             "%zu components asked for, but %zu columns give at most %zu; add "
                             "materials or ask for fewer components",
-                            asked, columns, columns - 1);
+                            asked, columns, most);
     }
-    const size_t most =
-        columns - 1 < GONIO_DEFAULT_COMPONENTS ? columns - 1 : GONIO_DEFAULT_COMPONENTS;
-    *components = asked > 0 ? asked : most;
+    const bool all = options->without_mean || most < GONIO_DEFAULT_COMPONENTS;
+    *components = asked > 0 ? asked : all ? most : GONIO_DEFAULT_COMPONENTS;
     return GONIO_OK;
 }
 
@@ -406,7 +452,7 @@ gonio_status gonio_basis_learn(gonio_context *context, const gonio_database *dat
     l.materials = l.subset != NULL ? options->subset_count : l.view.materials;
     l.columns = l.view.columns / l.view.materials * l.materials;
     size_t components = 0;
-    gonio_status status = choose_components(context, l.columns, options->components, &components);
+    gonio_status status = choose_components(context, l.columns, options, &components);
     if (status != GONIO_OK) {
         return status;
     }
@@ -415,10 +461,11 @@ gonio_status gonio_basis_learn(gonio_context *context, const gonio_database *dat
     size_t finished = 0;
     l.finished = &finished;
     l.basis = gonio_i_basis_allocate(context, l.materials, l.view.cells, l.view.channels,
-                                     components, l.columns - 1);
+                                     components, options->without_mean ? l.columns : l.columns - 1);
     if (l.basis == NULL) {
         return GONIO_ERROR_MEMORY;
     }
+    l.basis->without_mean = options->without_mean;
     l.context = gonio_i_team_begin(context);
     status = learn(&l);
     gonio_i_team_end(l.context, context);

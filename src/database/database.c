@@ -44,6 +44,7 @@ struct gonio_database {
     cell_tile *tile;                           /* [tiles + 1], the last one empty */
     size_t slab_tiles[GONIO_THETA_H_BINS + 1]; /* the first tile of each slab */
     uint8_t first_phi[GONIO_CELLS];            /* grid.h */
+    double inverse_scale[GONIO_CHANNELS];      /* 1/s, of values already divided by a bin's own s */
     size_t cells;
     int32_t *cell; /* those of `stored` that are kept */
 };
@@ -69,6 +70,15 @@ static size_t tile_cells(const gonio_database *database)
 {
     const size_t cells = TILE_VALUES / (GONIO_CHANNELS * database->materials);
     return cells < SMALLEST_TILE ? SMALLEST_TILE : cells > LARGEST_TILE ? LARGEST_TILE : cells;
+}
+
+/* 1/s of the channels; bins with a scale of their own are divided by it before. */
+static void find_scales(gonio_database *database)
+{
+    for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
+        database->inverse_scale[channel] =
+            database->options.mapping == GONIO_LOG ? 1.0 / gonio_log_scale(channel) : 1.0;
+    }
 }
 
 static void find_valid_bins(gonio_database *database)
@@ -109,6 +119,7 @@ static gonio_status lay_out(gonio_context *context, gonio_database *database)
     if (database->stored == NULL || database->tile == NULL) {
         return GONIO_ERROR_MEMORY;
     }
+    find_scales(database);
     find_valid_bins(database);
     size_t first = 0;
     for (int theta_h = 0; theta_h < GONIO_THETA_H_BINS; theta_h++) {
@@ -137,6 +148,7 @@ static off_t tile_offset(const gonio_database *database, const cell_tile *t, siz
 /* What one thread needs to read materials. */
 typedef struct reader {
     double *rho;   /* one slab */
+    double *scale; /* of its bins, where each has its own */
     double *g;     /* its stored cells in log space: [cell][channel] or [channel][cell] */
     bool *data;    /* [cell] of the slab */
     float *rows;   /* a tile's part of the scratch file */
@@ -146,16 +158,20 @@ typedef struct reader {
 static bool make_reader(gonio_context *context, const gonio_database *database, reader *r)
 {
     r->rho = gonio_i_allocate(context, GONIO_SLAB_VALUES, sizeof *r->rho);
+    const bool relative = database->options.mapping == GONIO_LOG_RELATIVE;
+    r->scale = gonio_i_allocate(context, relative ? GONIO_SLAB_BINS : 1, sizeof *r->scale);
     r->g = gonio_i_allocate(context, GONIO_SLAB_VALUES, sizeof *r->g);
     r->data = gonio_i_allocate(context, GONIO_SLAB_BINS, sizeof *r->data);
     r->rows = gonio_i_allocate(context, GONIO_CHANNELS * tile_cells(database), sizeof *r->rows);
     r->seen = gonio_i_allocate(context, database->stored_count, sizeof *r->seen);
-    return r->rho != NULL && r->g != NULL && r->data != NULL && r->rows != NULL && r->seen != NULL;
+    return r->rho != NULL && r->scale != NULL && r->g != NULL && r->data != NULL &&
+           r->rows != NULL && r->seen != NULL;
 }
 
 static void free_reader(reader *r)
 {
     free(r->rho);
+    free(r->scale);
     free(r->g);
     free(r->data);
     free(r->rows);
@@ -172,6 +188,16 @@ GONIO_I_VECTORISED static void scale_run(const double *rho, size_t count, double
 {
     for (size_t k = 0; k < count; k++) {
         x[k] = rho[k] > 0.0 ? rho[k] * factor : 0.0;
+    }
+}
+
+/* Divides a slab by the scale of each bin; what holds no data stays below 0. */
+GONIO_I_VECTORISED static void divide_slab(const double *scale, double *rho)
+{
+    for (size_t plane = 0; plane < GONIO_SLAB_VALUES; plane += GONIO_SLAB_BINS) {
+        for (size_t k = 0; k < GONIO_SLAB_BINS; k++) {
+            rho[plane + k] /= scale[k];
+        }
     }
 }
 
@@ -192,7 +218,7 @@ static strides full_rows(const gonio_database *database, int theta_h, const read
         const double *rho = r->rho + d * GONIO_PHI_D_BINS + first;
         find_data(rho, length, r->data + count);
         for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
-            scale_run(rho + channel * GONIO_SLAB_BINS, length, 1.0 / gonio_log_scale((int)channel),
+            scale_run(rho + channel * GONIO_SLAB_BINS, length, database->inverse_scale[channel],
                       r->g + channel * GONIO_SLAB_BINS + count);
         }
         count += length;
@@ -207,7 +233,8 @@ static strides full_rows(const gonio_database *database, int theta_h, const read
 /* The cells of a slab of the bivariate grid, [cell][channel]. */
 static strides bivariate_rows(const gonio_database *database, int theta_h, const reader *r)
 {
-    gonio_i_slab_mean(database->first_phi + (size_t)theta_h * GONIO_THETA_D_BINS, r->rho, r->g);
+    gonio_i_slab_mean(database->first_phi + (size_t)theta_h * GONIO_THETA_D_BINS, r->rho,
+                      database->inverse_scale, r->g);
     for (size_t k = 0; k < GONIO_THETA_D_BINS; k++) {
         r->data[k] = !isnan(r->g[k * GONIO_CHANNELS]);
     }
@@ -271,6 +298,10 @@ static gonio_status read_slab(gonio_context *context, const gonio_database *data
         return status;
     }
     gonio_fingerprint_add(fingerprint, r->rho, GONIO_SLAB_VALUES * sizeof *r->rho);
+    if (database->options.mapping == GONIO_LOG_RELATIVE) {
+        gonio_slab_scale(GONIO_LOG_RELATIVE, 0, theta_h, r->scale);
+        divide_slab(r->scale, r->rho);
+    }
     const strides step = database->options.representation == GONIO_BIVARIATE
                              ? bivariate_rows(database, theta_h, r)
                              : full_rows(database, theta_h, r);
@@ -498,6 +529,7 @@ gonio_database_view gonio_database_describe(const gonio_database *database)
     return (gonio_database_view){
         .representation = database->options.representation,
         .channels = database->options.channels,
+        .mapping = database->options.mapping,
         .materials = database->materials,
         .names = (const char *const *)database->names,
         .fingerprints = database->fingerprints,

@@ -50,16 +50,17 @@ GONIO_I_VECTORISED static int count_data(const double *rho, int first, int last)
 }
 
 /* The plain way, for factors that might overflow a product. */
-static double sum_logs(const double *rho, int first, int last, int channel)
+static double sum_logs(const double *rho, int first, int last, double inverse_scale)
 {
     double sum = 0.0;
     for (int p = first; p < last; p++) {
-        sum += gonio_log_from_brdf(fmax(rho[p], 0.0), channel);
+        sum += log1p(fmax(rho[p], 0.0) * inverse_scale);
     }
     return sum;
 }
 
-void gonio_i_slab_mean(const uint8_t *first_phi, const double *rho, double *mean)
+void gonio_i_slab_mean(const uint8_t *first_phi, const double *rho,
+                       const double inverse_scale[GONIO_CHANNELS], double *mean)
 {
     double lanes[LANE_ROWS][LANES];
     double rest[LANE_ROWS] = {0}; /* sums made the plain way */
@@ -72,9 +73,8 @@ void gonio_i_slab_mean(const uint8_t *first_phi, const double *rho, double *mean
         for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
             const double *values = row + (size_t)channel * GONIO_SLAB_BINS;
             const int k = theta_d * GONIO_CHANNELS + channel;
-            const double inverse_scale = 1.0 / gonio_log_scale(channel);
-            if (!multiply(values, first, last, inverse_scale, lanes[k])) {
-                rest[k] = sum_logs(values, first, last, channel);
+            if (!multiply(values, first, last, inverse_scale[channel], lanes[k])) {
+                rest[k] = sum_logs(values, first, last, inverse_scale[channel]);
                 for (int l = 0; l < LANES; l++) {
                     lanes[k][l] = 1.0;
                 }

@@ -99,6 +99,17 @@ gonio_status gonio_i_product_transposed(gonio_context *context, const double *a,
     return status;
 }
 
+gonio_status gonio_i_product_rows(gonio_context *context, const double *a, size_t rows, size_t k,
+                                  size_t leading, const double *b, size_t n, double *c)
+{
+    const gonio_status status = check_size(context, rows, n > leading ? n : leading);
+    if (status == GONIO_OK) {
+        cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasTrans, (int)rows, (int)n, (int)k, 1.0, a,
+                    (int)leading, b, (int)k, 0.0, c, (int)n);
+    }
+    return status;
+}
+
 gonio_status gonio_i_eigen(gonio_context *context, double *a, size_t n, bool vectors,
                            double *values)
 {

@@ -33,8 +33,13 @@ void gonio_readings_free(gonio_readings **readings)
 
 gonio_readings_view gonio_readings_describe(const gonio_readings *readings)
 {
-    return (gonio_readings_view){readings->count, readings->reading, readings->path,
-                                 readings->basis, readings->components};
+    const char *method = gonio_i_csv_note(readings->csv, "method");
+    return (gonio_readings_view){.count = readings->count,
+                                 .reading = readings->reading,
+                                 .path = readings->path,
+                                 .basis = readings->basis,
+                                 .components = readings->components,
+                                 .method = method != NULL ? method : ""};
 }
 
 /* ---- same directions ---- */

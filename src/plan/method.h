@@ -21,6 +21,7 @@ typedef struct gonio_i_selection_problem {
     const char *start;   /* a name that start.h knows */
     const size_t *given; /* [count] or NULL: rows to start from instead; may be the result's */
     bool part;           /* of the work on another problem, which reports the progress */
+    const gonio_basis_view *basis; /* whose rows V has; NULL for rows that come from elsewhere */
 } gonio_i_selection_problem;
 
 static inline const double *gonio_i_row(const gonio_i_selection_problem *problem, size_t row)
@@ -46,6 +47,9 @@ typedef struct gonio_i_method {
 
 extern const gonio_i_method gonio_i_condition_method;
 extern const gonio_i_method gonio_i_random_method;
+extern const gonio_i_method gonio_i_matusik_method;
+extern const gonio_i_method gonio_i_nielsen_method;
+extern const gonio_i_method gonio_i_frost_method;
 
 /* Appends to the history, if it is kept. */
 gonio_status gonio_i_selection_record(const gonio_i_selection_problem *problem,
@@ -62,6 +66,16 @@ gonio_status gonio_i_chosen_gram(const gonio_i_selection_problem *problem, const
 /* The condition number of a choice. */
 gonio_status gonio_i_chosen_condition(const gonio_i_selection_problem *problem,
                                       const size_t *chosen, double *condition_number);
+
+/* A row of V S (K values) of the problem's basis. */
+void gonio_i_scaled_row(const gonio_i_selection_problem *problem, size_t row, double *scaled);
+
+/* The condition number of a choice among the rows of V S. */
+gonio_status gonio_i_scaled_condition(const gonio_i_selection_problem *problem,
+                                      const size_t *chosen, double *condition_number);
+
+/* Ascending. */
+void gonio_i_sort_rows(size_t *rows, size_t count);
 
 /* A random choice without repeats, ascending. */
 gonio_status gonio_i_random_choice(const gonio_i_selection_problem *problem, uint64_t stream,

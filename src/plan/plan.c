@@ -12,26 +12,50 @@
 #include "method.h"
 #include "start.h"
 
-static const gonio_i_method *const methods[] = {
-    &gonio_i_condition_method,
-    &gonio_i_random_method,
+/* The methods, and what their plans are made for. */
+static const struct {
+    const gonio_i_method *method;
+    const char *reconstruction; /* reconstruct.h */
+    bool few_components;        /* no more components than readings */
+} methods[] = {
+    {&gonio_i_condition_method, "least-squares", false},
+    {&gonio_i_random_method, "least-squares", false},
+    {&gonio_i_matusik_method, "least-squares", false},
+    {&gonio_i_nielsen_method, "ridge", true},
+    {&gonio_i_frost_method, "ridge", true},
 };
 
 enum { METHODS = sizeof methods / sizeof *methods };
 
 const char *gonio_plan_method_name(int index)
 {
-    return index >= 0 && index < METHODS ? methods[index]->name : NULL;
+    return index >= 0 && index < METHODS ? methods[index].method->name : NULL;
 }
 
 const char *gonio_plan_method_summary(int index)
 {
-    return index >= 0 && index < METHODS ? methods[index]->summary : NULL;
+    return index >= 0 && index < METHODS ? methods[index].method->summary : NULL;
+}
+
+/* Its place in the table; METHODS if there is none. */
+static int find_method(const char *name)
+{
+    int k = 0;
+    while (k < METHODS && strcmp(methods[k].method->name, name) != 0) {
+        k++;
+    }
+    return k;
+}
+
+const char *gonio_plan_method_reconstruction(const char *method)
+{
+    const int k = find_method(method);
+    return k < METHODS ? methods[k].reconstruction : NULL;
 }
 
 void gonio_plan_options_default(gonio_plan_options *options)
 {
-    *options = (gonio_plan_options){.method = methods[0]->name,
+    *options = (gonio_plan_options){.method = methods[0].method->name,
                                     .count = 80,
                                     .restarts = 5,
                                     .keep_history = true,
@@ -109,24 +133,58 @@ gonio_status gonio_i_chosen_condition(const gonio_i_selection_problem *problem,
     return status;
 }
 
-/* ---- selecting ---- */
+/* ---- rows of V S ---- */
 
-static const gonio_i_method *find_method(const char *name)
+void gonio_i_scaled_row(const gonio_i_selection_problem *problem, size_t row, double *scaled)
 {
-    for (int k = 0; k < METHODS; k++) {
-        if (strcmp(methods[k]->name, name) == 0) {
-            return methods[k];
-        }
+    const double *v = gonio_i_row(problem, row);
+    for (size_t k = 0; k < problem->components; k++) {
+        scaled[k] = v[k] * gonio_basis_singular_value(problem->basis, k);
     }
-    return NULL;
 }
+
+gonio_status gonio_i_scaled_condition(const gonio_i_selection_problem *problem,
+                                      const size_t *chosen, double *condition_number)
+{
+    const size_t k = problem->components;
+    double *rows = gonio_i_allocate(problem->context, problem->count * k, sizeof *rows);
+    size_t *all = gonio_i_allocate(problem->context, problem->count, sizeof *all);
+    gonio_status status = rows == NULL || all == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    for (size_t j = 0; j < problem->count && status == GONIO_OK; j++) {
+        gonio_i_scaled_row(problem, chosen[j], rows + j * k);
+        all[j] = j;
+    }
+    if (status == GONIO_OK) {
+        gonio_i_selection_problem scaled = *problem;
+        scaled.vectors = rows;
+        scaled.stride = k;
+        status = gonio_i_chosen_condition(&scaled, all, condition_number);
+    }
+    free(rows);
+    free(all);
+    return status;
+}
+
+static int compare_rows(const void *a, const void *b)
+{
+    const size_t x = *(const size_t *)a;
+    const size_t y = *(const size_t *)b;
+    return (x > y) - (x < y);
+}
+
+void gonio_i_sort_rows(size_t *rows, size_t count)
+{
+    qsort(rows, count, sizeof *rows, compare_rows);
+}
+
+/* ---- selecting ---- */
 
 static gonio_status check_selection(gonio_context *context, size_t rows, size_t components,
                                     const gonio_plan_options *options)
 {
-    const gonio_i_method *method = find_method(options->method);
+    const int method = find_method(options->method);
     const size_t n = options->count;
-    if (method == NULL) {
+    if (method == METHODS) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "no selection method is called '%s'",
                             options->method);
     }
@@ -142,7 +200,7 @@ static gonio_status check_selection(gonio_context *context, size_t rows, size_t 
             context, GONIO_ERROR_ARGUMENT,
             "%zu readings asked for, but the basis has only %zu rows to choose from", n, rows);
     }
-    if (method->needs_full_rank && n < components) {
+    if (methods[method].method->needs_full_rank && n < components) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
                             "%zu readings cannot determine %zu coefficients: plan at least %zu "
                             "readings, or use fewer components (--basis %zu or less)",
@@ -155,26 +213,23 @@ static gonio_status check_selection(gonio_context *context, size_t rows, size_t 
     return GONIO_OK;
 }
 
-gonio_status gonio_plan_select(gonio_context *context, const double *vectors, size_t rows,
-                               size_t leading, size_t components, const gonio_plan_options *options,
-                               size_t *chosen, gonio_selection_report *report)
+/* Completes a problem and solves it. */
+static gonio_status select_rows(gonio_i_selection_problem *problem,
+                                const gonio_plan_options *options, size_t *chosen,
+                                gonio_selection_report *report)
 {
-    gonio_status status = check_selection(context, rows, components, options);
+    gonio_status status =
+        check_selection(problem->context, problem->rows, problem->components, options);
     if (status != GONIO_OK) {
         return status;
     }
-    const gonio_i_selection_problem problem = {.context = context,
-                                               .vectors = vectors,
-                                               .rows = rows,
-                                               .components = components,
-                                               .stride = leading,
-                                               .count = options->count,
-                                               .restarts = options->restarts,
-                                               .seed = options->seed,
-                                               .keep_history = options->keep_history,
-                                               .start = options->start};
+    problem->count = options->count;
+    problem->restarts = options->restarts;
+    problem->seed = options->seed;
+    problem->keep_history = options->keep_history;
+    problem->start = options->start;
     gonio_i_selection selection = {.chosen = chosen};
-    status = find_method(options->method)->select(&problem, &selection);
+    status = methods[find_method(options->method)].method->select(problem, &selection);
     if (status != GONIO_OK) {
         free(selection.history);
         return status;
@@ -182,6 +237,18 @@ gonio_status gonio_plan_select(gonio_context *context, const double *vectors, si
     *report = (gonio_selection_report){selection.condition_number, selection.tests, selection.steps,
                                        selection.history};
     return GONIO_OK;
+}
+
+gonio_status gonio_plan_select(gonio_context *context, const double *vectors, size_t rows,
+                               size_t leading, size_t components, const gonio_plan_options *options,
+                               size_t *chosen, gonio_selection_report *report)
+{
+    gonio_i_selection_problem problem = {.context = context,
+                                         .vectors = vectors,
+                                         .rows = rows,
+                                         .components = components,
+                                         .stride = leading};
+    return select_rows(&problem, options, chosen, report);
 }
 
 gonio_status gonio_condition_number(gonio_context *context, const double *vectors, size_t leading,
@@ -239,6 +306,16 @@ static void fill_entries(const gonio_basis_view *basis, const size_t *chosen, do
     }
 }
 
+void gonio_plan_rows(const gonio_plan *plan, const gonio_basis *basis, size_t *rows)
+{
+    const bool joint = gonio_basis_describe(basis).channels == GONIO_JOINT;
+    for (size_t j = 0; j < plan->count; j++) {
+        const gonio_plan_entry *entry = &plan->entries[j];
+        const size_t position = gonio_basis_position(basis, entry->cell);
+        rows[j] = joint ? GONIO_CHANNELS * position + (size_t)entry->channel : position;
+    }
+}
+
 static gonio_plan *allocate_plan(gonio_context *context, size_t count)
 {
     gonio_plan *made = gonio_i_allocate(context, 1, sizeof *made);
@@ -259,8 +336,13 @@ static gonio_status choose(gonio_context *context, const gonio_basis_view *basis
     gonio_selection_report report;
     gonio_status status = chosen == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
     if (status == GONIO_OK) {
-        status = gonio_plan_select(context, basis->vectors, basis->rows, basis->components,
-                                   plan->components, options, chosen, &report);
+        gonio_i_selection_problem problem = {.context = context,
+                                             .vectors = basis->vectors,
+                                             .rows = basis->rows,
+                                             .components = plan->components,
+                                             .stride = basis->components,
+                                             .basis = basis};
+        status = select_rows(&problem, options, chosen, &report);
     }
     if (status == GONIO_OK) {
         plan->condition_number = report.condition_number;
@@ -273,11 +355,22 @@ static gonio_status choose(gonio_context *context, const gonio_basis_view *basis
     return status;
 }
 
+/* K: as asked, or as many as the basis has and the method takes. */
+static size_t choose_components(const gonio_basis_view *basis, const gonio_plan_options *options)
+{
+    const int method = find_method(options->method);
+    const bool few = method < METHODS && methods[method].few_components;
+    const size_t asked = options->components > 0 ? options->components : basis->components;
+    const bool cut =
+        few && asked <= basis->components && options->count > 0 && options->count < asked;
+    return cut ? options->count : asked;
+}
+
 gonio_status gonio_plan_create(gonio_context *context, const gonio_basis *basis,
                                const gonio_plan_options *options, gonio_plan **plan)
 {
     const gonio_basis_view view = gonio_basis_describe(basis);
-    const size_t components = options->components > 0 ? options->components : view.components;
+    const size_t components = choose_components(&view, options);
     if (components > view.components) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
                             "%zu components asked for, but the basis has %zu; learn one with more "

@@ -46,15 +46,20 @@ GONIO_I_VECTORISED static void clamp(size_t n, double *g)
     }
 }
 
-/* rho = s (e^g - 1), clamped at 0, in place. A g beyond the range of numbers stays finite. */
-static void to_brdf(size_t n, double *g, int channel)
+/* scale (e^g - 1), clamped at 0, in place. A g beyond the range of numbers stays finite. */
+static void exponentiate(size_t n, double *g, double scale)
 {
-    const double scale = gonio_log_scale(channel);
     clamp(n, g);
     gonio_i_expm1(n, g, g);
     for (size_t k = 0; k < n; k++) {
         g[k] *= scale;
     }
+}
+
+/* Of a channel; 1 where each bin has a scale of its own, which comes later. */
+static double scale_of(const reconstructed *r, int channel)
+{
+    return r->view.mapping == GONIO_LOG ? gonio_log_scale(channel) : 1.0;
 }
 
 /* Sets the bins first .. last - 1 of a row. */
@@ -78,7 +83,7 @@ static void spread_cells(const reconstructed *r, int theta_h, const int *first, 
         for (int theta_d = 0; theta_d < GONIO_THETA_D_BINS; theta_d++) {
             value[theta_d] = log_value(r, theta_d + GONIO_THETA_D_BINS * theta_h, (size_t)channel);
         }
-        to_brdf(GONIO_THETA_D_BINS, value, channel);
+        exponentiate(GONIO_THETA_D_BINS, value, scale_of(r, channel));
         for (int theta_d = 0; theta_d < GONIO_THETA_D_BINS; theta_d++) {
             fill(row_of(rho, channel, theta_d), first[theta_d], GONIO_PHI_D_BINS - first[theta_d],
                  value[theta_d]);
@@ -97,7 +102,23 @@ static void fill_bins(const reconstructed *r, int theta_h, const int *first, dou
             for (int p = first[theta_d]; p < last; p++) {
                 row[p] = log_value(r, cell * GONIO_PHI_D_BINS + p, (size_t)channel);
             }
-            to_brdf((size_t)(last - first[theta_d]), row + first[theta_d], channel);
+            exponentiate((size_t)(last - first[theta_d]), row + first[theta_d],
+                         scale_of(r, channel));
+        }
+    }
+}
+
+/* From e^g - 1 to rho where each bin has a scale of its own. */
+static void scale_bins(int theta_h, const int *first, double *rho)
+{
+    double scale[GONIO_SLAB_BINS];
+    gonio_slab_scale(GONIO_LOG_RELATIVE, 0, theta_h, scale);
+    for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
+        for (int theta_d = 0; theta_d < GONIO_THETA_D_BINS; theta_d++) {
+            double *row = row_of(rho, channel, theta_d);
+            for (int p = first[theta_d]; p < GONIO_PHI_D_BINS - first[theta_d]; p++) {
+                row[p] *= scale[theta_d * GONIO_PHI_D_BINS + p];
+            }
         }
     }
 }
@@ -125,6 +146,9 @@ static gonio_status read_reconstructed(void *self, gonio_context *context, int t
         spread_cells(r, theta_h, first, rho);
     } else {
         fill_bins(r, theta_h, first, rho);
+    }
+    if (r->view.mapping == GONIO_LOG_RELATIVE) {
+        scale_bins(theta_h, first, rho);
     }
     clear_invalid(first, rho);
     return GONIO_OK;
@@ -174,7 +198,8 @@ static gonio_status read_average(void *self, gonio_context *context, int theta_h
             rho[k] = data[k % GONIO_SLAB_BINS] ? statistics.mean[theta_d][channel] : 0.0;
         }
         for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
-            to_brdf(GONIO_SLAB_BINS, rho + (size_t)channel * GONIO_SLAB_BINS, channel);
+            exponentiate(GONIO_SLAB_BINS, rho + (size_t)channel * GONIO_SLAB_BINS,
+                         gonio_log_scale(channel));
         }
         for (size_t k = 0; k < GONIO_SLAB_VALUES; k++) {
             rho[k] = data[k % GONIO_SLAB_BINS] ? rho[k] : -1.0;

@@ -1,4 +1,4 @@
-/* Coefficients from readings: Ali et al., eq. (5), by QR. */
+/* Coefficients from readings: the table of methods, and the equations that they solve. */
 #include <gonio/reconstruct.h>
 
 #include <inttypes.h>
@@ -8,6 +8,7 @@
 
 #include "../linalg/linalg.h"
 #include "../measurement/readings.h"
+#include "method.h"
 
 void gonio_reconstruct_options_default(gonio_reconstruct_options *options)
 {
@@ -41,15 +42,15 @@ static gonio_reconstruction *allocate(gonio_context *context, const gonio_basis_
     return made;
 }
 
-/* The equations X c = b - m of one column. */
-typedef struct equations {
+/* Equations that are being gathered. */
+typedef struct gathered {
     const char *origin; /* the file of the readings and ": ", for messages; "" if there is none */
     size_t count;
     double *x; /* [count][components] */
-    double *b; /* [count]: readings in log space less the mean */
-} equations;
+    double *b; /* [count]: readings in log space less m */
+} gathered;
 
-static bool allocate_equations(gonio_context *context, size_t most, size_t components, equations *e)
+static bool allocate_equations(gonio_context *context, size_t most, size_t components, gathered *e)
 {
     e->origin = "";
     e->x = gonio_i_allocate(context, most * components, sizeof *e->x);
@@ -57,13 +58,13 @@ static bool allocate_equations(gonio_context *context, size_t most, size_t compo
     return e->x != NULL && e->b != NULL;
 }
 
-static void free_equations(equations *e)
+static void free_equations(gathered *e)
 {
     free(e->x);
     free(e->b);
 }
 
-static gonio_status undetermined(gonio_context *context, const equations *e, size_t rank,
+static gonio_status undetermined(gonio_context *context, const gathered *e, size_t rank,
                                  size_t needed, const char *channel)
 {
     if (rank == 0) {
@@ -81,7 +82,7 @@ static gonio_status undetermined(gonio_context *context, const equations *e, siz
 }
 
 /* Root mean square of X c - b. */
-static double residual_of(const equations *e, size_t components, const double *c)
+static double residual_of(const gathered *e, size_t components, const double *c)
 {
     double sum = 0.0;
     for (size_t i = 0; i < e->count; i++) {
@@ -94,29 +95,103 @@ static double residual_of(const equations *e, size_t components, const double *c
     return sqrt(sum / (double)e->count);
 }
 
-static gonio_status solve_column(gonio_context *context, const equations *e, size_t column,
+/* How to solve them. */
+typedef struct solver {
+    gonio_context *context;
+    const gonio_i_reconstruct_method *method;
+    double eta;
+    double *singular; /* [components] */
+} solver;
+
+static gonio_status solve_column(const solver *s, const gathered *e, size_t column,
                                  gonio_reconstruction *r)
 {
     static const char *const channels[GONIO_CHANNELS] = {" in R", " in G", " in B"};
     const size_t k = r->components;
-    double *c = r->coefficients + column * k;
-    size_t rank = 0;
-    double condition = INFINITY;
+    gonio_i_solution solution = {r->coefficients + column * k, 0, INFINITY};
     if (e->count > 0) {
-        const gonio_status status =
-            gonio_i_least_squares(context, e->x, e->count, k, e->b, 1, c, &rank, &condition);
+        const gonio_i_equations equations = {e->count, k, e->x, e->b, s->singular, s->eta};
+        const gonio_status status = s->method->solve(s->context, &equations, &solution);
         if (status != GONIO_OK) {
             return status;
         }
     }
-    if (rank < k) {
-        return undetermined(context, e, rank, k, r->columns > 1 ? channels[column] : "");
+    if (solution.rank < k) {
+        return undetermined(s->context, e, solution.rank, k,
+                            r->columns > 1 ? channels[column] : "");
     }
-    const double residual = residual_of(e, k, c);
+    const double residual = residual_of(e, k, solution.coefficients);
     r->readings = e->count;
-    r->condition_number = fmax(r->condition_number, condition);
+    r->condition_number = fmax(r->condition_number, solution.condition_number);
     r->residual = hypot(r->residual, residual / sqrt((double)r->columns));
     return GONIO_OK;
+}
+
+/* ---- methods ---- */
+
+static const gonio_i_reconstruct_method *const methods[] = {
+    &gonio_i_least_squares_method,
+    &gonio_i_ridge_method,
+};
+
+enum { METHODS = sizeof methods / sizeof *methods };
+
+static const double default_eta = 40.0;
+
+const char *gonio_reconstruct_method_name(int index)
+{
+    return index >= 0 && index < METHODS ? methods[index]->name : NULL;
+}
+
+const char *gonio_reconstruct_method_summary(int index)
+{
+    return index >= 0 && index < METHODS ? methods[index]->summary : NULL;
+}
+
+/* The method asked for, or that of the plan, or the first. */
+static const gonio_i_reconstruct_method *find_method(const char *asked, const char *plan)
+{
+    const char *planned = plan != NULL ? gonio_plan_method_reconstruction(plan) : NULL;
+    const char *name = asked != NULL ? asked : planned;
+    for (int k = 0; k < METHODS && name != NULL; k++) {
+        if (strcmp(methods[k]->name, name) == 0) {
+            return methods[k];
+        }
+    }
+    return name == NULL ? methods[0] : NULL;
+}
+
+/* All but the singular values; plan: the name of its method, or NULL. */
+static gonio_status choose_solver(gonio_context *context, const gonio_reconstruct_options *options,
+                                  const char *plan, solver *s)
+{
+    s->context = context;
+    s->method = find_method(options->method, plan);
+    s->eta = options->eta != 0.0 ? options->eta : default_eta;
+    if (s->method == NULL) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "no reconstruction method is called '%s'", options->method);
+    }
+    if (!(s->eta > 0.0 && isfinite(s->eta))) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "eta has to be a number above 0, not %g",
+                            s->eta);
+    }
+    return GONIO_OK;
+}
+
+/* As many components as the method takes where nobody says how many. */
+static size_t default_components(const solver *s, size_t readings, size_t available)
+{
+    return s->method->needs_full_rank || available < readings ? available : readings;
+}
+
+static gonio_status find_singular(solver *s, const gonio_basis_view *basis, size_t components)
+{
+    s->singular = gonio_i_allocate(s->context, components, sizeof *s->singular);
+    for (size_t k = 0; s->singular != NULL && k < components; k++) {
+        s->singular[k] = gonio_basis_singular_value(basis, k);
+    }
+    return s->singular != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
 }
 
 /* ---- from readings at directions ---- */
@@ -126,6 +201,8 @@ typedef struct task {
     const gonio_basis *basis;
     const gonio_readings *readings;
     const gonio_reconstruct_options *options;
+    gonio_mapping mapping;
+    solver solver;
 } task;
 
 /* Whether a reading's channel makes an equation, given what was planned. A direction that is listed
@@ -142,7 +219,7 @@ static bool is_used(const task *t, size_t index, int channel)
 }
 
 static gonio_status add_reading(const task *t, const gonio_reading *reading, int channel,
-                                size_t components, equations *e)
+                                size_t components, gathered *e)
 {
     const double value = reading->value[channel];
     if (isnan(value) && channel == reading->channel) {
@@ -155,15 +232,15 @@ static gonio_status add_reading(const task *t, const gonio_reading *reading, int
     if (isnan(value)) {
         return GONIO_OK;
     }
+    const gonio_half_difference at = gonio_half_difference_from_pair(reading->pair);
     double mean = 0.0;
-    gonio_basis_row_at(t->basis, gonio_half_difference_from_pair(reading->pair), channel,
-                       components, &mean, e->x + e->count * components);
-    e->b[e->count++] = gonio_log_from_brdf(value, channel) - mean;
+    gonio_basis_row_at(t->basis, at, channel, components, &mean, e->x + e->count * components);
+    e->b[e->count++] = gonio_mapped_from_brdf(t->mapping, value, channel, at) - mean;
     return GONIO_OK;
 }
 
 static gonio_status collect(const task *t, size_t column, bool joint, size_t components,
-                            equations *e)
+                            gathered *e)
 {
     gonio_status status = GONIO_OK;
     const int first = joint ? 0 : (int)column;
@@ -181,7 +258,7 @@ static gonio_status collect(const task *t, size_t column, bool joint, size_t com
 
 static gonio_status solve_readings(const task *t, gonio_reconstruction *r)
 {
-    equations e = {0};
+    gathered e = {0};
     gonio_status status = GONIO_ERROR_MEMORY;
     char *origin = gonio_i_format("%s: ", t->readings->path);
     if (allocate_equations(t->context, GONIO_CHANNELS * t->readings->count, r->components, &e) &&
@@ -192,7 +269,7 @@ static gonio_status solve_readings(const task *t, gonio_reconstruction *r)
     for (size_t column = 0; column < r->columns && status == GONIO_OK; column++) {
         status = collect(t, column, r->columns == 1, r->components, &e);
         if (status == GONIO_OK) {
-            status = solve_column(t->context, &e, column, r);
+            status = solve_column(&t->solver, &e, column, r);
         }
     }
     free_equations(&e);
@@ -206,7 +283,7 @@ static gonio_status choose_components(const task *t, size_t available, size_t *c
     const size_t planned = t->readings->components;
     size_t k = t->options->components;
     k = k > 0 ? k : planned;
-    k = k > 0 ? k : available;
+    k = k > 0 ? k : default_components(&t->solver, t->readings->count, available);
     if (t->options->components > available) {
         return gonio_i_fail(t->context, GONIO_ERROR_ARGUMENT,
                             "%zu components asked for, but the basis has %zu", k, available);
@@ -228,8 +305,12 @@ gonio_status gonio_reconstruct(gonio_context *context, const gonio_basis *basis,
 {
     gonio_reconstruct_options defaults;
     gonio_reconstruct_options_default(&defaults);
-    const task t = {context, basis, readings, options != NULL ? options : &defaults};
     const gonio_basis_view view = gonio_basis_describe(basis);
+    task t = {.context = context,
+              .basis = basis,
+              .readings = readings,
+              .options = options != NULL ? options : &defaults,
+              .mapping = view.mapping};
     if (readings->basis != 0 && readings->basis != view.fingerprint && !t.options->other_basis) {
         return gonio_i_fail(context, GONIO_ERROR_MISMATCH,
                             "%s: planned with another basis (%016" PRIx64
@@ -238,7 +319,11 @@ gonio_status gonio_reconstruct(gonio_context *context, const gonio_basis *basis,
                             readings->path, readings->basis, view.fingerprint);
     }
     size_t components = 0;
-    gonio_status status = choose_components(&t, view.components, &components);
+    gonio_status status =
+        choose_solver(context, t.options, gonio_readings_describe(readings).method, &t.solver);
+    if (status == GONIO_OK) {
+        status = choose_components(&t, view.components, &components);
+    }
     if (status != GONIO_OK) {
         return status;
     }
@@ -246,7 +331,11 @@ gonio_status gonio_reconstruct(gonio_context *context, const gonio_basis *basis,
     if (made == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    status = solve_readings(&t, made);
+    status = find_singular(&t.solver, &view, components);
+    if (status == GONIO_OK) {
+        status = solve_readings(&t, made);
+    }
+    free(t.solver.singular);
     if (status != GONIO_OK) {
         gonio_reconstruction_free(&made);
         return status;
@@ -257,14 +346,13 @@ gonio_status gonio_reconstruct(gonio_context *context, const gonio_basis *basis,
 
 /* ---- from rows of the basis ---- */
 
-static gonio_status solve_rows(gonio_context *context, const gonio_basis_view *basis,
-                               const size_t *rows, size_t count, const double *b,
-                               gonio_reconstruction *r)
+static gonio_status solve_rows(const solver *s, const gonio_basis_view *basis, const size_t *rows,
+                               size_t count, const double *b, gonio_reconstruction *r)
 {
-    equations e = {0};
+    gathered e = {0};
     const size_t k = r->components;
     gonio_status status = GONIO_ERROR_MEMORY;
-    if (allocate_equations(context, count, k, &e)) {
+    if (allocate_equations(s->context, count, k, &e)) {
         status = GONIO_OK;
     }
     for (size_t column = 0; column < r->columns && status == GONIO_OK; column++) {
@@ -273,31 +361,62 @@ static gonio_status solve_rows(gonio_context *context, const gonio_basis_view *b
             memcpy(e.x + i * k, basis->vectors + rows[i] * basis->components, k * sizeof *e.x);
             e.b[i] = b[column * count + i] - basis->mean[rows[i]];
         }
-        status = solve_column(context, &e, column, r);
+        status = solve_column(s, &e, column, r);
     }
     free_equations(&e);
     return status;
 }
 
-gonio_status gonio_reconstruct_rows(gonio_context *context, const gonio_basis *basis,
-                                    size_t components, const size_t *rows, size_t count,
-                                    const double *b, gonio_reconstruction **reconstruction)
+static gonio_status reconstruct_rows(solver *s, const gonio_basis *basis, size_t components,
+                                     const size_t *rows, size_t count, const double *b,
+                                     gonio_reconstruction **reconstruction)
 {
     const gonio_basis_view view = gonio_basis_describe(basis);
     if (components == 0 || components > view.components) {
-        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+        return gonio_i_fail(s->context, GONIO_ERROR_ARGUMENT,
                             "%zu components asked for, but the basis has %zu", components,
                             view.components);
     }
-    gonio_reconstruction *made = allocate(context, &view, components);
+    gonio_reconstruction *made = allocate(s->context, &view, components);
     if (made == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    const gonio_status status = solve_rows(context, &view, rows, count, b, made);
+    gonio_status status = find_singular(s, &view, components);
+    if (status == GONIO_OK) {
+        status = solve_rows(s, &view, rows, count, b, made);
+    }
+    free(s->singular);
     if (status != GONIO_OK) {
         gonio_reconstruction_free(&made);
         return status;
     }
     *reconstruction = made;
     return GONIO_OK;
+}
+
+gonio_status gonio_reconstruct_rows(gonio_context *context, const gonio_basis *basis,
+                                    size_t components, const size_t *rows, size_t count,
+                                    const double *b, gonio_reconstruction **reconstruction)
+{
+    solver s = {.context = context, .method = methods[0]};
+    return reconstruct_rows(&s, basis, components, rows, count, b, reconstruction);
+}
+
+gonio_status gonio_reconstruct_rows_with(gonio_context *context, const gonio_basis *basis,
+                                         const gonio_reconstruct_options *options,
+                                         const size_t *rows, size_t count, const double *b,
+                                         gonio_reconstruction **reconstruction)
+{
+    gonio_reconstruct_options defaults;
+    gonio_reconstruct_options_default(&defaults);
+    options = options != NULL ? options : &defaults;
+    solver s = {0};
+    const gonio_status status = choose_solver(context, options, NULL, &s);
+    if (status != GONIO_OK) {
+        return status;
+    }
+    const size_t available = gonio_basis_describe(basis).components;
+    const size_t components =
+        options->components > 0 ? options->components : default_components(&s, count, available);
+    return reconstruct_rows(&s, basis, components, rows, count, b, reconstruction);
 }

@@ -63,7 +63,8 @@ static gonio_status add_variances(gonio_context *context, const gonio_i_study *s
                                   const size_t *subset, size_t count, json_t *list)
 {
     gonio_basis *basis = NULL;
-    const gonio_basis_options options = {1, subset, count};
+    const gonio_basis_options options = {
+        .components = 1, .subset = subset, .subset_count = count};
     const gonio_status status =
         gonio_basis_learn(context, study->collection.database, &options, &basis);
     if (status != GONIO_OK) {
@@ -101,7 +102,7 @@ static gonio_status plan_for_all(gonio_context *context, const gonio_i_study *st
                                  gonio_i_size size, gonio_plan **plan)
 {
     gonio_basis *basis = NULL;
-    const gonio_basis_options learning = {size.components, NULL, 0};
+    const gonio_basis_options learning = {.components = size.components};
     gonio_plan_options planning;
     gonio_plan_options_default(&planning);
     planning.count = size.samples;

@@ -1,12 +1,16 @@
 /* The methods that Fig. 3(b) compares: see methods.h. */
 #include "methods.h"
 
-/* The paper's representation, learning and reconstruction. */
+/* The paper's representation. */
 #define PAPER(plan_method, index)                                                                  \
-    .representation = GONIO_BIVARIATE, .channels = GONIO_JOINT, .learn = gonio_basis_learn,        \
-    .plan = (plan_method), .solve = gonio_reconstruct_rows, .chosen = (index)
+    .representation = GONIO_BIVARIATE, .channels = GONIO_JOINT, .mapping = GONIO_LOG,              \
+    .plan = (plan_method), .chosen = (index)
 
-/* Name, label, what it learns, plan, reconstruction, size. */
+/* That of Nielsen et al., with directions of which every channel is read. */
+#define RELATIVE(plan_method, count)                                                               \
+    .representation = GONIO_FULL, .channels = GONIO_SEPARATE, .mapping = GONIO_LOG_RELATIVE,       \
+    .plan = (plan_method), .chosen = GONIO_I_OWN_SIZE, .size = {count, count}
+
 static const gonio_i_method_entry methods[] = {
     {.name = "condition-80", .label = "condition number", PAPER("condition", 0)},
     {.name = "condition-120", .label = "condition number", PAPER("condition", 1)},
@@ -14,6 +18,17 @@ static const gonio_i_method_entry methods[] = {
     {.name = "random-80", .label = "random rows", PAPER("random", 0)},
     {.name = "random-120", .label = "random rows", PAPER("random", 1)},
     {.name = "random-170", .label = "random rows", PAPER("random", 2)},
+    {.name = "matusik-800",
+     .label = "Matusik et al.",
+     .representation = GONIO_FULL,
+     .channels = GONIO_JOINT,
+     .mapping = GONIO_LOG,
+     .without_mean = true,
+     .plan = "matusik",
+     .chosen = GONIO_I_OWN_SIZE,
+     .size = {0, 800}},
+    {.name = "nielsen-40", .label = "Nielsen et al.", RELATIVE("nielsen", 40)},
+    {.name = "frost-40", .label = "FROST", RELATIVE("frost", 40)},
 };
 
 size_t gonio_i_methods(void)

@@ -4,13 +4,6 @@
 
 #include "study.h"
 
-/* As gonio_basis_learn and gonio_reconstruct_rows. */
-typedef gonio_status gonio_i_learn(gonio_context *context, const gonio_database *database,
-                                   const gonio_basis_options *options, gonio_basis **basis);
-typedef gonio_status gonio_i_solve(gonio_context *context, const gonio_basis *basis,
-                                   size_t components, const size_t *rows, size_t count,
-                                   const double *b, gonio_reconstruction **reconstruction);
-
 enum { GONIO_I_OWN_SIZE = -1 };
 
 typedef struct gonio_i_method_entry {
@@ -19,11 +12,11 @@ typedef struct gonio_i_method_entry {
     /* What it learns from, and how. */
     gonio_representation representation;
     gonio_channel_model channels;
-    gonio_i_learn *learn;
-    const char *plan; /* gonio_plan_method_name */
-    gonio_i_solve *solve;
+    gonio_mapping mapping;
+    bool without_mean;
+    const char *plan;  /* gonio_plan_method_name; reconstructed by what belongs to it */
     int chosen;        /* the size is the study's chosen[]; or GONIO_I_OWN_SIZE */
-    gonio_i_size size; /* then */
+    gonio_i_size size; /* then; 0 components: as many as there are */
 } gonio_i_method_entry;
 
 size_t gonio_i_methods(void);

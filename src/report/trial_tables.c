@@ -13,49 +13,27 @@ typedef struct trial {
     const gonio_plan *plan;
 } trial;
 
-/* g of a plan's entry in one channel; NaN where the material has no data. */
-static double reading(const trial *t, const gonio_table *table, const double *mean, int32_t cell,
-                      size_t channel)
+/* Whether the material has data in a cell. */
+static bool has_data(const trial *t, const gonio_table *table, const double *mean, int32_t cell)
 {
     if (t->view.representation == GONIO_BIVARIATE) {
-        return mean[(size_t)cell * GONIO_CHANNELS + channel];
+        return !isnan(mean[(size_t)cell * GONIO_CHANNELS]);
     }
     const size_t slab = (size_t)cell / GONIO_SLAB_BINS;
     const size_t bin = (size_t)cell % GONIO_SLAB_BINS;
-    const double rho =
-        gonio_table_values(table)[slab * GONIO_SLAB_VALUES + channel * GONIO_SLAB_BINS + bin];
-    return rho >= 0.0 ? gonio_log_from_brdf(rho, (int)channel) : NAN;
+    return gonio_table_values(table)[slab * GONIO_SLAB_VALUES + bin] >= 0.0;
 }
 
 /* The plan's rows where the material has data, and how many these are. */
-static size_t find_rows(const trial *t, const gonio_table *table, const double *mean,
-                        const gonio_plan_entry **entries, size_t *rows)
+static size_t find_rows(const trial *t, const gonio_table *table, const double *mean, size_t *rows)
 {
     size_t count = 0;
+    gonio_plan_rows(t->plan, t->basis, rows);
     for (size_t i = 0; i < t->plan->count; i++) {
-        const gonio_plan_entry *entry = &t->plan->entries[i];
-        const size_t position = gonio_basis_position(t->basis, entry->cell);
-        if (!isnan(reading(t, table, mean, entry->cell, 0))) {
-            rows[count] = t->view.channels == GONIO_JOINT
-                              ? position * GONIO_CHANNELS + (size_t)entry->channel
-                              : position;
-            entries[count++] = entry;
-        }
+        rows[count] = rows[i];
+        count += has_data(t, table, mean, t->plan->entries[i].cell);
     }
     return count;
-}
-
-/* b[column][count]. */
-static void read_values(const trial *t, const gonio_table *table, const double *mean,
-                        const gonio_plan_entry *const *entries, size_t count, double *b)
-{
-    const bool joint = t->view.channels == GONIO_JOINT;
-    for (size_t column = 0; column < (joint ? 1 : GONIO_CHANNELS); column++) {
-        for (size_t i = 0; i < count; i++) {
-            const size_t channel = joint ? (size_t)entries[i]->channel : column;
-            b[column * count + i] = reading(t, table, mean, entries[i]->cell, channel);
-        }
-    }
 }
 
 static gonio_status compare(const trial *t, const gonio_material *material,
@@ -75,33 +53,45 @@ static gonio_status compare(const trial *t, const gonio_material *material,
     return status;
 }
 
+static gonio_status reconstruct(const trial *t, const gonio_material *material, const size_t *rows,
+                                size_t count, gonio_reconstruction **made)
+{
+    gonio_reconstruct_options options;
+    gonio_reconstruct_options_default(&options);
+    options.components = t->plan->components;
+    options.method = gonio_plan_method_reconstruction(t->method->plan);
+    double *b = gonio_i_allocate(t->context, GONIO_CHANNELS * count, sizeof *b);
+    gonio_status status = b == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    if (status == GONIO_OK) {
+        status = gonio_material_rows(t->context, t->basis, material, rows, count, b);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_reconstruct_rows_with(t->context, t->basis, &options, rows, count, b, made);
+    }
+    free(b);
+    return status;
+}
+
 static gonio_status test_material(const trial *t, const gonio_material *material,
                                   const double *mean, gonio_error *error)
 {
     gonio_table *table = NULL;
     gonio_reconstruction *made = NULL;
-    const size_t most = t->plan->count;
-    const gonio_plan_entry **entries = gonio_i_allocate(t->context, most, sizeof *entries);
-    size_t *rows = gonio_i_allocate(t->context, most, sizeof *rows);
-    double *b = gonio_i_allocate(t->context, GONIO_CHANNELS * most, sizeof *b);
-    gonio_status status =
-        entries == NULL || rows == NULL || b == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    size_t *rows = gonio_i_allocate(t->context, t->plan->count, sizeof *rows);
+    gonio_status status = rows == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
     if (status == GONIO_OK && t->view.representation == GONIO_FULL) {
         status = gonio_table_load(t->context, material, &table);
     }
     if (status == GONIO_OK) {
-        const size_t count = find_rows(t, table, mean, entries, rows);
-        read_values(t, table, mean, entries, count, b);
-        status = t->method->solve(t->context, t->basis, t->size.components, rows, count, b, &made);
+        const size_t count = find_rows(t, table, mean, rows);
+        status = reconstruct(t, material, rows, count, &made);
     }
     if (status == GONIO_OK) {
         status = compare(t, material, made, error);
     }
     gonio_reconstruction_free(&made);
     gonio_table_free(&table);
-    free(entries);
     free(rows);
-    free(b);
     return status;
 }
 
@@ -126,8 +116,13 @@ static gonio_status learn(gonio_context *context, const gonio_i_collection *coll
                           const gonio_i_split *split, gonio_basis **basis)
 {
     const gonio_database_options how = {.representation = method->representation,
-                                        .channels = method->channels};
-    const gonio_basis_options options = {.components = size.components};
+                                        .channels = method->channels,
+                                        .mapping = method->mapping};
+    const size_t most = method->channels == GONIO_SEPARATE ? GONIO_CHANNELS * split->basis_count
+                                                           : split->basis_count;
+    const gonio_basis_options options = {.components =
+                                             size.components < most ? size.components : 0,
+                                         .without_mean = method->without_mean};
     gonio_database *database = NULL;
     const char **paths = gonio_i_allocate(context, split->basis_count, sizeof(char *));
     if (paths == NULL) {
@@ -139,7 +134,7 @@ static gonio_status learn(gonio_context *context, const gonio_i_collection *coll
     gonio_status status =
         gonio_database_create(context, paths, split->basis_count, &how, &database);
     if (status == GONIO_OK) {
-        status = method->learn(context, database, &options, basis);
+        status = gonio_basis_learn(context, database, &options, basis);
     }
     gonio_database_free(&database);
     free(paths);

@@ -74,6 +74,18 @@ expect_fail 1 "bad.gonio: 'components' is missing" info bad.gonio
 with variances varionces
 expect_fail 1 "bad.gonio: 'variances' is missing" info bad.gonio
 
+with centring contring
+expect_ok info bad.gonio
+expect_ok learn atlas:oak-sawn atlas:red-cotton --mapping relative --no-mean -o relative.gonio
+sed 's/relative\x00/relatove\x00/' relative.gonio >bad.gonio
+every_reader 1 "bad.gonio: 'mapping' is missing or unknown" bad.gonio
+sed 's/mapping\x00/mopping\x00/' relative.gonio >bad.gonio
+every_reader 1 "bad.gonio: 'checksum' does not fit the contents" bad.gonio
+sed 's/centring\x00/contring\x00/' relative.gonio >bad.gonio
+every_reader 1 "bad.gonio: 'checksum' does not fit the contents" bad.gonio
+with loadings_checksum loadings_chocksum
+every_reader 1 "bad.gonio: 'loadings_checksum' is missing" bad.gonio
+
 # A bit in the last third of the file is one of the components; a NaN there; a text fingerprint.
 fingerprint=$(gonio info good.gonio | sed -n 's/^ *fingerprint *//p')
 with "$fingerprint" 0123456789abcdef

@@ -67,6 +67,10 @@ expect_fail 2 "--grid: 'trivariate' is neither" \
     learn atlas:oak-sawn atlas:red-cotton --grid trivariate -o x.gonio
 expect_fail 2 "--channels: 'both' is neither" \
     learn atlas:oak-sawn atlas:red-cotton --channels both -o x.gonio
+expect_fail 2 "--mapping: 'cubic' is neither 'log' nor 'relative'" \
+    learn atlas:oak-sawn atlas:red-cotton --mapping cubic -o x.gonio
+expect_fail 2 '3 components asked for, but 2 columns give at most 2' \
+    learn atlas:oak-sawn atlas:red-cotton --no-mean -K 3 -o x.gonio
 expect_fail 2 "--without: no material is called 'steel'" \
     learn atlas:oak-sawn atlas:red-cotton --without steel -o x.gonio
 expect_fail 2 'no materials given' \

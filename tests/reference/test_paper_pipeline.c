@@ -236,7 +236,8 @@ static void open_split(size_t index, size_t components, split *s)
     for (size_t k = 0; k < s->tests; k++) {
         s->test[k] = index_of(json_string_value(json_array_get(test, k)));
     }
-    const gonio_basis_options options = {components, subset, json_array_size(basis)};
+    const gonio_basis_options options = {
+        .components = components, .subset = subset, .subset_count = json_array_size(basis)};
     assert_int_equal(gonio_basis_learn(data.context, data.database, &options, &s->basis), GONIO_OK);
     s->view = gonio_basis_describe(s->basis);
 }

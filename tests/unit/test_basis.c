@@ -29,7 +29,7 @@ static gonio_database *make_database(gonio_context *context, size_t count,
                                      gonio_representation representation,
                                      gonio_channel_model channels)
 {
-    const gonio_database_options options = {representation, channels, NULL};
+    const gonio_database_options options = {.representation = representation, .channels = channels};
     gonio_database *database = NULL;
     assert_int_equal(gonio_database_create(context, paths, count, &options, &database), GONIO_OK);
     return database;
@@ -209,7 +209,7 @@ static void test_nearly_dependent_columns(void **state)
         assert_int_equal(gonio_material_write_merl(NULL, material, names[k]), GONIO_OK);
         gonio_material_free(&material);
     }
-    const gonio_database_options options = {GONIO_BIVARIATE, GONIO_JOINT, NULL};
+    const gonio_database_options options = {.channels = GONIO_JOINT};
     gonio_database *database = NULL;
     assert_int_equal(gonio_database_create(NULL, files, 4, &options, &database), GONIO_OK);
     gonio_basis *basis = learn(NULL, database, 2);
@@ -375,7 +375,7 @@ static void assert_nearest(gonio_representation representation, const char *cons
                            int trials)
 {
     const bool full = representation == GONIO_FULL;
-    const gonio_database_options options = {representation, GONIO_JOINT, NULL};
+    const gonio_database_options options = {.representation = representation};
     gonio_database *database = NULL;
     assert_int_equal(gonio_database_create(NULL, files, 2, &options, &database), GONIO_OK);
     gonio_basis *basis = learn(NULL, database, 1);

@@ -19,7 +19,7 @@ static gonio_database *make_database(const char *const *files, size_t count,
                                      gonio_representation representation,
                                      gonio_channel_model channels)
 {
-    const gonio_database_options options = {representation, channels, NULL};
+    const gonio_database_options options = {.representation = representation, .channels = channels};
     gonio_database *database = NULL;
     assert_int_equal(gonio_database_create(NULL, files, count, &options, &database), GONIO_OK);
     return database;

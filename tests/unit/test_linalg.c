@@ -187,6 +187,15 @@ static void test_products(void **state)
         }
         assert_true(wide[i * LEADING + N] == 0.0);
     }
+    /* Rows that lie further apart than they are long. */
+    double turned[2 * N], again[ROWS * 2];
+    for (size_t k = 0; k < 2 * N; k++) {
+        turned[k] = b[k % N * 2 + k / N];
+    }
+    assert_int_equal(gonio_i_product_rows(NULL, a, ROWS, N, LEADING, turned, 2, again), GONIO_OK);
+    for (size_t k = 0; k < ROWS * 2; k++) {
+        assert_close(again[k], product[k], 1e-13);
+    }
 }
 
 static void test_dividing_by_cholesky_makes_columns_orthonormal(void **state)

@@ -26,7 +26,7 @@ static gonio_basis *learn(gonio_representation representation, gonio_channel_mod
     static const char *const paths[MATERIALS] = {
         "atlas:gold-polished", "atlas:red-glossy-plastic", "atlas:burgundy-velvet",
         "atlas:oak-sawn",      "atlas:plaster-cast",       "atlas:steel-brushed"};
-    const gonio_database_options how = {representation, channels, NULL};
+    const gonio_database_options how = {.representation = representation, .channels = channels};
     const gonio_basis_options options = {.components = K};
     gonio_database *database = NULL;
     gonio_basis *basis = NULL;

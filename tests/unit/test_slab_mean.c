@@ -18,6 +18,8 @@ static int compare(const double *rho)
     double mean[GONIO_THETA_D_BINS * GONIO_CHANNELS];
     double *g = malloc(GONIO_SLAB_VALUES * sizeof *g);
     bool *data = malloc(GONIO_SLAB_BINS * sizeof *data);
+    const double inverse_scale[GONIO_CHANNELS] = {
+        1.0 / gonio_log_scale(0), 1.0 / gonio_log_scale(1), 1.0 / gonio_log_scale(2)};
     gonio_slab_statistics plain;
     gonio_slab_mask(THETA_H, rho, data);
     gonio_slab_to_log(rho, g);
@@ -25,7 +27,7 @@ static int compare(const double *rho)
     for (int d = 0; d < GONIO_THETA_D_BINS; d++) {
         first_phi[d] = (uint8_t)gonio_i_first_valid_phi(THETA_H, d);
     }
-    gonio_i_slab_mean(first_phi, rho, mean);
+    gonio_i_slab_mean(first_phi, rho, inverse_scale, mean);
     int cells = 0;
     for (int d = 0; d < GONIO_THETA_D_BINS; d++) {
         cells += plain.count[d] > 0;

@@ -161,6 +161,11 @@ static int info_atlas(json_t *results)
 
 /* ---- bases ---- */
 
+static const char *mapping_name(const gonio_basis_view *view)
+{
+    return view->mapping == GONIO_LOG ? "log" : "relative";
+}
+
 static json_t *basis_json(const char *path, const gonio_basis *basis)
 {
     const gonio_basis_view view = gonio_basis_describe(basis);
@@ -170,13 +175,15 @@ static json_t *basis_json(const char *path, const gonio_basis *basis)
     for (size_t k = 0; k < view.materials; k++) {
         json_array_append_new(names, json_string(view.names[k]));
     }
-    return json_pack(
-        "{s:s, s:s, s:s, s:s, s:I, s:I, s:f, s:o, s:s, s:s, s:s}", "file", path, "kind", "basis",
-        "representation", view.representation == GONIO_BIVARIATE ? "bivariate" : "full", "channels",
-        view.channels == GONIO_JOINT ? "joint" : "separate", "components",
-        (json_int_t)view.components, "cells", (json_int_t)view.cells, "explained_variance",
-        gonio_basis_cumulative_variance(basis, view.components), "materials", names, "fingerprint",
-        fingerprint, "program", view.program, "command", view.command);
+    return json_pack("{s:s, s:s, s:s, s:b, s:b, s:s, s:s, s:I, s:I, s:f, s:o, s:s, s:s, s:s}",
+                     "file", path, "kind", "basis", "mapping", mapping_name(&view), "mean",
+                     !view.without_mean, "loadings", view.loadings != NULL, "representation",
+                     view.representation == GONIO_BIVARIATE ? "bivariate" : "full", "channels",
+                     view.channels == GONIO_JOINT ? "joint" : "separate", "components",
+                     (json_int_t)view.components, "cells", (json_int_t)view.cells,
+                     "explained_variance", gonio_basis_cumulative_variance(basis, view.components),
+                     "materials", names, "fingerprint", fingerprint, "program", view.program,
+                     "command", view.command);
 }
 
 static void print_basis(const char *path, const gonio_basis *basis)
@@ -185,6 +192,8 @@ static void print_basis(const char *path, const gonio_basis *basis)
     printf("%s: gonio basis, %s, %s channels\n", path,
            view.representation == GONIO_BIVARIATE ? "bivariate" : "full grid",
            view.channels == GONIO_JOINT ? "joint" : "separate");
+    printf("  mapping      %s, %s mean%s\n", mapping_name(&view),
+           view.without_mean ? "without" : "with", view.loadings == NULL ? ", no loadings" : "");
     printf("  components   %zu on %zu cells (%zu rows)\n", view.components, view.cells, view.rows);
     printf("  variance     ");
     for (size_t k = 1; k < view.components; k = k < 5 ? 5 : 2 * k) {
@@ -242,15 +251,19 @@ static int info_readings(const tool *t, const char *path, json_t *results)
     }
     const char *kind = measured > 0 ? "readings" : "plan";
     if (results != NULL) {
-        json_array_append_new(results, json_pack("{s:s, s:s, s:I, s:I, s:s, s:I}", "file", path,
-                                                 "kind", kind, "directions", (json_int_t)view.count,
-                                                 "measured", (json_int_t)measured, "basis", basis,
-                                                 "components", (json_int_t)view.components));
+        json_array_append_new(results,
+                              json_pack("{s:s, s:s, s:I, s:I, s:s, s:I, s:s}", "file", path, "kind",
+                                        kind, "directions", (json_int_t)view.count, "measured",
+                                        (json_int_t)measured, "basis", basis, "components",
+                                        (json_int_t)view.components, "method", view.method));
     } else {
         printf("%s: gonio %s, %zu directions, %zu measured\n", path, kind, view.count, measured);
         printf("  basis        %s\n", basis);
         if (view.components > 0) {
             printf("  components   %zu\n", view.components);
+        }
+        if (view.method[0] != '\0') {
+            printf("  method       %s\n", view.method);
         }
     }
     gonio_readings_free(&readings);

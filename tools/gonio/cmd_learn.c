@@ -9,7 +9,9 @@ typedef struct options {
     const char *output;
     const char *representation;
     const char *channels;
+    const char *mapping;
     const char *without;
+    int no_mean;
     int components;
     int json;
 } options;
@@ -84,7 +86,8 @@ static int learn(tool *t, const options *o, const tool_paths *list,
 {
     gonio_database *database = NULL;
     gonio_basis *basis = NULL;
-    const gonio_basis_options settings = {.components = (size_t)o->components};
+    const gonio_basis_options settings = {.components = (size_t)o->components,
+                                          .without_mean = o->no_mean};
     gonio_status status = gonio_database_create(t->context, (const char *const *)list->path,
                                                 list->count, how, &database);
     if (status == GONIO_OK) {
@@ -103,9 +106,11 @@ static int run(tool *t, const options *o)
 {
     static const char *const representations[2] = {"bivariate", "full"};
     static const char *const channel_models[2] = {"joint", "separate"};
+    static const char *const mappings[2] = {"log", "relative"};
     size_t count = 0;
     int representation = 0;
     int channels = 0;
+    int mapping = 0;
     const char **arguments = tool_arguments(t, &count);
     tool_paths list = {0};
     int code = count == 0 ? tool_usage_error(t, "no materials given") : 0;
@@ -118,6 +123,9 @@ static int run(tool *t, const options *o)
     if (code == 0) {
         code = choose(t, "--channels", o->channels, channel_models, &channels);
     }
+    if (code == 0) {
+        code = choose(t, "--mapping", o->mapping, mappings, &mapping);
+    }
     for (size_t k = 0; k < count && code == 0; k++) {
         code = tool_add_materials(t, &list, arguments[k]);
     }
@@ -129,7 +137,8 @@ static int run(tool *t, const options *o)
     }
     if (code == 0) {
         const gonio_database_options how = {.representation = (gonio_representation)representation,
-                                            .channels = (gonio_channel_model)channels};
+                                            .channels = (gonio_channel_model)channels,
+                                            .mapping = (gonio_mapping)mapping};
         code = learn(t, o, &list, &how);
     }
     tool_free_paths(&list);
@@ -138,15 +147,22 @@ static int run(tool *t, const options *o)
 
 int cmd_learn(int argc, const char **argv)
 {
-    options o = {.representation = "bivariate", .channels = "joint"};
+    options o = {.representation = "bivariate", .channels = "joint", .mapping = "log"};
     const struct poptOption table[] = {
         {"output", 'o', POPT_ARG_STRING, &o.output, 0, "The basis file to write", "BASIS"},
         {"basis", 'K', POPT_ARG_INT, &o.components, 0,
-         "How many components to keep (default: 45, or one less than the materials)", "K"},
+         "How many components to keep (default: 45, or one less than the materials; with "
+         "--no-mean all)",
+         "K"},
         {"grid", '\0', POPT_ARG_STRING, &o.representation, 0,
          "bivariate (theta_h, theta_d; the default) or full (phi_d too)", "GRID"},
         {"channels", '\0', POPT_ARG_STRING, &o.channels, 0,
          "joint (a material is a column; the default) or separate (each colour is one)", "MODEL"},
+        {"mapping", '\0', POPT_ARG_STRING, &o.mapping, 0,
+         "log (the default) or relative (weighted by the cosines; nielsen and frost use it)",
+         "MAPPING"},
+        {"no-mean", '\0', POPT_ARG_NONE, &o.no_mean, 0,
+         "Do not take the mean material out (matusik needs this)", NULL},
         {"without", '\0', POPT_ARG_STRING, &o.without, 0,
          "Leave these materials out (for testing on them)", "NAME[,NAME...]"},
         {"json", '\0', POPT_ARG_NONE, &o.json, 0, "Print the result as JSON", NULL},

@@ -8,6 +8,8 @@
 
 typedef struct options {
     const char *output;
+    const char *method;
+    double eta;
     int components;
     int all_channels;
     int other_basis;
@@ -38,7 +40,9 @@ static gonio_status reconstruct(tool *t, const options *o, const gonio_basis *ba
 {
     const gonio_reconstruct_options how = {.components = (size_t)o->components,
                                            .all_channels = o->all_channels,
-                                           .other_basis = o->other_basis};
+                                           .other_basis = o->other_basis,
+                                           .method = o->method,
+                                           .eta = o->eta};
     gonio_reconstruction **made = calloc(count, sizeof(gonio_reconstruction *));
     if (made == NULL) {
         return GONIO_ERROR_MEMORY;
@@ -141,6 +145,9 @@ static int run(tool *t, const options *o)
     if (code == 0) {
         code = tool_check_count(t, "--basis", o->components, 0);
     }
+    if (code == 0 && !(o->eta > 0.0)) {
+        code = tool_usage_error(t, "--eta has to be above 0");
+    }
     json_t *results = o->json ? json_array() : NULL;
     if (code == 0) {
         code = reconstruct_all(t, o, basis, paths, outputs, readings, results);
@@ -159,12 +166,17 @@ static int run(tool *t, const options *o)
 
 int cmd_reconstruct(int argc, const char **argv)
 {
-    options o = {0};
+    options o = {.eta = 40.0};
     const struct poptOption table[] = {
         {"output", 'o', POPT_ARG_STRING, &o.output, 0,
          "The MERL .binary table to write, or a folder for NAME.binary", "OUT"},
         {"basis", 'K', POPT_ARG_INT, &o.components, 0,
          "Use the first K components (default: as the plan says, or all)", "K"},
+        {"method", '\0', POPT_ARG_STRING, &o.method, 0,
+         "least-squares or ridge (default: what the plan was made for, or least-squares)",
+         "METHOD"},
+        {"eta", '\0', POPT_ARG_DOUBLE, &o.eta, 0,
+         "How much ridge holds against large coefficients (default: 40)", "ETA"},
         {"all-channels", '\0', POPT_ARG_NONE, &o.all_channels, 0,
          "Use every channel that was read, not only the planned one", NULL},
         {"average-repeats", '\0', POPT_ARG_NONE, &o.average_repeats, 0,

@@ -1,27 +1,8 @@
-/* Log space and the bivariate average. */
+/* Which bins of a slab hold data, and the bivariate average over them. */
 #include <gonio/database.h>
 
-#include <math.h>
-
 #include "../core/core.h"
-#include "../core/vector_math.h"
 #include "../direction/grid.h"
-
-double gonio_log_scale(int channel)
-{
-    static const double scale[GONIO_CHANNELS] = {1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0};
-    return channel >= 0 && channel < GONIO_CHANNELS ? scale[channel] : 1.0 / 1500.0;
-}
-
-double gonio_log_from_brdf(double rho, int channel)
-{
-    return log1p(rho / gonio_log_scale(channel));
-}
-
-double gonio_brdf_from_log(double g, int channel)
-{
-    return fmax(gonio_log_scale(channel) * expm1(g), 0.0);
-}
 
 void gonio_slab_mask(int theta_h, const double *rho, bool *data)
 {
@@ -32,22 +13,6 @@ void gonio_slab_mask(int theta_h, const double *rho, bool *data)
             const size_t k = row + (size_t)p;
             data[k] = (p >= first) & (p < GONIO_PHI_D_BINS - first) & (rho[k] >= 0.0);
         }
-    }
-}
-
-GONIO_I_VECTORISED static void scale_and_clamp(const double *rho, double factor, double *x)
-{
-    for (size_t k = 0; k < GONIO_SLAB_BINS; k++) {
-        x[k] = rho[k] > 0.0 ? rho[k] * factor : 0.0;
-    }
-}
-
-void gonio_slab_to_log(const double *rho, double *g)
-{
-    for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
-        const size_t plane = (size_t)channel * GONIO_SLAB_BINS;
-        scale_and_clamp(rho + plane, 1.0 / gonio_log_scale(channel), g + plane);
-        gonio_i_log1p(GONIO_SLAB_BINS, g + plane, g + plane);
     }
 }
 

@@ -1,0 +1,123 @@
+/* The mappings of reflectance to log space, g = ln(1 + rho/s), and back. All of gonio maps here. */
+#include <gonio/database.h>
+
+#include <math.h>
+
+#include "../core/core.h"
+#include "../core/vector_math.h"
+
+/* Of the relative mapping (Nielsen et al. 2015, section 4): e in 1/sr, the least w. */
+static const double relative_floor = 0.001;
+static const double least_weight = 0.01;
+
+double gonio_log_scale(int channel)
+{
+    static const double scale[GONIO_CHANNELS] = {1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0};
+    return channel >= 0 && channel < GONIO_CHANNELS ? scale[channel] : 1.0 / 1500.0;
+}
+
+static double relative_scale(double product_of_cosines)
+{
+    return relative_floor / fmin(fmax(product_of_cosines, least_weight), 1.0);
+}
+
+double gonio_mapping_scale(gonio_mapping mapping, int channel, gonio_half_difference at)
+{
+    if (mapping == GONIO_LOG) {
+        return gonio_log_scale(channel);
+    }
+    double incident = 0.0;
+    double outgoing = 0.0;
+    gonio_cosines(at, &incident, &outgoing);
+    return relative_scale(incident > 0.0 && outgoing > 0.0 ? incident * outgoing : 0.0);
+}
+
+double gonio_mapped_from_brdf(gonio_mapping mapping, double rho, int channel,
+                              gonio_half_difference at)
+{
+    return log1p(rho / gonio_mapping_scale(mapping, channel, at));
+}
+
+double gonio_brdf_from_mapped(gonio_mapping mapping, double g, int channel,
+                              gonio_half_difference at)
+{
+    return fmax(gonio_mapping_scale(mapping, channel, at) * expm1(g), 0.0);
+}
+
+double gonio_log_from_brdf(double rho, int channel)
+{
+    return log1p(rho / gonio_log_scale(channel));
+}
+
+double gonio_brdf_from_log(double g, int channel)
+{
+    return fmax(gonio_log_scale(channel) * expm1(g), 0.0);
+}
+
+/* ---- slabs ---- */
+
+/* cos theta_i cos theta_o = (cos th cos td)^2 - (sin th sin td cos pd)^2. */
+static void relative_slab_scale(int theta_h, double *scale)
+{
+    double cos_phi[GONIO_PHI_D_BINS];
+    for (int p = 0; p < GONIO_PHI_D_BINS; p++) {
+        cos_phi[p] = cos(gonio_bin_centre((gonio_bin){0, 0, p}).phi_d);
+    }
+    for (int theta_d = 0; theta_d < GONIO_THETA_D_BINS; theta_d++) {
+        const gonio_half_difference c = gonio_bin_centre((gonio_bin){theta_h, theta_d, 0});
+        const double even = cos(c.theta_h) * cos(c.theta_d);
+        const double odd = sin(c.theta_h) * sin(c.theta_d);
+        for (int p = 0; p < GONIO_PHI_D_BINS; p++) {
+            const double swing = odd * cos_phi[p];
+            scale[theta_d * GONIO_PHI_D_BINS + p] = relative_scale((even - swing) * (even + swing));
+        }
+    }
+}
+
+void gonio_slab_scale(gonio_mapping mapping, int channel, int theta_h, double *scale)
+{
+    if (mapping == GONIO_LOG_RELATIVE) {
+        relative_slab_scale(theta_h, scale);
+        return;
+    }
+    for (size_t k = 0; k < GONIO_SLAB_BINS; k++) {
+        scale[k] = gonio_log_scale(channel);
+    }
+}
+
+GONIO_I_VECTORISED static void scale_and_clamp(const double *rho, double factor, double *x)
+{
+    for (size_t k = 0; k < GONIO_SLAB_BINS; k++) {
+        x[k] = rho[k] > 0.0 ? rho[k] * factor : 0.0;
+    }
+}
+
+GONIO_I_VECTORISED static void divide_and_clamp(const double *rho, const double *scale, double *x)
+{
+    for (size_t k = 0; k < GONIO_SLAB_BINS; k++) {
+        x[k] = rho[k] > 0.0 ? rho[k] / scale[k] : 0.0;
+    }
+}
+
+void gonio_slab_to_log(const double *rho, double *g)
+{
+    for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
+        const size_t plane = (size_t)channel * GONIO_SLAB_BINS;
+        scale_and_clamp(rho + plane, 1.0 / gonio_log_scale(channel), g + plane);
+        gonio_i_log1p(GONIO_SLAB_BINS, g + plane, g + plane);
+    }
+}
+
+void gonio_slab_to_mapped(gonio_mapping mapping, int theta_h, const double *rho, double *g)
+{
+    if (mapping == GONIO_LOG) {
+        gonio_slab_to_log(rho, g);
+        return;
+    }
+    double scale[GONIO_SLAB_BINS];
+    relative_slab_scale(theta_h, scale);
+    for (size_t plane = 0; plane < GONIO_SLAB_VALUES; plane += GONIO_SLAB_BINS) {
+        divide_and_clamp(rho + plane, scale, g + plane);
+        gonio_i_log1p(GONIO_SLAB_BINS, g + plane, g + plane);
+    }
+}

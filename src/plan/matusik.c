@@ -1,0 +1,92 @@
+/* Linear combinations of the materials themselves (Matusik et al. 2003): rows of H, log BRDFs
+ * without mean, with a low condition number.
+ *
+ * H = V S W' with all components, so H and V S have the same singular values on any rows, and the
+ * swaps of condition.c are made on rows of V S. Of the millions of rows of the full grid 8,000
+ * drawn at random take part: such rows have condition numbers near a million, where the search can
+ * filter little, so that its time grows with them, while the reconstruction does not improve. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "../core/random.h"
+#include "method.h"
+
+enum { POOL = 8000 };
+
+/* A stream of random numbers that no start uses. */
+static const uint64_t pool_stream = UINT64_MAX;
+
+static gonio_status check(const gonio_i_selection_problem *problem)
+{
+    if (problem->basis == NULL || !problem->basis->without_mean) {
+        return gonio_i_fail(problem->context, GONIO_ERROR_ARGUMENT,
+                            "matusik works on materials without a mean taken out; learn such a "
+                            "basis: gonio learn --no-mean --grid full");
+    }
+    return GONIO_OK;
+}
+
+static size_t pool_size(const gonio_i_selection_problem *problem)
+{
+    const size_t wanted = problem->count > POOL ? problem->count : POOL;
+    return wanted < problem->rows ? wanted : problem->rows;
+}
+
+/* The rows that take part, ascending. */
+static gonio_status draw_pool(const gonio_i_selection_problem *problem, size_t count, size_t *pool)
+{
+    unsigned char *used = gonio_i_allocate(problem->context, problem->rows, 1);
+    if (used == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    gonio_i_random random;
+    gonio_i_random_seed(&random, problem->seed, pool_stream);
+    gonio_i_random_subset(&random, problem->rows, count, used, pool);
+    free(used);
+    return GONIO_OK;
+}
+
+/* The condition search among the rows of V S in the pool. */
+static gonio_status search(const gonio_i_selection_problem *problem, const size_t *pool,
+                           size_t count, double *scaled, gonio_i_selection *selection)
+{
+    for (size_t j = 0; j < count; j++) {
+        gonio_i_scaled_row(problem, pool[j], scaled + j * problem->components);
+    }
+    gonio_i_selection_problem within = *problem;
+    within.vectors = scaled;
+    within.rows = count;
+    within.stride = problem->components;
+    within.basis = NULL;
+    const gonio_status status = gonio_i_condition_method.select(&within, selection);
+    for (size_t j = 0; j < problem->count && status == GONIO_OK; j++) {
+        selection->chosen[j] = pool[selection->chosen[j]];
+    }
+    return status;
+}
+
+static gonio_status select_matusik(const gonio_i_selection_problem *problem,
+                                   gonio_i_selection *selection)
+{
+    gonio_status status = check(problem);
+    if (status != GONIO_OK) {
+        return status;
+    }
+    const size_t count = pool_size(problem);
+    size_t *pool = gonio_i_allocate(problem->context, count, sizeof *pool);
+    double *scaled =
+        gonio_i_allocate(problem->context, count * problem->components, sizeof *scaled);
+    status = pool == NULL || scaled == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    if (status == GONIO_OK) {
+        status = draw_pool(problem, count, pool);
+    }
+    if (status == GONIO_OK) {
+        status = search(problem, pool, count, scaled, selection);
+    }
+    free(pool);
+    free(scaled);
+    return status;
+}
+
+const gonio_i_method gonio_i_matusik_method = {
+    "matusik", "the materials themselves, by swaps (Matusik et al. 2003)", true, select_matusik};

@@ -1,0 +1,177 @@
+/* Reconstructing a known material without files: what its readings at rows of a basis would be, and
+ * what becomes of them. */
+#include <gonio/reconstruct.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "../core/core.h"
+
+/* A cell to read. */
+typedef struct place {
+    int32_t cell;
+    int channel;  /* the first of those wanted */
+    size_t index; /* into b */
+} place;
+
+typedef struct reader {
+    gonio_context *context;
+    const gonio_material *material;
+    gonio_basis_view basis;
+    size_t count; /* of rows; the distance of b's columns */
+    double *g;    /* a slab in log space */
+    bool *data;
+    gonio_slab_statistics statistics;
+} reader;
+
+static int compare_places(const void *a, const void *b)
+{
+    const place *x = a;
+    const place *y = b;
+    return (x->cell > y->cell) - (x->cell < y->cell);
+}
+
+static int slab_of(const reader *r, int32_t cell)
+{
+    const int32_t slab =
+        r->basis.representation == GONIO_BIVARIATE ? GONIO_THETA_D_BINS : GONIO_SLAB_BINS;
+    return cell / slab;
+}
+
+static gonio_status read_slab(reader *r, int theta_h)
+{
+    const gonio_status status = gonio_material_read_slab(r->material, r->context, theta_h, r->g);
+    if (status == GONIO_OK) {
+        gonio_slab_mask(theta_h, r->g, r->data);
+        gonio_slab_to_mapped(r->basis.mapping, theta_h, r->g, r->g);
+        if (r->basis.representation == GONIO_BIVARIATE) {
+            gonio_slab_reduce(r->g, r->data, &r->statistics);
+        }
+    }
+    return status;
+}
+
+/* The value of a cell of the slab that was read; false if there is none. */
+static bool value_at(const reader *r, int32_t cell, int channel, double *value)
+{
+    if (r->basis.representation == GONIO_BIVARIATE) {
+        const int32_t theta_d = cell % GONIO_THETA_D_BINS;
+        *value = r->statistics.mean[theta_d][channel];
+        return r->statistics.count[theta_d] > 0;
+    }
+    const size_t bin = (size_t)(cell % GONIO_SLAB_BINS);
+    *value = r->g[(size_t)channel * GONIO_SLAB_BINS + bin];
+    return r->data[bin];
+}
+
+/* All columns of one row. */
+static gonio_status read_place(const reader *r, const place *at, double *b)
+{
+    const int columns = r->basis.channels == GONIO_JOINT ? 1 : GONIO_CHANNELS;
+    for (int column = 0; column < columns; column++) {
+        if (!value_at(r, at->cell, at->channel + column,
+                      &b[(size_t)column * r->count + at->index])) {
+            return gonio_i_fail(r->context, GONIO_ERROR_DATA,
+                                "%s: no data in cell %d, which the plan reads",
+                                gonio_material_name(r->material), (int)at->cell);
+        }
+    }
+    return GONIO_OK;
+}
+
+static gonio_status read_places(reader *r, const place *places, double *b)
+{
+    gonio_status status = GONIO_OK;
+    int slab = -1;
+    for (size_t k = 0; k < r->count && status == GONIO_OK; k++) {
+        if (slab_of(r, places[k].cell) != slab) {
+            slab = slab_of(r, places[k].cell);
+            status = read_slab(r, slab);
+        }
+        if (status == GONIO_OK) {
+            status = read_place(r, &places[k], b);
+        }
+    }
+    return status;
+}
+
+gonio_status gonio_material_rows(gonio_context *context, const gonio_basis *basis,
+                                 const gonio_material *material, const size_t *rows, size_t count,
+                                 double *b)
+{
+    reader r = {.context = context,
+                .material = material,
+                .basis = gonio_basis_describe(basis),
+                .count = count,
+                .g = gonio_i_allocate(context, GONIO_SLAB_VALUES, sizeof *r.g),
+                .data = gonio_i_allocate(context, GONIO_SLAB_BINS, sizeof *r.data)};
+    place *places = gonio_i_allocate(context, count, sizeof *places);
+    gonio_status status = GONIO_ERROR_MEMORY;
+    if (r.g != NULL && r.data != NULL && places != NULL) {
+        const size_t per_cell = r.basis.rows / r.basis.cells;
+        for (size_t k = 0; k < count; k++) {
+            places[k] = (place){r.basis.cell[rows[k] / per_cell], (int)(rows[k] % per_cell), k};
+        }
+        qsort(places, count, sizeof *places, compare_places);
+        status = read_places(&r, places, b);
+    }
+    free(places);
+    free(r.g);
+    free(r.data);
+    return status;
+}
+
+static int compare_rows(const void *a, const void *b)
+{
+    const size_t x = *(const size_t *)a;
+    const size_t y = *(const size_t *)b;
+    return (x > y) - (x < y);
+}
+
+/* The rows of all channels of the cells of `rows`, each once, into all[3 x count]; how many. */
+static size_t all_channels(const size_t *rows, size_t count, size_t *all)
+{
+    size_t cells = 0;
+    for (size_t k = 0; k < count; k++) {
+        all[k] = rows[k] / GONIO_CHANNELS;
+    }
+    qsort(all, count, sizeof *all, compare_rows);
+    for (size_t k = 0; k < count; k++) {
+        if (cells == 0 || all[cells - 1] != all[k]) {
+            all[cells++] = all[k];
+        }
+    }
+    for (size_t k = GONIO_CHANNELS * cells; k-- > 0;) {
+        all[k] = GONIO_CHANNELS * all[k / GONIO_CHANNELS] + k % GONIO_CHANNELS;
+    }
+    return GONIO_CHANNELS * cells;
+}
+
+gonio_status gonio_reconstruct_material(gonio_context *context, const gonio_basis *basis,
+                                        const gonio_material *original, const size_t *rows,
+                                        size_t count, const gonio_reconstruct_options *options,
+                                        gonio_material **material)
+{
+    const bool joint = gonio_basis_describe(basis).channels == GONIO_JOINT;
+    const bool more = joint && options != NULL && options->all_channels;
+    size_t *used = gonio_i_allocate(context, GONIO_CHANNELS * count, sizeof *used);
+    double *b = gonio_i_allocate(context, GONIO_CHANNELS * GONIO_CHANNELS * count, sizeof *b);
+    gonio_reconstruction *made = NULL;
+    gonio_status status = GONIO_ERROR_MEMORY;
+    if (used != NULL && b != NULL) {
+        memcpy(used, rows, count * sizeof *used);
+        count = more ? all_channels(rows, count, used) : count;
+        status = gonio_material_rows(context, basis, original, used, count, b);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_reconstruct_rows_with(context, basis, options, used, count, b, &made);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_reconstruction_material(context, basis, made, gonio_material_name(original),
+                                               material);
+    }
+    gonio_reconstruction_free(&made);
+    free(used);
+    free(b);
+    return status;
+}
