@@ -64,7 +64,7 @@ static double product_error(const gonio_i_filter *f)
 }
 
 /* T = L^-1 of G - mu = L L', and what the gains need of it. */
-void gonio_i_filter_set(gonio_i_filter *f, const double *gram, double mu)
+void gonio_i_filter_set(gonio_i_filter *f, const double *gram, double mu, double condition)
 {
     const size_t k = f->problem->components;
     const size_t padded = f->panels->components;
@@ -72,7 +72,8 @@ void gonio_i_filter_set(gonio_i_filter *f, const double *gram, double mu)
     for (size_t a = 0; a < k; a++) {
         f->root[a * k + a] -= mu;
     }
-    f->blind = isinf(mu) || gonio_i_inverse_cholesky(NULL, f->root, k) != GONIO_OK;
+    f->relative = 8.0 * (double)k * DBL_EPSILON * condition;
+    f->blind = !(f->relative < 0.1) || gonio_i_inverse_cholesky(NULL, f->root, k) != GONIO_OK;
     double squares = 0.0;
     for (size_t a = 0; a < k; a++) {
         for (size_t b = 0; b <= a; b++) {
@@ -123,8 +124,9 @@ static void fill_column(gonio_i_filter *f, const double *v, size_t j)
         squares += bv[a] * bv[a];
     }
     test->c = c;
-    f->all_pass[j] = f->blind || loss < 1e-6;
-    test->loss[column] = (float)(loss * (1.0 - 1e-6));
+    const double root = sqrt(fmax(loss, 0.0)) - f->relative * sqrt(2.0 + loss);
+    f->all_pass[j] = f->blind || loss < 1e-6 || root < 5e-4;
+    test->loss[column] = (float)(root * root * (1.0 - f->relative) * (1.0 - 1e-6));
     test->margin[column] = (float)(product_error(f) * sqrt(squares));
 }
 

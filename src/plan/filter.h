@@ -10,7 +10,10 @@
  *
  * All this is done in single precision, with bounds of the rounding errors from
  *   |fl(x'y) - x'y| <= n eps |x| |y|                       (Higham 2002, section 3.1),
- * and the test lets pass whatever they leave undecided: rounding costs time, never a winner.
+ * and the test lets pass whatever they leave undecided: rounding costs time, never a winner. B
+ * itself has errors too: the Cholesky factor of G - mu is that of G - mu + E, |E| <= r |G - mu|/
+ * cond(G - mu) with r of some K eps cond(G - mu) (section 10.1). As (Bu)'E(Bv) then is at most
+ * r |Tu| |Tv|, b_u is off by at most r b_u, and w by r sqrt(b_u (1 + p_v)).
  * (Following a swap by rank-two updates of the gains was tried: a little faster a swap, but the
  * bounds grow tenfold with each, and soon everything passes.) */
 #ifndef GONIO_FILTER_H
@@ -33,6 +36,7 @@ typedef struct gonio_i_filter {
     float *columns;                    /* Bv of the batch, padded */
     float *gain;                       /* lower bounds of b_u, [rows] */
     float gain_margin;                 /* panels.h */
+    double relative;                   /* error of B, above */
     unsigned char *pass;               /* [GONIO_I_BATCH][rows] */
     gonio_i_test tests[GONIO_I_TESTS]; /* of the batch */
     bool all_pass[GONIO_I_BATCH];
@@ -50,9 +54,9 @@ bool gonio_i_filter_allocate(const gonio_i_selection_problem *problem, const gon
                              int threads, gonio_i_filter *filter);
 void gonio_i_filter_free(gonio_i_filter *filter);
 
-/* Sets G [K][K] and mu < lambda_min(G); a mu lower than need be only lets more pass, one of
- * infinity everything. */
-void gonio_i_filter_set(gonio_i_filter *filter, const double *gram, double mu);
+/* Sets G [K][K] and mu < lambda_min(G); a mu lower than need be only lets more pass. condition: of
+ * G - mu. */
+void gonio_i_filter_set(gonio_i_filter *filter, const double *gram, double mu, double condition);
 
 /* Computes the gains of a chunk ahead of need. */
 void gonio_i_filter_prepare(gonio_i_filter *filter, size_t chunk, int thread);

@@ -1,6 +1,7 @@
 /* The swaps of the condition-number search: see search.h. */
 #include "search.h"
 
+#include <float.h>
 #include <math.h>
 #include <sched.h>
 #include <stdlib.h>
@@ -74,14 +75,26 @@ static gonio_status decompose(gonio_i_search *s)
     return status;
 }
 
-/* Sets the filter for G, from its smallest and its two largest eigenvalues. mu is kept off the
- * pole at the smallest, where single precision would decide little. Where kappa is so large that
- * rounding moves the smallest, nothing is filtered. */
+/* The square of the longest chosen row's length. */
+static double longest_square(const gonio_i_search *s)
+{
+    double longest = 0.0;
+    for (size_t j = 0; j < s->problem->count; j++) {
+        longest = fmax(longest, (double)s->filter.panels->length[s->chosen[j]]);
+    }
+    return longest * longest;
+}
+
+/* Sets the filter for G, from its smallest and its two largest eigenvalues, which rounding moves by
+ * some kappa eps of the smallest. mu is kept off the pole there, where single precision would
+ * decide little. */
 static void set_filter(gonio_i_search *s, double smallest, double second_largest, double largest)
 {
-    const double mu = second_largest * smallest / largest * (1.0 - 1e-9);
-    const bool sound = smallest > largest * 1e-6;
-    gonio_i_filter_set(&s->filter, s->gram, sound ? fmin(mu, smallest * (1.0 - 1e-3)) : INFINITY);
+    const double error = 1e-9 + 100.0 * DBL_EPSILON * largest / smallest;
+    const double left = fmax(second_largest, largest - longest_square(s));
+    const double bound = left * smallest / largest * (1.0 - error);
+    const double mu = fmin(bound, smallest * (1.0 - 1e-3));
+    gonio_i_filter_set(&s->filter, s->gram, mu, largest / (smallest - mu));
 }
 
 /* All that the search needs to know of the choice. */

@@ -6,11 +6,11 @@
  * and one start, this ends at kappa 4.2 on average; the best row of each position at 5.2, the best
  * of all swaps at over 6: greed gets stuck early.)
  *
- * Taking a row out leaves a largest eigenvalue of at least d_{K-1}, the second largest of G, so a
- * swap that lowers kappa must have lambda_min > mu = d_{K-1}/kappa. The filter (filter.h) finds the
- * rows that do, all at once, and those are decided exactly (inertia.h). Nothing is approximated:
- * the same swaps win as if kappa were computed for every one. A full turn without a swap proves a
- * local optimum. */
+ * Taking a row v out leaves a largest eigenvalue of at least d_{K-1}, the second largest of G, and
+ * of at least d_K - |v|^2, so a swap that lowers kappa must have lambda_min > mu, the larger of
+ * these for the longest chosen row over kappa. The filter (filter.h) finds the rows that do, all at
+ * once, and those are decided exactly (inertia.h). Nothing is approximated: the same swaps win as
+ * if kappa were computed for every one. A full turn without a swap proves a local optimum. */
 #ifndef GONIO_SEARCH_H
 #define GONIO_SEARCH_H
 

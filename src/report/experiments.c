@@ -63,8 +63,7 @@ static gonio_status add_variances(gonio_context *context, const gonio_i_study *s
                                   const size_t *subset, size_t count, json_t *list)
 {
     gonio_basis *basis = NULL;
-    const gonio_basis_options options = {
-        .components = 1, .subset = subset, .subset_count = count};
+    const gonio_basis_options options = {.components = 1, .subset = subset, .subset_count = count};
     const gonio_status status =
         gonio_basis_learn(context, study->collection.database, &options, &basis);
     if (status != GONIO_OK) {

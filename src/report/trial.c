@@ -168,7 +168,7 @@ gonio_status gonio_i_trial_method(gonio_context *context, const gonio_i_collecti
                                   gonio_error *errors)
 {
     if (method->representation != GONIO_BIVARIATE || method->channels != GONIO_JOINT ||
-        method->learn != gonio_basis_learn || method->solve != gonio_reconstruct_rows) {
+        method->mapping != GONIO_LOG || method->without_mean) {
         return gonio_i_trial_tables(context, collection, method, size, split, seed, condition,
                                     errors);
     }
