@@ -128,31 +128,23 @@ static gonio_status find_longest(const gonio_i_selection_problem *problem, size_
 {
     const size_t k = problem->components;
     double *singular = gonio_i_allocate(problem->context, k, sizeof *singular);
-    if (singular == NULL) {
-        return GONIO_ERROR_MEMORY;
-    }
-    for (size_t j = 0; j < k; j++) {
+    double *length = gonio_i_allocate(problem->context, problem->rows, sizeof *length);
+    const bool ready = singular != NULL && length != NULL;
+    for (size_t j = 0; j < k && ready; j++) {
         singular[j] = gonio_basis_singular_value(problem->basis, j);
     }
-    double most = -1.0;
-#pragma omp parallel num_threads(gonio_context_threads(problem->context))
-    {
-        double mine = -1.0;
-        size_t row = 0;
-#pragma omp for schedule(static)
-        for (size_t i = 0; i < problem->rows; i++) {
-            const double length = squared_length(gonio_i_row(problem, i), singular, k);
-            row = length > mine ? i : row;
-            mine = fmax(length, mine);
-        }
-#pragma omp critical(gonio_nielsen_longest)
-        if (mine > most || (mine == most && row < *longest)) {
-            most = mine;
-            *longest = row;
-        }
+    const size_t rows = ready ? problem->rows : 0;
+#pragma omp parallel for schedule(static) num_threads(gonio_context_threads(problem->context))
+    for (size_t i = 0; i < rows; i++) {
+        length[i] = squared_length(gonio_i_row(problem, i), singular, k);
+    }
+    *longest = 0;
+    for (size_t i = 1; i < rows; i++) {
+        *longest = length[i] > length[*longest] ? i : *longest;
     }
     free(singular);
-    return GONIO_OK;
+    free(length);
+    return ready ? GONIO_OK : GONIO_ERROR_MEMORY;
 }
 
 /* Draws rows that are not chosen yet; returns how many. */

@@ -171,7 +171,7 @@ static void test_method(const tester *t, size_t method, size_t other, const char
 /* Others of the same size, and those of their own size. */
 static void test_methods(const tester *t)
 {
-    for (size_t m = GONIO_I_CHOSEN; m < gonio_i_methods(); m++) {
+    for (size_t m = GONIO_I_CHOSEN; m < gonio_i_methods(t->study); m++) {
         const gonio_i_method_entry *other = gonio_i_method_at(m);
         const gonio_i_size own = gonio_i_method_size(t->study, other);
         for (size_t c = 0; c < GONIO_I_CHOSEN; c++) {

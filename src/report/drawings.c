@@ -345,7 +345,7 @@ static double deviation(const drawer *d, size_t method)
 
 static gonio_status draw_methods(drawer *d)
 {
-    const size_t count = gonio_i_methods();
+    const size_t count = gonio_i_methods(d->study);
     size_t used = 0;
     double least = HUGE_VAL;
     double most = 0.0;

@@ -415,7 +415,7 @@ static size_t indices_of(const gonio_i_study *study, int experiment)
     case GONIO_I_GRID:
         return study->grid_components;
     case GONIO_I_METHODS:
-        return gonio_i_methods();
+        return gonio_i_methods(study);
     case GONIO_I_DIRECTIONS:
         return GONIO_I_CHOSEN;
     case GONIO_I_LEFT_OUT:

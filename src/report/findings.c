@@ -111,7 +111,7 @@ static gonio_status find_methods(gonio_context *context, const gonio_i_study *st
                                  const json_t *methods, gonio_i_findings *f)
 {
     const size_t splits = study->splits.count;
-    const size_t count = gonio_i_methods();
+    const size_t count = gonio_i_methods(study);
     f->method = gonio_i_allocate(context, count, sizeof *f->method);
     f->method_split = gonio_i_allocate(context, count * splits, sizeof *f->method_split);
     f->method_condition = gonio_i_allocate(context, count, sizeof *f->method_condition);

@@ -11,6 +11,7 @@
     .representation = GONIO_FULL, .channels = GONIO_SEPARATE, .mapping = GONIO_LOG_RELATIVE,       \
     .plan = (plan_method), .chosen = GONIO_I_OWN_SIZE, .size = {count, count}
 
+/* Those of the full grid last. */
 static const gonio_i_method_entry methods[] = {
     {.name = "condition-80", .label = "condition number", PAPER("condition", 0)},
     {.name = "condition-120", .label = "condition number", PAPER("condition", 1)},
@@ -31,9 +32,14 @@ static const gonio_i_method_entry methods[] = {
     {.name = "frost-40", .label = "FROST", RELATIVE("frost", 40)},
 };
 
-size_t gonio_i_methods(void)
+size_t gonio_i_methods(const gonio_i_study *study)
 {
-    return sizeof methods / sizeof *methods;
+    size_t count = 0;
+    while (count < sizeof methods / sizeof *methods &&
+           !(study->quick && methods[count].representation == GONIO_FULL)) {
+        count++;
+    }
+    return count;
 }
 
 const gonio_i_method_entry *gonio_i_method_at(size_t index)
@@ -41,7 +47,25 @@ const gonio_i_method_entry *gonio_i_method_at(size_t index)
     return &methods[index];
 }
 
+/* As many components as a basis of so many materials has at most. */
+static size_t most_components(const gonio_i_method_entry *method, size_t materials)
+{
+    const size_t columns =
+        method->channels == GONIO_SEPARATE ? GONIO_CHANNELS * materials : materials;
+    return method->without_mean ? columns : columns - 1;
+}
+
 gonio_i_size gonio_i_method_size(const gonio_i_study *study, const gonio_i_method_entry *method)
 {
-    return method->chosen == GONIO_I_OWN_SIZE ? method->size : study->chosen[method->chosen];
+    if (method->chosen != GONIO_I_OWN_SIZE) {
+        return study->chosen[method->chosen];
+    }
+    gonio_i_size size = method->size;
+    const bool square = size.components == size.samples;
+    for (size_t s = 0; s < study->splits.count; s++) {
+        const size_t most = most_components(method, study->splits.split[s].basis_count);
+        size.components = size.components == 0 || size.components > most ? most : size.components;
+    }
+    size.samples = square ? size.components : size.samples;
+    return size;
 }

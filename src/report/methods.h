@@ -16,13 +16,14 @@ typedef struct gonio_i_method_entry {
     bool without_mean;
     const char *plan;  /* gonio_plan_method_name; reconstructed by what belongs to it */
     int chosen;        /* the size is the study's chosen[]; or GONIO_I_OWN_SIZE */
-    gonio_i_size size; /* then; 0 components: as many as there are */
+    gonio_i_size size; /* then; 0 components: as many as materials */
 } gonio_i_method_entry;
 
-size_t gonio_i_methods(void);
+/* How many of them a study compares: a quick one none that learns on the full grid. */
+size_t gonio_i_methods(const gonio_i_study *study);
 const gonio_i_method_entry *gonio_i_method_at(size_t index);
 
-/* K and L of a method, K no more than the materials allow. */
+/* K and L of a method, no more than the materials of a split allow. */
 gonio_i_size gonio_i_method_size(const gonio_i_study *study, const gonio_i_method_entry *method);
 
 #endif

@@ -155,7 +155,7 @@ static void put_methods(const page *p)
     fputs("| method | components | samples | condition number | " ERROR_HEADINGS
           "| --- | --- | --- | --- | --- | --- | --- |\n",
           p->f);
-    for (size_t m = 0; m < gonio_i_methods(); m++) {
+    for (size_t m = 0; m < gonio_i_methods(p->study); m++) {
         const gonio_i_method_entry *method = gonio_i_method_at(m);
         const gonio_i_size size = gonio_i_method_size(p->study, method);
         fprintf(p->f, "| %s | %zu | %zu |", method->label, size.components, size.samples);
@@ -298,7 +298,7 @@ static json_t *grid_json(const gonio_i_study *study, const gonio_i_findings *fin
 static json_t *methods_json(const gonio_i_study *study, const gonio_i_findings *findings)
 {
     json_t *list = json_array();
-    for (size_t m = 0; m < gonio_i_methods(); m++) {
+    for (size_t m = 0; m < gonio_i_methods(study); m++) {
         const gonio_i_method_entry *method = gonio_i_method_at(m);
         const gonio_i_size size = gonio_i_method_size(study, method);
         json_t *json = sized(findings->method[m], size.components, size.samples,

@@ -177,7 +177,7 @@ static void put_grid_means(const tables *t, FILE *f)
 static void put_methods(const tables *t, FILE *f)
 {
     fputs("method,components,samples,split,material,condition_number," ERROR_COLUMNS "\n", f);
-    for (size_t m = 0; m < gonio_i_methods(); m++) {
+    for (size_t m = 0; m < gonio_i_methods(t->study); m++) {
         const gonio_i_method_entry *method = gonio_i_method_at(m);
         const gonio_i_size size = gonio_i_method_size(t->study, method);
         for (size_t s = 0; s < t->study->splits.count; s++) {

@@ -118,9 +118,7 @@ static gonio_status learn(gonio_context *context, const gonio_i_collection *coll
     const gonio_database_options how = {.representation = method->representation,
                                         .channels = method->channels,
                                         .mapping = method->mapping};
-    const size_t most = method->channels == GONIO_SEPARATE ? GONIO_CHANNELS * split->basis_count
-                                                           : split->basis_count;
-    const gonio_basis_options options = {.components = size.components < most ? size.components : 0,
+    const gonio_basis_options options = {.components = size.components,
                                          .without_mean = method->without_mean};
     gonio_database *database = NULL;
     const char **paths = gonio_i_allocate(context, split->basis_count, sizeof(char *));

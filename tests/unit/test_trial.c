@@ -54,7 +54,8 @@ static void test_digests_and_tables_agree(void **state)
     (void)state;
     const gonio_i_size size = {4, 12};
     const gonio_i_split *split = &splits.split[0];
-    for (size_t m = 0; m < gonio_i_methods(); m += 3) {
+    const gonio_i_study quick = {.quick = true}; /* without the methods of the full grid */
+    for (size_t m = 0; m < gonio_i_methods(&quick); m += 3) {
         const gonio_i_method_entry *method = gonio_i_method_at(m);
         gonio_error *errors[2];
         double condition[2] = {NAN, NAN};
@@ -93,6 +94,32 @@ static void test_other_bases(void **state)
         assert_true(condition >= 1.0);
         for (size_t t = 0; t < split->test_count; t++) {
             assert_true(errors[t].e6 > 0.0 && errors[t].e6 < 1000.0);
+        }
+    }
+    free(errors);
+}
+
+/* The methods of the full grid, whose sizes follow the materials. */
+static void test_compared_methods(void **state)
+{
+    (void)state;
+    const gonio_i_split *split = &splits.split[0];
+    const gonio_i_study quick = {.quick = true, .splits = splits};
+    const gonio_i_study full = {.splits = splits};
+    gonio_error *errors = calloc(split->test_count, sizeof *errors);
+    assert_true(gonio_i_methods(&full) == gonio_i_methods(&quick) + 3);
+    for (size_t m = gonio_i_methods(&quick); m < gonio_i_methods(&full); m++) {
+        const gonio_i_method_entry *method = gonio_i_method_at(m);
+        const gonio_i_size size = gonio_i_method_size(&full, method);
+        double condition = NAN;
+        assert_true(size.components <= 3 * split->basis_count);
+        assert_true(size.samples >= size.components);
+        assert_int_equal(
+            gonio_i_trial_method(NULL, &collection, method, size, split, 1, &condition, errors),
+            GONIO_OK);
+        assert_true(condition >= 1.0);
+        for (size_t t = 0; t < split->test_count; t++) {
+            assert_true(errors[t].e6 > 0.0 && errors[t].e6 < 200.0);
         }
     }
     free(errors);
@@ -159,6 +186,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_digests_and_tables_agree),
         cmocka_unit_test(test_other_bases),
+        cmocka_unit_test(test_compared_methods),
         cmocka_unit_test(test_all_rows),
         cmocka_unit_test(test_splits_are_splits),
     };
