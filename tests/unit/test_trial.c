@@ -184,10 +184,8 @@ static void test_splits_are_splits(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_digests_and_tables_agree),
-        cmocka_unit_test(test_other_bases),
-        cmocka_unit_test(test_compared_methods),
-        cmocka_unit_test(test_all_rows),
+        cmocka_unit_test(test_digests_and_tables_agree), cmocka_unit_test(test_other_bases),
+        cmocka_unit_test(test_compared_methods),         cmocka_unit_test(test_all_rows),
         cmocka_unit_test(test_splits_are_splits),
     };
     return cmocka_run_group_tests_name("trial", tests, set_up, tear_down);
