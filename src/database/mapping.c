@@ -5,6 +5,7 @@
 
 #include "../core/core.h"
 #include "../core/vector_math.h"
+#include "../direction/grid.h"
 
 /* Of the relative mapping (Nielsen et al. 2015, section 4): e in 1/sr, the least w. */
 static const double relative_floor = 0.001;
@@ -56,21 +57,11 @@ double gonio_brdf_from_log(double g, int channel)
 
 /* ---- slabs ---- */
 
-/* cos theta_i cos theta_o = (cos th cos td)^2 - (sin th sin td cos pd)^2. */
 static void relative_slab_scale(int theta_h, double *scale)
 {
-    double cos_phi[GONIO_PHI_D_BINS];
-    for (int p = 0; p < GONIO_PHI_D_BINS; p++) {
-        cos_phi[p] = cos(gonio_bin_centre((gonio_bin){0, 0, p}).phi_d);
-    }
-    for (int theta_d = 0; theta_d < GONIO_THETA_D_BINS; theta_d++) {
-        const gonio_half_difference c = gonio_bin_centre((gonio_bin){theta_h, theta_d, 0});
-        const double even = cos(c.theta_h) * cos(c.theta_d);
-        const double odd = sin(c.theta_h) * sin(c.theta_d);
-        for (int p = 0; p < GONIO_PHI_D_BINS; p++) {
-            const double swing = odd * cos_phi[p];
-            scale[theta_d * GONIO_PHI_D_BINS + p] = relative_scale((even - swing) * (even + swing));
-        }
+    gonio_i_slab_cosines(theta_h, scale);
+    for (size_t k = 0; k < GONIO_SLAB_BINS; k++) {
+        scale[k] = relative_scale(scale[k]);
     }
 }
 

@@ -6,6 +6,7 @@
 
 #include "../core/core.h"
 #include "../core/vector_math.h"
+#include "../direction/grid.h"
 #include "metrics.h"
 
 typedef struct slab_sums {

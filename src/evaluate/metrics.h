@@ -27,7 +27,4 @@ static inline double gonio_i_ratio_weight(double cosines)
     return fmin(fmax(cosines, 0.01), 1.0);
 }
 
-/* c_i c_o at the centres of a slab's bins: cosines[theta_d][phi_d]. */
-void gonio_i_slab_cosines(int theta_h, double *cosines);
-
 #endif
