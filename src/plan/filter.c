@@ -124,7 +124,8 @@ static void fill_column(gonio_i_filter *f, const double *v, size_t j)
         squares += bv[a] * bv[a];
     }
     test->c = c;
-    const double root = sqrt(fmax(loss, 0.0)) - f->relative * sqrt(2.0 + loss);
+    const double least = loss - f->relative * (2.0 + loss);
+    const double root = sqrt(fmax(least, 0.0)) - f->relative * sqrt(2.0 + loss);
     f->all_pass[j] = f->blind || loss < 1e-6 || root < 5e-4;
     test->loss[column] = (float)(root * root * (1.0 - f->relative) * (1.0 - 1e-6));
     test->margin[column] = (float)(product_error(f) * sqrt(squares));

@@ -13,7 +13,8 @@
  * and the test lets pass whatever they leave undecided: rounding costs time, never a winner. B
  * itself has errors too: the Cholesky factor of G - mu is that of G - mu + E, |E| <= r |G - mu|/
  * cond(G - mu) with r of some K eps cond(G - mu) (section 10.1). As (Bu)'E(Bv) then is at most
- * r |Tu| |Tv|, b_u is off by at most r b_u, and w by r sqrt(b_u (1 + p_v)).
+ * r |Tu| |Tv|, b_u is off by at most r b_u, p_v by r (1 + p_v), and w by
+ * r sqrt(b_u (1 + p_v)).
  * (Following a swap by rank-two updates of the gains was tried: a little faster a swap, but the
  * bounds grow tenfold with each, and soon everything passes.) */
 #ifndef GONIO_FILTER_H
