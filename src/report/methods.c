@@ -47,12 +47,11 @@ const gonio_i_method_entry *gonio_i_method_at(size_t index)
     return &methods[index];
 }
 
-/* As many components as a basis of so many materials has at most. */
+/* As many components as so many materials surely have. (Separate channels are columns of their own,
+ * but those of grey materials are copies of each other.) */
 static size_t most_components(const gonio_i_method_entry *method, size_t materials)
 {
-    const size_t columns =
-        method->channels == GONIO_SEPARATE ? GONIO_CHANNELS * materials : materials;
-    return method->without_mean ? columns : columns - 1;
+    return method->without_mean ? materials : materials - 1;
 }
 
 gonio_i_size gonio_i_method_size(const gonio_i_study *study, const gonio_i_method_entry *method)

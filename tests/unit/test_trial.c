@@ -8,8 +8,9 @@
 #include "report/splits.h"
 #include "report/trial.h"
 
+/* With grey ones, whose channels are the same column twice. */
 static const char *const paths[] = {"atlas:gold-polished", "atlas:oak-sawn",    "atlas:red-cotton",
-                                    "atlas:plaster-cast",  "atlas:brass-satin", "atlas:red-eraser",
+                                    "atlas:grey-flannel",  "atlas:brass-satin", "atlas:grey-primer",
                                     "atlas:navy-lacquer",  "atlas:jade-carved"};
 
 enum { PATHS = sizeof paths / sizeof *paths };
@@ -112,7 +113,7 @@ static void test_compared_methods(void **state)
         const gonio_i_method_entry *method = gonio_i_method_at(m);
         const gonio_i_size size = gonio_i_method_size(&full, method);
         double condition = NAN;
-        assert_true(size.components <= 3 * split->basis_count);
+        assert_true(size.components <= split->basis_count);
         assert_true(size.samples >= size.components);
         assert_int_equal(
             gonio_i_trial_method(NULL, &collection, method, size, split, 1, &condition, errors),
