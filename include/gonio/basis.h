@@ -18,6 +18,17 @@ extern "C" {
 
 typedef struct gonio_basis gonio_basis;
 
+/* Mixtures. A hundred materials do not show all that is possible: coatings, blends, rougher and
+ * smoother finishes. A mixture is a column made of two columns drawn at random,
+ *
+ *     g = ln(1 + u (e^a - 1) + (1 - u) (e^b - 1)),   u uniform in (0, 1),
+ *
+ * a weighted sum of reflectances, where a and b are the two with their lobes wider or narrower:
+ * a(theta_h) = column(theta_h / f), ln f normal with deviation 0.3. Mixtures count as much as the
+ * measured columns together: m is the mean of the two groups' means, and H - m has every column
+ * times the square root of its weight (on average 1). */
+enum { GONIO_DEFAULT_MIXTURES = 1000, GONIO_MIXTURE_COMPONENTS = 300 };
+
 enum { GONIO_DEFAULT_COMPONENTS = 45 };
 
 typedef struct gonio_basis_options {
@@ -25,6 +36,8 @@ typedef struct gonio_basis_options {
     const size_t *subset; /* learn from these materials of the database only; NULL for all */
     size_t subset_count;
     bool without_mean; /* components of H itself: all of them span the materials */
+    size_t mixtures;   /* made-up columns beside the measured ones, see below; 0 by default */
+    uint64_t seed;     /* of the mixtures */
 } gonio_basis_options;
 
 GONIO_API void gonio_basis_options_default(gonio_basis_options *options);
@@ -58,7 +71,8 @@ typedef struct gonio_basis_view {
     gonio_mapping mapping;
     bool without_mean;
     size_t materials;
-    size_t columns; /* materials, or 3 x materials if separate */
+    size_t mixtures;
+    size_t columns; /* materials, or 3 x materials if separate; plus mixtures */
     const char *const *names;
     const uint64_t *fingerprints; /* of the materials */
     size_t cells;

@@ -8,7 +8,10 @@
  *             differs by a constant in each row, which basis.h takes out).
  *
  * Representation: bivariate (Romeiro et al. 2008), where a cell (theta_h, theta_d) holds the mean
- * of g over its phi_d bins with data; or full, where every bin is a cell of its own.
+ * of g over its phi_d bins with data; full, where every bin is a cell of its own; or sectored,
+ * where a cell (theta_h, theta_d, sector) holds the mean over the bins with data of one of 12
+ * sectors of phi_d, 15 degrees each: nearly the detail of the full grid with a fifteenth of its
+ * rows (what it leaves out of the neural MERL materials is 0.4 % of E6, bivariate 1.5 %).
  *
  * Channel model: joint (Ali et al.), where a column is a material and the rows are (cell, channel),
  * channel fastest; or separate, where each channel of each material is a column (R, G, B of the
@@ -48,7 +51,20 @@ GONIO_API double gonio_brdf_from_mapped(gonio_mapping mapping, double g, int cha
 /* The scale of each bin of a slab: scale[theta_d][phi_d], s at its centre. */
 GONIO_API void gonio_slab_scale(gonio_mapping mapping, int channel, int theta_h, double *scale);
 
-typedef enum gonio_representation { GONIO_BIVARIATE = 0, GONIO_FULL = 1 } gonio_representation;
+typedef enum gonio_representation {
+    GONIO_BIVARIATE = 0,
+    GONIO_FULL = 1,
+    GONIO_SECTORED = 2
+} gonio_representation;
+
+/* Cells of the whole grid in a representation, those that can hold no data included. */
+GONIO_API int32_t gonio_grid_cells(gonio_representation representation);
+
+/* The bin in the middle of a cell's phi_d bins; of a bivariate cell phi_d bin 0. */
+GONIO_API gonio_bin gonio_cell_bin(gonio_representation representation, int32_t cell);
+
+/* The cell that a bin lies in. */
+GONIO_API int32_t gonio_cell_of_bin(gonio_representation representation, gonio_bin bin);
 typedef enum gonio_channel_model { GONIO_JOINT = 0, GONIO_SEPARATE = 1 } gonio_channel_model;
 
 /* Bivariate statistics of one slab in log space, by theta_d. */
@@ -107,7 +123,8 @@ typedef struct gonio_database_view {
     const uint64_t *fingerprints; /* [materials], material.h */
     size_t columns;               /* materials, or 3 x materials if separate */
     size_t cells;                 /* cells with data in every material */
-    const int32_t *cell;          /* [cells], ascending; theta_d + 90 theta_h, or a bin's index */
+    const int32_t *cell;          /* [cells], ascending; bivariate theta_d + 90 theta_h; full a bin's
+                                  * index; sectored sector + 12 (theta_d + 90 theta_h) */
     size_t rows;                  /* 3 x cells if joint, cells if separate */
 } gonio_database_view;
 

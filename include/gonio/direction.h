@@ -28,6 +28,8 @@ enum {
     GONIO_PHI_D_BINS = 180,
     GONIO_CELLS = GONIO_THETA_H_BINS * GONIO_THETA_D_BINS, /* 8,100 */
     GONIO_BINS = GONIO_CELLS * GONIO_PHI_D_BINS,           /* 1,458,000 */
+    GONIO_SECTORS = 12,                                    /* of phi_d */
+    GONIO_SECTOR_BINS = GONIO_PHI_D_BINS / GONIO_SECTORS,  /* phi_d bins of a sector */
     GONIO_CHANNELS = 3                                     /* R, G, B */
 };
 

@@ -13,18 +13,14 @@ size_t gonio_i_basis_rows(size_t cells, gonio_channel_model channels)
     return channels == GONIO_JOINT ? GONIO_CHANNELS * cells : cells;
 }
 
-size_t gonio_i_basis_columns(size_t materials, gonio_channel_model channels)
+size_t gonio_i_basis_columns(const gonio_basis *basis)
 {
-    return channels == GONIO_JOINT ? materials : GONIO_CHANNELS * materials;
+    const size_t each = basis->channels == GONIO_JOINT ? 1 : GONIO_CHANNELS;
+    return each * basis->materials + basis->mixtures;
 }
 
-static size_t grid_cells(const gonio_basis *basis)
-{
-    return basis->representation == GONIO_BIVARIATE ? GONIO_CELLS : GONIO_BINS;
-}
-
-gonio_basis *gonio_i_basis_allocate(gonio_context *context, size_t materials, size_t cells,
-                                    gonio_channel_model channels, size_t components,
+gonio_basis *gonio_i_basis_allocate(gonio_context *context, size_t materials, size_t mixtures,
+                                    size_t cells, gonio_channel_model channels, size_t components,
                                     size_t variance_count)
 {
     gonio_basis *made = gonio_i_allocate(context, 1, sizeof *made);
@@ -34,6 +30,7 @@ gonio_basis *gonio_i_basis_allocate(gonio_context *context, size_t materials, si
     const size_t rows = gonio_i_basis_rows(cells, channels);
     made->channels = channels;
     made->materials = materials;
+    made->mixtures = mixtures;
     made->cells = cells;
     made->rows = rows;
     made->components = components;
@@ -45,7 +42,7 @@ gonio_basis *gonio_i_basis_allocate(gonio_context *context, size_t materials, si
     made->vectors = gonio_i_allocate(context, rows * components, sizeof *made->vectors);
     made->variances = gonio_i_allocate(context, variance_count, sizeof *made->variances);
     made->loadings = gonio_i_allocate(
-        context, gonio_i_basis_columns(materials, channels) * components, sizeof *made->loadings);
+        context, gonio_i_basis_columns(made) * components, sizeof *made->loadings);
     if (made->names == NULL || made->fingerprints == NULL || made->cell == NULL ||
         made->mean == NULL || made->vectors == NULL || made->variances == NULL ||
         made->loadings == NULL) {
@@ -75,12 +72,6 @@ void gonio_basis_free(gonio_basis **basis)
     free(old->position);
     free(old);
     *basis = NULL;
-}
-
-static int32_t cell_of(const gonio_basis *basis, gonio_bin bin)
-{
-    const int32_t index = gonio_bin_index(bin);
-    return basis->representation == GONIO_BIVARIATE ? index / GONIO_PHI_D_BINS : index;
 }
 
 /* The cell of the basis nearest to a cell of the grid, as far as it is known. */
@@ -140,15 +131,15 @@ static void search_axis(gonio_context *context, const axis *a, nearest *cells, s
 
 /* Squared distances add up over the axes, so the nearest cell is found one axis after another.
  * Invalid bins of the full grid get a neighbour too: interpolation may touch them. */
-static gonio_status map_cells(gonio_context *context, gonio_basis *basis)
+gonio_status gonio_i_basis_map_cells(gonio_context *context, gonio_basis *basis)
 {
-    const bool full = basis->representation == GONIO_FULL;
-    const size_t depth = full ? GONIO_PHI_D_BINS : 1;
+    const size_t all = (size_t)gonio_grid_cells(basis->representation);
+    const size_t depth = all / GONIO_CELLS;
     const axis axes[] = {{depth, 1, true},
                          {GONIO_THETA_D_BINS, depth, false},
                          {GONIO_THETA_H_BINS, GONIO_THETA_D_BINS * depth, false}};
-    const size_t all = grid_cells(basis);
     nearest *cells = gonio_i_allocate(context, all, sizeof *cells);
+    free(basis->position);
     basis->position = gonio_i_allocate(context, all, sizeof *basis->position);
     if (cells == NULL || basis->position == NULL) {
         free(cells);
@@ -180,6 +171,10 @@ static void add_kind(const gonio_basis *basis, gonio_fingerprint *fingerprint)
     gonio_fingerprint_add(fingerprint, kind, sizeof kind);
     if (more[0] != GONIO_LOG || more[1] != 0) {
         gonio_fingerprint_add(fingerprint, more, sizeof more);
+    }
+    if (basis->mixtures > 0) {
+        const uint64_t mixtures = basis->mixtures;
+        gonio_fingerprint_add(fingerprint, &mixtures, sizeof mixtures);
     }
     gonio_fingerprint_add(fingerprint, basis->cell, basis->cells * sizeof *basis->cell);
 }
@@ -214,9 +209,8 @@ static void add_everything(const gonio_basis *basis, gonio_fingerprint *fingerpr
 /* Apart from the rest, so that programs that know nothing of loadings find theirs. */
 static void add_loadings(const gonio_basis *basis, gonio_fingerprint *fingerprint)
 {
-    const size_t columns = gonio_i_basis_columns(basis->materials, basis->channels);
     gonio_fingerprint_add(fingerprint, basis->loadings,
-                          columns * basis->components * sizeof *basis->loadings);
+                          gonio_i_basis_columns(basis) * basis->components * sizeof *basis->loadings);
 }
 
 static gonio_status hash(const gonio_basis *basis,
@@ -241,7 +235,7 @@ gonio_status gonio_i_basis_finish(gonio_context *context, gonio_basis *basis)
     if (status == GONIO_OK && basis->loadings != NULL) {
         status = hash(basis, add_loadings, &basis->loadings_checksum);
     }
-    return status == GONIO_OK ? map_cells(context, basis) : status;
+    return status == GONIO_OK ? gonio_i_basis_map_cells(context, basis) : status;
 }
 
 gonio_basis_view gonio_basis_describe(const gonio_basis *basis)
@@ -252,7 +246,8 @@ gonio_basis_view gonio_basis_describe(const gonio_basis *basis)
         .mapping = basis->mapping,
         .without_mean = basis->without_mean,
         .materials = basis->materials,
-        .columns = gonio_i_basis_columns(basis->materials, basis->channels),
+        .mixtures = basis->mixtures,
+        .columns = gonio_i_basis_columns(basis),
         .names = (const char *const *)basis->names,
         .fingerprints = basis->fingerprints,
         .cells = basis->cells,
@@ -300,13 +295,16 @@ void gonio_basis_row_at(const gonio_basis *basis, gonio_half_difference coordina
     const int points = bivariate ? GONIO_I_BILINEAR : GONIO_I_TRILINEAR;
     if (bivariate) {
         gonio_i_bilinear(coordinates, stencil);
+    } else if (basis->representation == GONIO_SECTORED) {
+        gonio_i_trilinear_sectors(coordinates, stencil);
     } else {
         gonio_i_trilinear(coordinates, stencil);
     }
     *mean = 0.0;
     memset(row, 0, components * sizeof *row);
     for (int k = 0; k < points; k++) {
-        const size_t position = gonio_basis_position(basis, cell_of(basis, stencil[k].bin));
+        const size_t position = gonio_basis_position(
+            basis, gonio_cell_of_bin(basis->representation, stencil[k].bin));
         const size_t source =
             basis->channels == GONIO_JOINT ? GONIO_CHANNELS * position + (size_t)channel : position;
         *mean += stencil[k].weight * basis->mean[source];

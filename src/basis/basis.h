@@ -12,6 +12,7 @@ struct gonio_basis {
     gonio_mapping mapping;
     bool without_mean;
     size_t materials;
+    size_t mixtures; /* columns after those of the materials */
     char **names;
     uint64_t *fingerprints;
     size_t cells;
@@ -32,14 +33,17 @@ struct gonio_basis {
 };
 
 /* Allocates everything of a basis with no contents; NULL after a message. */
-gonio_basis *gonio_i_basis_allocate(gonio_context *context, size_t materials, size_t cells,
-                                    gonio_channel_model channels, size_t components,
+gonio_basis *gonio_i_basis_allocate(gonio_context *context, size_t materials, size_t mixtures,
+                                    size_t cells, gonio_channel_model channels, size_t components,
                                     size_t variance_count);
 
 /* The last step of making one: its fingerprint, its checksum and the map of nearest cells. */
 gonio_status gonio_i_basis_finish(gonio_context *context, gonio_basis *basis);
 
 size_t gonio_i_basis_rows(size_t cells, gonio_channel_model channels);
-size_t gonio_i_basis_columns(size_t materials, gonio_channel_model channels);
+size_t gonio_i_basis_columns(const gonio_basis *basis);
+
+/* Finds the cell that stands for each one of the grid: part of _finish, of use before. */
+gonio_status gonio_i_basis_map_cells(gonio_context *context, gonio_basis *basis);
 
 #endif

@@ -16,10 +16,11 @@
 enum { FORMAT_VERSION = 1, MOST_MATERIALS = 1 << 20 };
 
 static const char format_name[] = "gonio basis";
-static const char *const representations[] = {"bivariate", "full"};
-static const char *const channel_models[] = {"joint", "separate"};
-static const char *const mappings[] = {"log", "relative"};
-static const char *const centrings[] = {"mean", "none"};
+/* Words for the values of an enumeration, from 0 on. */
+static const char *const representations[] = {"bivariate", "full", "sectored", NULL};
+static const char *const channel_models[] = {"joint", "separate", NULL};
+static const char *const mappings[] = {"log", "relative", NULL};
+static const char *const centrings[] = {"mean", "none", NULL};
 
 /* ---- writing ---- */
 
@@ -64,8 +65,7 @@ static bool write_hash(hid_t file, const char *name, uint64_t value)
 
 static bool write_loadings(hid_t file, const gonio_basis *basis)
 {
-    const size_t shape[2] = {gonio_i_basis_columns(basis->materials, basis->channels),
-                             basis->components};
+    const size_t shape[2] = {gonio_i_basis_columns(basis), basis->components};
     return basis->loadings == NULL ||
            (write_hash(file, "loadings_checksum", basis->loadings_checksum) &&
             gonio_i_hdf_write_array(file, "loadings", 2, shape, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE,
@@ -84,6 +84,7 @@ static bool write_contents(hid_t file, const gonio_basis *basis, const char *com
            gonio_i_hdf_write_string(file, "command", command != NULL ? command : "") &&
            gonio_i_hdf_write_string(file, "mapping", mappings[basis->mapping]) &&
            gonio_i_hdf_write_string(file, "centring", centrings[basis->without_mean]) &&
+           gonio_i_hdf_write_number(file, "mixtures", (int64_t)basis->mixtures) &&
            write_hash(file, "fingerprint", basis->fingerprint) &&
            write_hash(file, "checksum", basis->checksum) && write_grid(file, basis) &&
            write_materials(file, basis) && write_loadings(file, basis) &&
@@ -142,7 +143,7 @@ typedef struct contents {
     hid_t file;
     int64_t representation, channels, mapping, without_mean;
     void *cell, *mean, *vectors, *variances, *loadings, *fingerprints;
-    size_t cells, rows, components, variance_count, materials;
+    size_t cells, rows, components, variance_count, materials, mixtures;
     char **names;
     char *program, *command;
     uint64_t fingerprint, checksum, loadings_checksum;
@@ -156,20 +157,22 @@ static gonio_status damaged(const contents *c, const char *what, const char *pro
 }
 
 static gonio_status read_word(const contents *c, hid_t parent, const char *name,
-                              const char *const words[2], int64_t *value)
+                              const char *const *words, int64_t *value)
 {
     char **text = NULL;
     size_t count = 0;
     *value = -1;
     if (gonio_i_hdf_read_strings(parent, name, false, &text, &count) && count == 1) {
-        *value = strcmp(text[0], words[0]) == 0 ? 0 : strcmp(text[0], words[1]) == 0 ? 1 : -1;
+        for (int k = 0; words[k] != NULL; k++) {
+            *value = strcmp(text[0], words[k]) == 0 ? k : *value;
+        }
     }
     free(text);
     return *value >= 0 ? GONIO_OK : damaged(c, name, "is missing or unknown");
 }
 
 /* What a file of gonio 0.1.0 does not say: then it is the first of the words. */
-static gonio_status read_new_word(const contents *c, const char *name, const char *const words[2],
+static gonio_status read_new_word(const contents *c, const char *name, const char *const *words,
                                   int64_t *value)
 {
     *value = 0;
@@ -180,6 +183,24 @@ static gonio_status read_space(contents *c)
 {
     const gonio_status status = read_new_word(c, "mapping", mappings, &c->mapping);
     return status == GONIO_OK ? read_new_word(c, "centring", centrings, &c->without_mean) : status;
+}
+
+/* Columns that are no materials', which files of gonio 0.1.0 do not have. */
+static gonio_status read_mixtures(contents *c)
+{
+    int64_t mixtures = 0;
+    if (H5Aexists(c->file, "mixtures") > 0 &&
+        (!gonio_i_hdf_read_number(c->file, "mixtures", &mixtures) || mixtures < 0 ||
+         mixtures > MOST_MATERIALS)) {
+        return damaged(c, "mixtures", "is not a number of columns");
+    }
+    c->mixtures = (size_t)mixtures;
+    return GONIO_OK;
+}
+
+static size_t columns_of(const contents *c)
+{
+    return (c->channels == GONIO_JOINT ? 1 : GONIO_CHANNELS) * c->materials + c->mixtures;
 }
 
 static gonio_status read_grid(contents *c)
@@ -262,8 +283,8 @@ static gonio_status read_numbers(contents *c)
         gonio_i_hdf_read_array(c->file, what, 1, rows, H5T_NATIVE_DOUBLE, &c->mean, &c->rows);
     if (problem == NULL) {
         what = "variances";
-        problem = gonio_i_hdf_read_array(c->file, what, 1, GONIO_CHANNELS * c->materials,
-                                         H5T_NATIVE_DOUBLE, &c->variances, &c->variance_count);
+        problem = gonio_i_hdf_read_array(c->file, what, 1, columns_of(c), H5T_NATIVE_DOUBLE,
+                                         &c->variances, &c->variance_count);
     }
     if (problem == NULL) {
         what = "components";
@@ -327,7 +348,7 @@ static gonio_status read_hash(const contents *c, const char *name, uint64_t *val
 /* W, which files of gonio 0.1.0 lack. */
 static gonio_status read_loadings(contents *c)
 {
-    const size_t columns = gonio_i_basis_columns(c->materials, (gonio_channel_model)c->channels);
+    const size_t columns = columns_of(c);
     size_t shape[2] = {0, 0};
     if (H5Lexists(c->file, "loadings", H5P_DEFAULT) <= 0) {
         return GONIO_OK;
@@ -352,6 +373,9 @@ static gonio_status read_contents(contents *c)
     }
     if (status == GONIO_OK) {
         status = read_materials(c);
+    }
+    if (status == GONIO_OK) {
+        status = read_mixtures(c);
     }
     if (status == GONIO_OK) {
         status = check_log_scale(c);
@@ -403,7 +427,7 @@ static bool all_finite(const double *values, size_t count)
 static bool cells_in_order(const contents *c)
 {
     const int32_t *cell = c->cell;
-    const int32_t end = c->representation == GONIO_BIVARIATE ? GONIO_CELLS : GONIO_BINS;
+    const int32_t end = gonio_grid_cells((gonio_representation)c->representation);
     int32_t last = -1;
     for (size_t k = 0; k < c->cells; k++) {
         if (cell[k] <= last || cell[k] >= end) {
@@ -441,7 +465,7 @@ static gonio_status check_values(const contents *c)
         !all_finite(c->variances, c->variance_count)) {
         return damaged(c, "mean, components or variances", "holds a number that is not finite");
     }
-    const size_t columns = gonio_i_basis_columns(c->materials, (gonio_channel_model)c->channels);
+    const size_t columns = columns_of(c);
     if (c->loadings != NULL && !all_finite(c->loadings, columns * c->components)) {
         return damaged(c, "loadings", "holds a number that is not finite");
     }
@@ -474,6 +498,7 @@ static gonio_status assemble(contents *c, gonio_basis **basis)
         .mapping = (gonio_mapping)c->mapping,
         .without_mean = c->without_mean != 0,
         .materials = c->materials,
+        .mixtures = c->mixtures,
         .names = gonio_i_allocate(c->context, c->materials, sizeof *made->names),
         .fingerprints = take(&c->fingerprints),
         .cells = c->cells,

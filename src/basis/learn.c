@@ -17,6 +17,7 @@
 
 #include "../database/tiles.h"
 #include "../linalg/linalg.h"
+#include "mixtures.h"
 
 /* Tiles that one thread sums before it waits for its turn to add them up. */
 enum { TILES_A_TURN = 8 };
@@ -29,7 +30,11 @@ typedef struct learner {
     gonio_database_view view;
     const size_t *subset; /* of its materials; NULL for all */
     size_t materials;
-    size_t columns;
+    size_t columns;  /* with mixtures */
+    size_t measured; /* columns of the materials, which come first */
+    const gonio_i_mixtures *mixtures; /* NULL without */
+    double weight[2];                 /* of a measured column and of a mixture; on average 1 */
+    bool any_rank;                    /* fewer components will do */
     gonio_basis *basis;
     size_t tiles;
     size_t turns;
@@ -64,28 +69,44 @@ static void free_workspace(workspace *w)
     free(w->part);
 }
 
-GONIO_I_VECTORISED static void find_means(const float *values, size_t rows, size_t columns,
-                                          double *mean)
+/* Adds columns times a weight. */
+GONIO_I_VECTORISED static void add_columns(const float *values, size_t rows, size_t columns,
+                                           double weight, double *sum)
 {
-    memset(mean, 0, rows * sizeof *mean);
     for (size_t j = 0; j < columns; j++) {
         for (size_t i = 0; i < rows; i++) {
-            mean[i] += (double)values[j * rows + i];
+            sum[i] += weight * (double)values[j * rows + i];
         }
     }
+}
+
+static void find_means(const learner *l, const float *values, size_t rows, double *mean)
+{
+    memset(mean, 0, rows * sizeof *mean);
+    add_columns(values, rows, l->measured, l->weight[0], mean);
+    add_columns(values + l->measured * rows, rows, l->columns - l->measured, l->weight[1], mean);
     for (size_t i = 0; i < rows; i++) {
-        mean[i] /= (double)columns;
+        mean[i] /= (double)l->columns;
     }
 }
 
 GONIO_I_VECTORISED static void subtract_means(const float *values, size_t rows, size_t columns,
-                                              const double *mean, double *h)
+                                              const double *mean, double factor, double *h)
 {
     for (size_t j = 0; j < columns; j++) {
         for (size_t i = 0; i < rows; i++) {
-            h[j * rows + i] = (double)values[j * rows + i] - mean[i];
+            h[j * rows + i] = factor * ((double)values[j * rows + i] - mean[i]);
         }
     }
+}
+
+/* H - m, each column times the root of its weight. */
+static void centre(const learner *l, const workspace *w, size_t rows, const double *mean)
+{
+    const size_t after = l->measured * rows;
+    subtract_means(w->values, rows, l->measured, mean, sqrt(l->weight[0]), w->h);
+    subtract_means(w->values + after, rows, l->columns - l->measured, mean, sqrt(l->weight[1]),
+                   w->h + after);
 }
 
 static int compare_values(const void *a, const void *b)
@@ -123,7 +144,7 @@ static void find_origin(const learner *l, gonio_i_row_range rows, const workspac
 {
     double *mean = l->basis->mean + rows.first;
     if (!l->basis->without_mean) {
-        find_means(w->values, rows.count, l->columns, mean);
+        find_means(l, w->values, rows.count, mean);
     } else if (l->basis->mapping == GONIO_LOG_RELATIVE) {
         find_medians(w->values, rows.count, l->columns, w->h, mean);
     }
@@ -135,13 +156,18 @@ static gonio_status read_centred(const learner *l, size_t tile, gonio_i_row_rang
 {
     const gonio_status status = gonio_i_database_read_tile(l->database, l->context, tile, l->subset,
                                                            l->materials, w->values);
-    if (status == GONIO_OK) {
-        if (first_pass) {
-            find_origin(l, rows, w);
-        }
-        subtract_means(w->values, rows.count, l->columns, l->basis->mean + rows.first, w->h);
+    if (status != GONIO_OK) {
+        return status;
     }
-    return status;
+    if (l->mixtures != NULL) {
+        gonio_i_mixtures_fill(l->mixtures, rows.first, rows.count,
+                              w->values + l->measured * rows.count);
+    }
+    if (first_pass) {
+        find_origin(l, rows, w);
+    }
+    centre(l, w, rows.count, l->basis->mean + rows.first);
+    return GONIO_OK;
 }
 
 /* One turn's work on one tile: adds to w->part. p is NULL in the first pass. */
@@ -334,7 +360,6 @@ static gonio_status fix_signs(const learner *l)
 static gonio_status split_gram(const learner *l, const double *w, const double *values, double *p)
 {
     const size_t n = l->columns;
-    const size_t k = l->basis->components;
     const double noise = values[n - 1] * 1e-13 * (double)n;
     size_t rank = 0;
     for (size_t j = 0; j < l->basis->variance_count; j++) {
@@ -342,7 +367,11 @@ static gonio_status split_gram(const learner *l, const double *w, const double *
         l->basis->variances[j] = value / (double)(n - 1);
         rank += value > noise;
     }
-    if (rank < k) {
+    if (l->any_rank && rank < l->basis->components) {
+        l->basis->components = rank;
+    }
+    const size_t k = l->basis->components;
+    if (rank < k || k == 0) {
         return gonio_i_fail(l->context, GONIO_ERROR_DATA,
                             "the materials span only %zu dimensions%s, %zu components "
                             "were asked for; are some of them copies of others?",
@@ -360,7 +389,7 @@ static gonio_status split_gram(const learner *l, const double *w, const double *
 static gonio_status decompose(const learner *l)
 {
     const size_t n = l->columns;
-    const size_t k = l->basis->components;
+    size_t k = l->basis->components;
     double *gram = gonio_i_allocate(l->context, n * n, sizeof *gram);
     double *values = gonio_i_allocate(l->context, n, sizeof *values);
     double *p = gonio_i_allocate(l->context, n * k, sizeof *p);
@@ -376,6 +405,7 @@ static gonio_status decompose(const learner *l)
         status = split_gram(l, gram, values, p);
     }
     if (status == GONIO_OK) {
+        k = l->basis->components;
         status = for_each_tile(l, project, p, c, k);
     }
     if (status == GONIO_OK) {
@@ -405,12 +435,37 @@ static gonio_status describe_origin(const learner *l)
     return done ? GONIO_OK : gonio_i_fail(l->context, GONIO_ERROR_MEMORY, "out of memory");
 }
 
-static gonio_status learn(const learner *l)
+/* Mixtures are made of rows of other cells, found by the map of cells. */
+static gonio_status prepare_mixtures(learner *l, const gonio_basis_options *options,
+                                     gonio_i_mixtures **mixtures)
 {
+    l->weight[0] = 1.0;
+    l->weight[1] = 0.0;
+    if (options->mixtures == 0) {
+        return GONIO_OK;
+    }
+    const double half = 0.5 * (double)l->columns;
+    l->weight[0] = half / (double)l->measured;
+    l->weight[1] = half / (double)options->mixtures;
+    gonio_status status = gonio_i_basis_map_cells(l->context, l->basis);
+    if (status == GONIO_OK) {
+        status = gonio_i_mixtures_create(l->context, l->basis, l->database, options, mixtures);
+        l->mixtures = *mixtures;
+    }
+    return status;
+}
+
+static gonio_status learn(learner *l, const gonio_basis_options *options)
+{
+    gonio_i_mixtures *mixtures = NULL;
     gonio_status status = describe_origin(l);
+    if (status == GONIO_OK) {
+        status = prepare_mixtures(l, options, &mixtures);
+    }
     if (status == GONIO_OK) {
         status = decompose(l);
     }
+    gonio_i_mixtures_free(&mixtures);
     if (status == GONIO_OK) {
         status = fix_signs(l);
     }
@@ -418,6 +473,19 @@ static gonio_status learn(const learner *l)
         status = gonio_i_basis_finish(l->context, l->basis);
     }
     return status;
+}
+
+/* The kinds of bases that mixtures are made for. */
+static gonio_status check_mixtures(gonio_context *context, const gonio_database_view *view,
+                                   const gonio_basis_options *options)
+{
+    if (options->mixtures > 0 && (view->representation == GONIO_FULL ||
+                                  view->mapping != GONIO_LOG || options->without_mean)) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "mixtures are for the log mapping with a mean, on the sectored or the "
+                            "bivariate grid");
+    }
+    return GONIO_OK;
 }
 
 /* K: what was asked for, or as many as the default and the columns allow. */
@@ -436,8 +504,10 @@ static gonio_status choose_components(gonio_context *context, size_t columns,
                             "materials or ask for fewer components",
                             asked, columns, most);
     }
-    const bool all = options->without_mean || most < GONIO_DEFAULT_COMPONENTS;
-    *components = asked > 0 ? asked : all ? most : GONIO_DEFAULT_COMPONENTS;
+    const size_t usual =
+        options->mixtures > 0 ? GONIO_MIXTURE_COMPONENTS : GONIO_DEFAULT_COMPONENTS;
+    const bool all = options->without_mean || most < usual;
+    *components = asked > 0 ? asked : all ? most : usual;
     return GONIO_OK;
 }
 
@@ -450,9 +520,14 @@ gonio_status gonio_basis_learn(gonio_context *context, const gonio_database *dat
     learner l = {.context = context, .database = database, .subset = options->subset};
     l.view = gonio_database_describe(database);
     l.materials = l.subset != NULL ? options->subset_count : l.view.materials;
-    l.columns = l.view.columns / l.view.materials * l.materials;
+    l.measured = l.view.columns / l.view.materials * l.materials;
+    l.columns = l.measured + options->mixtures;
+    l.any_rank = options->mixtures > 0 && options->components == 0;
     size_t components = 0;
-    gonio_status status = choose_components(context, l.columns, options, &components);
+    gonio_status status = check_mixtures(context, &l.view, options);
+    if (status == GONIO_OK) {
+        status = choose_components(context, l.columns, options, &components);
+    }
     if (status != GONIO_OK) {
         return status;
     }
@@ -460,14 +535,15 @@ gonio_status gonio_basis_learn(gonio_context *context, const gonio_database *dat
     l.turns = (l.tiles + TILES_A_TURN - 1) / TILES_A_TURN;
     size_t finished = 0;
     l.finished = &finished;
-    l.basis = gonio_i_basis_allocate(context, l.materials, l.view.cells, l.view.channels,
-                                     components, options->without_mean ? l.columns : l.columns - 1);
+    l.basis = gonio_i_basis_allocate(context, l.materials, options->mixtures, l.view.cells,
+                                     l.view.channels, components,
+                                     options->without_mean ? l.columns : l.columns - 1);
     if (l.basis == NULL) {
         return GONIO_ERROR_MEMORY;
     }
     l.basis->without_mean = options->without_mean;
     l.context = gonio_i_team_begin(context);
-    status = learn(&l);
+    status = learn(&l, options);
     gonio_i_team_end(l.context, context);
     if (status != GONIO_OK) {
         gonio_basis_free(&l.basis);

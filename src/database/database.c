@@ -100,6 +100,15 @@ static size_t list_cells(const gonio_database *database, int theta_h, int32_t *s
             continue;
         }
         const int first = database->first_phi[cell];
+        if (database->options.representation == GONIO_SECTORED) {
+            for (int s = first / GONIO_SECTOR_BINS; s < GONIO_SECTORS - first / GONIO_SECTOR_BINS;
+                 s++) {
+                if (first < GONIO_PHI_D_BINS - first) {
+                    stored[count++] = cell * GONIO_SECTORS + s;
+                }
+            }
+            continue;
+        }
         for (int p = first; p < GONIO_PHI_D_BINS - first; p++) {
             stored[count++] = cell * GONIO_PHI_D_BINS + p;
         }
@@ -109,9 +118,9 @@ static size_t list_cells(const gonio_database *database, int theta_h, int32_t *s
 
 static gonio_status lay_out(gonio_context *context, gonio_database *database)
 {
-    const bool full = database->options.representation == GONIO_FULL;
     const size_t most = tile_cells(database);
-    const size_t slab = full ? GONIO_SLAB_BINS : GONIO_THETA_D_BINS;
+    const size_t slab =
+        (size_t)gonio_grid_cells(database->options.representation) / GONIO_THETA_H_BINS;
     const size_t tiles = GONIO_THETA_H_BINS * ((slab + most - 1) / most);
     database->stored =
         gonio_i_allocate(context, GONIO_THETA_H_BINS * slab, sizeof *database->stored);
@@ -230,6 +239,44 @@ static strides full_rows(const gonio_database *database, int theta_h, const read
     return (strides){1, GONIO_SLAB_BINS};
 }
 
+/* A sector's mean over its bins with data, which lie from `first` to `end` of [channel][bin]. */
+static void reduce_sector(const reader *r, size_t first, size_t end, size_t cell)
+{
+    size_t count = 0;
+    double sum[GONIO_CHANNELS] = {0.0};
+    for (size_t k = first; k < end; k++) {
+        for (size_t channel = 0; channel < GONIO_CHANNELS && r->data[k]; channel++) {
+            sum[channel] += r->g[channel * GONIO_SLAB_BINS + k];
+        }
+        count += r->data[k];
+    }
+    for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
+        r->g[channel * GONIO_SLAB_BINS + cell] = count > 0 ? sum[channel] / (double)count : 0.0;
+    }
+    r->data[cell] = count > 0;
+}
+
+/* The cells of a slab of the sectored grid, [channel][cell]: those of the full grid, reduced in
+ * place, as a sector's place is never behind its bins'. */
+static strides sectored_rows(const gonio_database *database, int theta_h, const reader *r)
+{
+    const strides step = full_rows(database, theta_h, r);
+    size_t bin = 0;
+    size_t cell = 0;
+    for (size_t d = 0; d < GONIO_THETA_D_BINS; d++) {
+        const size_t first = database->first_phi[(size_t)theta_h * GONIO_THETA_D_BINS + d];
+        const size_t last = GONIO_PHI_D_BINS - first;
+        for (size_t p = first; p < last;) {
+            const size_t edge = (p / GONIO_SECTOR_BINS + 1) * GONIO_SECTOR_BINS;
+            const size_t end = edge < last ? edge : last;
+            reduce_sector(r, bin, bin + end - p, cell++);
+            bin += end - p;
+            p = end;
+        }
+    }
+    return step;
+}
+
 /* The cells of a slab of the bivariate grid, [cell][channel]. */
 static strides bivariate_rows(const gonio_database *database, int theta_h, const reader *r)
 {
@@ -302,9 +349,11 @@ static gonio_status read_slab(gonio_context *context, const gonio_database *data
         gonio_slab_scale(GONIO_LOG_RELATIVE, 0, theta_h, r->scale);
         divide_slab(r->scale, r->rho);
     }
-    const strides step = database->options.representation == GONIO_BIVARIATE
-                             ? bivariate_rows(database, theta_h, r)
-                             : full_rows(database, theta_h, r);
+    static strides (*const rows_of[])(const gonio_database *, int, const reader *) = {
+        [GONIO_BIVARIATE] = bivariate_rows,
+        [GONIO_FULL] = full_rows,
+        [GONIO_SECTORED] = sectored_rows};
+    const strides step = rows_of[database->options.representation](database, theta_h, r);
     const size_t first = database->tile[database->slab_tiles[theta_h]].first;
     const size_t end = database->tile[database->slab_tiles[theta_h + 1]].first;
     *with_data += mark_seen(r->data, end - first, r->seen + first);

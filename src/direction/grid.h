@@ -25,4 +25,8 @@ void gonio_i_bilinear(gonio_half_difference coordinates, gonio_i_stencil stencil
 void gonio_i_trilinear(gonio_half_difference coordinates,
                        gonio_i_stencil stencil[GONIO_I_TRILINEAR]);
 
+/* The same between the centres of sectors of phi_d; the bins are those in the middle of them. */
+void gonio_i_trilinear_sectors(gonio_half_difference coordinates,
+                               gonio_i_stencil stencil[GONIO_I_TRILINEAR]);
+
 #endif

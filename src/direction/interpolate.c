@@ -38,15 +38,30 @@ void gonio_i_bilinear(gonio_half_difference c, gonio_i_stencil stencil[GONIO_I_B
     }
 }
 
-void gonio_i_trilinear(gonio_half_difference c, gonio_i_stencil stencil[GONIO_I_TRILINEAR])
+/* Between the middles of runs of `depth` bins of phi_d. */
+static void trilinear(gonio_half_difference c, int depth,
+                      gonio_i_stencil stencil[GONIO_I_TRILINEAR])
 {
     gonio_i_stencil plane[GONIO_I_BILINEAR];
     gonio_i_bilinear(c, plane);
-    const interval p = periodic(GONIO_PHI_D_BINS * c.phi_d / M_PI, GONIO_PHI_D_BINS);
+    const int runs = GONIO_PHI_D_BINS / depth;
+    const interval p = periodic(runs * c.phi_d / M_PI, runs);
+    const int low = p.low * depth + depth / 2;
+    const int high = p.high * depth + depth / 2;
     for (int k = 0; k < GONIO_I_BILINEAR; k++) {
-        stencil[2 * k] = (gonio_i_stencil){{plane[k].bin.theta_h, plane[k].bin.theta_d, p.low},
+        stencil[2 * k] = (gonio_i_stencil){{plane[k].bin.theta_h, plane[k].bin.theta_d, low},
                                            plane[k].weight * (1.0 - p.fraction)};
-        stencil[2 * k + 1] = (gonio_i_stencil){{plane[k].bin.theta_h, plane[k].bin.theta_d, p.high},
+        stencil[2 * k + 1] = (gonio_i_stencil){{plane[k].bin.theta_h, plane[k].bin.theta_d, high},
                                                plane[k].weight * p.fraction};
     }
+}
+
+void gonio_i_trilinear(gonio_half_difference c, gonio_i_stencil stencil[GONIO_I_TRILINEAR])
+{
+    trilinear(c, 1, stencil);
+}
+
+void gonio_i_trilinear_sectors(gonio_half_difference c, gonio_i_stencil stencil[GONIO_I_TRILINEAR])
+{
+    trilinear(c, GONIO_SECTOR_BINS, stencil);
 }

@@ -166,6 +166,12 @@ static const char *mapping_name(const gonio_basis_view *view)
     return view->mapping == GONIO_LOG ? "log" : "relative";
 }
 
+static const char *representation_of(const gonio_basis_view *view)
+{
+    static const char *const names[] = {"bivariate", "full", "sectored"};
+    return names[view->representation];
+}
+
 static json_t *basis_json(const char *path, const gonio_basis *basis)
 {
     const gonio_basis_view view = gonio_basis_describe(basis);
@@ -175,13 +181,13 @@ static json_t *basis_json(const char *path, const gonio_basis *basis)
     for (size_t k = 0; k < view.materials; k++) {
         json_array_append_new(names, json_string(view.names[k]));
     }
-    return json_pack("{s:s, s:s, s:s, s:b, s:b, s:s, s:s, s:I, s:I, s:f, s:o, s:s, s:s, s:s}",
+    return json_pack("{s:s, s:s, s:s, s:b, s:b, s:s, s:s, s:I, s:I, s:I, s:f, s:o, s:s, s:s, s:s}",
                      "file", path, "kind", "basis", "mapping", mapping_name(&view), "mean",
                      !view.without_mean, "loadings", view.loadings != NULL, "representation",
-                     view.representation == GONIO_BIVARIATE ? "bivariate" : "full", "channels",
+                     representation_of(&view), "channels",
                      view.channels == GONIO_JOINT ? "joint" : "separate", "components",
                      (json_int_t)view.components, "cells", (json_int_t)view.cells,
-                     "explained_variance", gonio_basis_cumulative_variance(basis, view.components),
+                     "mixtures", (json_int_t)view.mixtures, "explained_variance", gonio_basis_cumulative_variance(basis, view.components),
                      "materials", names, "fingerprint", fingerprint, "program", view.program,
                      "command", view.command);
 }
@@ -190,11 +196,14 @@ static void print_basis(const char *path, const gonio_basis *basis)
 {
     const gonio_basis_view view = gonio_basis_describe(basis);
     printf("%s: gonio basis, %s, %s channels\n", path,
-           view.representation == GONIO_BIVARIATE ? "bivariate" : "full grid",
+           representation_of(&view),
            view.channels == GONIO_JOINT ? "joint" : "separate");
     printf("  mapping      %s, %s mean%s\n", mapping_name(&view),
            view.without_mean ? "without" : "with", view.loadings == NULL ? ", no loadings" : "");
     printf("  components   %zu on %zu cells (%zu rows)\n", view.components, view.cells, view.rows);
+    if (view.mixtures > 0) {
+        printf("  mixtures     %zu, beside the materials\n", view.mixtures);
+    }
     printf("  variance     ");
     for (size_t k = 1; k < view.components; k = k < 5 ? 5 : 2 * k) {
         printf("%.4f at %zu, ", gonio_basis_cumulative_variance(basis, k), k);

@@ -13,6 +13,8 @@ typedef struct options {
     const char *without;
     int no_mean;
     int components;
+    int mixtures; /* -1: as the rest suggests */
+    long seed;
     int json;
 } options;
 
@@ -51,17 +53,20 @@ static int leave_out(const tool *t, tool_paths *list, const char *without)
     return 0;
 }
 
-static int choose(const tool *t, const char *option, const char *text, const char *const words[2],
+/* The place of a word in a list that ends with NULL. */
+static int choose(const tool *t, const char *option, const char *text, const char *const *words,
                   int *choice)
 {
-    for (int k = 0; k < 2; k++) {
+    char list[128] = "";
+    for (int k = 0; words[k] != NULL; k++) {
         if (strcmp(text, words[k]) == 0) {
             *choice = k;
             return 0;
         }
+        strncat(list, k > 0 ? ", " : "", sizeof list - strlen(list) - 1);
+        strncat(list, words[k], sizeof list - strlen(list) - 1);
     }
-    return tool_usage_error(t, "%s: '%s' is neither '%s' nor '%s'", option, text, words[0],
-                            words[1]);
+    return tool_usage_error(t, "%s: '%s' is none of %s", option, text, list);
 }
 
 static int report(const tool *t, const gonio_basis *basis, const options *o)
@@ -81,13 +86,23 @@ static int report(const tool *t, const gonio_basis *basis, const options *o)
     return 0;
 }
 
+/* Where mixtures serve, as many as are usual. */
+static size_t mixtures_of(const options *o, const gonio_database_options *how)
+{
+    const bool usual = how->representation == GONIO_SECTORED && how->mapping == GONIO_LOG &&
+                       how->channels == GONIO_SEPARATE && !o->no_mean;
+    return o->mixtures >= 0 ? (size_t)o->mixtures : usual ? GONIO_DEFAULT_MIXTURES : 0;
+}
+
 static int learn(tool *t, const options *o, const tool_paths *list,
                  const gonio_database_options *how)
 {
     gonio_database *database = NULL;
     gonio_basis *basis = NULL;
     const gonio_basis_options settings = {.components = (size_t)o->components,
-                                          .without_mean = o->no_mean};
+                                          .without_mean = o->no_mean,
+                                          .mixtures = mixtures_of(o, how),
+                                          .seed = (uint64_t)o->seed};
     gonio_status status = gonio_database_create(t->context, (const char *const *)list->path,
                                                 list->count, how, &database);
     if (status == GONIO_OK) {
@@ -102,15 +117,33 @@ static int learn(tool *t, const options *o, const tool_paths *list,
     return code;
 }
 
-static int run(tool *t, const options *o)
+static int choose_kind(const tool *t, const options *o, gonio_database_options *how)
 {
-    static const char *const representations[2] = {"bivariate", "full"};
-    static const char *const channel_models[2] = {"joint", "separate"};
-    static const char *const mappings[2] = {"log", "relative"};
-    size_t count = 0;
+    static const char *const representations[] = {"bivariate", "full", "sectored", NULL};
+    static const char *const channel_models[] = {"joint", "separate", NULL};
+    static const char *const mappings[] = {"log", "relative", NULL};
     int representation = 0;
     int channels = 0;
     int mapping = 0;
+    int code = choose(t, "--grid", o->representation, representations, &representation);
+    const char *usual = representation == GONIO_SECTORED ? "separate" : "joint";
+    if (code == 0) {
+        code = choose(t, "--channels", o->channels != NULL ? o->channels : usual, channel_models,
+                      &channels);
+    }
+    if (code == 0) {
+        code = choose(t, "--mapping", o->mapping, mappings, &mapping);
+    }
+    *how = (gonio_database_options){.representation = (gonio_representation)representation,
+                                    .channels = (gonio_channel_model)channels,
+                                    .mapping = (gonio_mapping)mapping};
+    return code;
+}
+
+static int run(tool *t, const options *o)
+{
+    size_t count = 0;
+    gonio_database_options how;
     const char **arguments = tool_arguments(t, &count);
     tool_paths list = {0};
     int code = count == 0 ? tool_usage_error(t, "no materials given") : 0;
@@ -118,13 +151,10 @@ static int run(tool *t, const options *o)
         code = tool_check_count(t, "--basis", o->components, o->components == 0 ? 0 : 1);
     }
     if (code == 0) {
-        code = choose(t, "--grid", o->representation, representations, &representation);
+        code = o->mixtures >= 0 ? tool_check_count(t, "--mixtures", o->mixtures, 0) : 0;
     }
     if (code == 0) {
-        code = choose(t, "--channels", o->channels, channel_models, &channels);
-    }
-    if (code == 0) {
-        code = choose(t, "--mapping", o->mapping, mappings, &mapping);
+        code = choose_kind(t, o, &how);
     }
     for (size_t k = 0; k < count && code == 0; k++) {
         code = tool_add_materials(t, &list, arguments[k]);
@@ -136,9 +166,6 @@ static int run(tool *t, const options *o)
         code = tool_check_output(t, o->output, (const char *const *)list.path, list.count);
     }
     if (code == 0) {
-        const gonio_database_options how = {.representation = (gonio_representation)representation,
-                                            .channels = (gonio_channel_model)channels,
-                                            .mapping = (gonio_mapping)mapping};
         code = learn(t, o, &list, &how);
     }
     tool_free_paths(&list);
@@ -147,17 +174,26 @@ static int run(tool *t, const options *o)
 
 int cmd_learn(int argc, const char **argv)
 {
-    options o = {.representation = "bivariate", .channels = "joint", .mapping = "log"};
+    options o = {.representation = "sectored", .mapping = "log", .mixtures = -1};
     const struct poptOption table[] = {
         {"output", 'o', POPT_ARG_STRING, &o.output, 0, "The basis file to write", "BASIS"},
         {"basis", 'K', POPT_ARG_INT, &o.components, 0,
-         "How many components to keep (default: 45, or one less than the materials; with "
-         "--no-mean all)",
+         "How many components to keep (default: 300; 45 without mixtures; with --no-mean all; never "
+         "more than there are)",
          "K"},
         {"grid", '\0', POPT_ARG_STRING, &o.representation, 0,
-         "bivariate (theta_h, theta_d; the default) or full (phi_d too)", "GRID"},
+         "sectored (theta_h, theta_d, 12 sectors of phi_d; the default), bivariate (no phi_d; the "
+         "paper's) or full (every phi_d)",
+         "GRID"},
         {"channels", '\0', POPT_ARG_STRING, &o.channels, 0,
-         "joint (a material is a column; the default) or separate (each colour is one)", "MODEL"},
+         "separate (each colour of a material is a column; the default of the sectored grid) or "
+         "joint (a material is one; the default of the others)",
+         "MODEL"},
+        {"mixtures", '\0', POPT_ARG_INT, &o.mixtures, 0,
+         "Columns made up of two measured ones, to learn from besides (default: 1000 on the "
+         "sectored grid, otherwise none)",
+         "N"},
+        {"seed", '\0', POPT_ARG_LONG, &o.seed, 0, "Of the mixtures (default: 0)", "N"},
         {"mapping", '\0', POPT_ARG_STRING, &o.mapping, 0,
          "log (the default) or relative (weighted by the cosines; nielsen and frost use it)",
          "MAPPING"},

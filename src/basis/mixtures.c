@@ -1,0 +1,167 @@
+/* Mixtures of measured columns: see mixtures.h. */
+#include "mixtures.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "../core/random.h"
+#include "../core/vector_math.h"
+#include "../database/tiles.h"
+
+static const double WIDTH_DEVIATION = 0.3; /* of ln f */
+
+enum { CHUNK = 256 }; /* rows that are mixed together */
+
+typedef struct half {
+    size_t column;
+    double share;
+    double width; /* f */
+} half;
+
+typedef struct recipe {
+    half half[2];
+} recipe;
+
+struct gonio_i_mixtures {
+    const gonio_basis *basis;
+    size_t count;
+    recipe *recipe;
+    float *measured; /* [column][row] */
+};
+
+static void draw(gonio_i_mixtures *m, size_t columns, uint64_t seed)
+{
+    for (size_t k = 0; k < m->count; k++) {
+        gonio_i_random random;
+        gonio_i_random_seed(&random, seed, k);
+        const double share = gonio_i_random_uniform(&random);
+        for (int h = 0; h < 2; h++) {
+            m->recipe[k].half[h] = (half){(size_t)gonio_i_random_below(&random, columns),
+                                          h == 0 ? share : 1.0 - share,
+                                          exp(WIDTH_DEVIATION * gonio_i_random_normal(&random))};
+        }
+    }
+}
+
+/* All rows of the measured columns, in memory. */
+static gonio_status read_measured(gonio_context *context, const gonio_database *database,
+                                  const gonio_basis_options *options, size_t columns,
+                                  gonio_i_mixtures *m)
+{
+    const size_t room = gonio_i_database_tile_room(database);
+    float *block = gonio_i_allocate(context, room * columns, sizeof *block);
+    gonio_status status = block == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    for (size_t t = 0; t < gonio_i_database_tiles(database) && status == GONIO_OK; t++) {
+        const gonio_i_row_range rows = gonio_i_database_tile_rows(database, t);
+        if (rows.count == 0) {
+            continue;
+        }
+        status = gonio_i_database_read_tile(database, context, t, options->subset,
+                                            m->basis->materials, block);
+        for (size_t j = 0; j < columns && status == GONIO_OK; j++) {
+            for (size_t i = 0; i < rows.count; i++) {
+                m->measured[j * m->basis->rows + rows.first + i] = block[j * rows.count + i];
+            }
+        }
+    }
+    free(block);
+    return status;
+}
+
+gonio_status gonio_i_mixtures_create(gonio_context *context, const gonio_basis *basis,
+                                     const gonio_database *database,
+                                     const gonio_basis_options *options,
+                                     gonio_i_mixtures **mixtures)
+{
+    const size_t columns = gonio_i_basis_columns(basis) - basis->mixtures;
+    gonio_i_mixtures *m = gonio_i_allocate(context, 1, sizeof *m);
+    if (m == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    m->basis = basis;
+    m->count = basis->mixtures;
+    m->recipe = gonio_i_allocate(context, m->count, sizeof *m->recipe);
+    m->measured = gonio_i_allocate(context, columns * basis->rows, sizeof *m->measured);
+    gonio_status status =
+        m->recipe == NULL || m->measured == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    if (status == GONIO_OK) {
+        draw(m, columns, options->seed);
+        status = read_measured(context, database, options, columns, m);
+    }
+    if (status != GONIO_OK) {
+        gonio_i_mixtures_free(&m);
+        return status;
+    }
+    *mixtures = m;
+    return GONIO_OK;
+}
+
+void gonio_i_mixtures_free(gonio_i_mixtures **mixtures)
+{
+    if (mixtures == NULL || *mixtures == NULL) {
+        return;
+    }
+    free((*mixtures)->recipe);
+    free((*mixtures)->measured);
+    free(*mixtures);
+    *mixtures = NULL;
+}
+
+/* A row of a column at theta_h / f: between the two cells around it in theta_h, which is spaced by
+ * a square root, constant beyond the ends. */
+static double stretched(const gonio_i_mixtures *m, const half *h, size_t row)
+{
+    const size_t each = m->basis->channels == GONIO_JOINT ? GONIO_CHANNELS : 1;
+    const int32_t cell = m->basis->cell[row / each];
+    const int32_t slab = gonio_grid_cells(m->basis->representation) / GONIO_THETA_H_BINS;
+    const double at = ((double)(cell / slab) + 0.5) / sqrt(h->width) - 0.5;
+    const double inside = fmin(fmax(at, 0.0), GONIO_THETA_H_BINS - 1.0);
+    const int low = (int)fmin(inside, GONIO_THETA_H_BINS - 2.0);
+    double value[2];
+    for (int k = 0; k < 2; k++) {
+        const size_t position = gonio_basis_position(m->basis, (low + k) * slab + cell % slab);
+        value[k] =
+            (double)m->measured[h->column * m->basis->rows + position * each + row % each];
+    }
+    return value[0] + (inside - low) * (value[1] - value[0]);
+}
+
+/* share (e^g - 1) of a half, for up to CHUNK rows. */
+static void reflectance(const gonio_i_mixtures *m, const half *h, size_t first, size_t count,
+                        double *x)
+{
+    for (size_t i = 0; i < count; i++) {
+        x[i] = stretched(m, h, first + i);
+    }
+    gonio_i_expm1(count, x, x);
+    for (size_t i = 0; i < count; i++) {
+        x[i] *= h->share;
+    }
+}
+
+static void mix(const gonio_i_mixtures *m, const recipe *r, size_t first, size_t count,
+                float *values)
+{
+    double x[CHUNK];
+    double y[CHUNK];
+    reflectance(m, &r->half[0], first, count, x);
+    reflectance(m, &r->half[1], first, count, y);
+    for (size_t i = 0; i < count; i++) {
+        x[i] += y[i];
+    }
+    gonio_i_log1p(count, x, x);
+    for (size_t i = 0; i < count; i++) {
+        values[i] = (float)x[i];
+    }
+}
+
+void gonio_i_mixtures_fill(const gonio_i_mixtures *mixtures, size_t first, size_t count,
+                           float *values)
+{
+    for (size_t k = 0; k < mixtures->count; k++) {
+        for (size_t i = 0; i < count; i += CHUNK) {
+            const size_t rows = count - i < CHUNK ? count - i : CHUNK;
+            mix(mixtures, &mixtures->recipe[k], first + i, rows, values + k * count + i);
+        }
+    }
+}
