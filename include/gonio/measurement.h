@@ -3,7 +3,12 @@
  * A readings file is CSV (docs/plan-and-readings.md): `#` comment lines, a line of column names in
  * any order, then a line a direction. theta_i_deg, phi_i_deg, theta_o_deg, phi_o_deg and at least
  * one of R_per_sr, G_per_sr, B_per_sr are needed; channel (R, G, B or all) says what the plan meant
- * to read there; other columns are kept. A plan is such a file without values. */
+ * to read there; other columns are kept. A plan is such a file without values.
+ *
+ * Spectral readings have columns named by wavelength, 400nm_per_sr and so on, instead. Scattered
+ * readings as text, as Cornell's laboratory and pbrt have them, are read too: `#` comments, the
+ * number of wavelengths, the wavelengths in nm, then for each reading theta_i, phi_i, theta_o,
+ * phi_o in radians and a value in 1/sr for each wavelength, with line breaks anywhere. */
 #ifndef GONIO_MEASUREMENT_H
 #define GONIO_MEASUREMENT_H
 
@@ -50,7 +55,23 @@ typedef struct gonio_readings_view {
     uint64_t basis;     /* fingerprint of the basis the plan was made for; 0 if not stated */
     size_t components;  /* K of the plan; 0 if not stated */
     const char *method; /* of the plan; "" if not stated */
+    size_t wavelengths;       /* of spectral readings; 0: R, G, B */
+    const double *wavelength; /* [wavelengths], nm */
+    const double *spectrum;   /* [count][wavelengths], 1/sr; NaN where nothing was read */
 } gonio_readings_view;
+
+/* Channels of the readings: 3, or their wavelengths; the value of one of them (NaN if it was not
+ * read), and its scale s of log space: gonio_log_scale, 1/1500 for a wavelength. */
+GONIO_API size_t gonio_readings_channels(const gonio_readings *readings);
+GONIO_API double gonio_readings_value(const gonio_readings *readings, size_t reading,
+                                      size_t channel);
+GONIO_API double gonio_readings_scale(const gonio_readings *readings, size_t channel);
+
+/* Takes the values of a plan's directions from readings of the same material at more directions:
+ * those with the same half/difference coordinates to 1e-4 radians. Errors: _DATA if there are none
+ * at a direction. */
+GONIO_API gonio_status gonio_readings_look_up(gonio_context *context, gonio_readings *plan,
+                                              const gonio_readings *known);
 
 GONIO_API gonio_readings_view gonio_readings_describe(const gonio_readings *readings);
 

@@ -4,7 +4,10 @@
  *   least-squares  c = argmin |X c - (b_X - m_X)| (Ali et al., eq. (5));
  *   ridge          c = S d, d = argmin |X S d - (b_X - m_X)|^2 + eta |d|^2 with the first
  *                  min(readings, K) components (Nielsen et al. 2015; Miandji et al. 2024).
- * Both are solved by QR with column pivoting. */
+ * Both are solved by QR with column pivoting.
+ *   posterior      the mean of what the database and the readings say together, with its deviation:
+ *                  a Gaussian mixture around the columns of the database and a smooth remainder
+ *                  (docs/accuracy.md). Works with any number of readings, one included. */
 #ifndef GONIO_RECONSTRUCT_H
 #define GONIO_RECONSTRUCT_H
 
@@ -22,6 +25,12 @@ typedef struct gonio_reconstruct_options {
     const char *method; /* gonio_reconstruct_method_name; NULL for what belongs to the plan
                          * (gonio_plan_method_reconstruction), least-squares if it states none */
     double eta;         /* of ridge, > 0; 0 for 40 */
+    /* Of posterior only: */
+    double noise;      /* standard deviation of a reading relative to its value; default 0.01 */
+    double floor;      /* standard deviation of a reading of darkness, 1/sr; default 1e-5 */
+    double saturation; /* readings of this value or more, 1/sr, mean at least it; 0: none */
+    bool deviation;    /* find the standard deviation of every cell too */
+    bool believe;      /* do not look for wrong units (gonio_reconstruction.suspicion) */
 } gonio_reconstruct_options;
 
 GONIO_API void gonio_reconstruct_options_default(gonio_reconstruct_options *options);
@@ -32,12 +41,43 @@ GONIO_API const char *gonio_reconstruct_method_summary(int index);
 
 typedef struct gonio_reconstruction {
     size_t components;
-    size_t columns;          /* 1 for a joint basis, 3 (R, G, B) for a separate one */
+    size_t columns;          /* 1 for a joint basis; for a separate one as many as the readings have
+                              * channels: 3 (R, G, B), or a spectrum's wavelengths */
     double *coefficients;    /* c, [columns][components] */
     size_t readings;         /* equations used, per column */
     double condition_number; /* kappa of X'X of the readings used; of S X'X S + eta I with ridge */
     double residual;         /* root mean square of X c - (b - m), log units */
+    /* By posterior only, otherwise 0 and NULL: */
+    double *field;          /* g in every row of the basis, [columns][rows] */
+    double *deviation;      /* its standard deviation, [columns][rows], if asked for */
+    double predicted_e6;    /* the E6 to expect, per cent */
+    double smoothness;      /* alpha: how far the remainder goes from the database, log units */
+    size_t outlying;        /* readings that the others contradict; they hardly count */
+    size_t wavelengths;     /* 0 for R, G, B */
+    double *wavelength;     /* [wavelengths], nm */
+    const char *suspicion;  /* what would explain the readings far better than what they say they
+                             * are ("the values include the cosine of theta_o"); NULL if nothing */
 } gonio_reconstruction;
+
+/* What a reconstruction by posterior says of a reading at any directions: value[channels] in 1/sr,
+ * and, unless it is NULL, the standard deviation of ln(1 + value/s) (needs
+ * gonio_reconstruction.deviation). */
+GONIO_API void gonio_reconstruction_predict(const gonio_basis *basis,
+                                            const gonio_reconstruction *reconstruction,
+                                            gonio_half_difference at, double *value,
+                                            double *deviation);
+
+/* The same for all directions of `readings`, whose values are replaced: as many channels as the
+ * reconstruction has. Errors: _MEMORY; _ARGUMENT if it is not one by posterior. */
+GONIO_API gonio_status gonio_reconstruction_predict_readings(
+    gonio_context *context, const gonio_basis *basis, const gonio_reconstruction *reconstruction,
+    gonio_readings *readings);
+
+/* The standard deviations of g as a material, in place of reflectances. The basis and the
+ * reconstruction must outlive it. Errors: _MEMORY; _ARGUMENT if they were not asked for. */
+GONIO_API gonio_status gonio_reconstruction_deviation_material(
+    gonio_context *context, const gonio_basis *basis, const gonio_reconstruction *reconstruction,
+    gonio_material **material);
 
 /* Solves for the coefficients.
  * Errors: _UNDETERMINED if the readings have fewer than K independent rows (the message says how

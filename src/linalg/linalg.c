@@ -175,6 +175,12 @@ gonio_status gonio_i_inverse_gram(gonio_context *context, const double *v, size_
     return status;
 }
 
+void gonio_i_divide_lower(double *b, size_t columns, size_t n, const double *l)
+{
+    cblas_dtrsm(CblasRowMajor, CblasRight, CblasLower, CblasNoTrans, CblasNonUnit, (int)columns,
+                (int)n, 1.0, l, (int)n, b, (int)n);
+}
+
 void gonio_i_divide_triangle(double *a, size_t rows, size_t n, const double *l)
 {
     cblas_dtrsm(CblasRowMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, (int)rows, (int)n,

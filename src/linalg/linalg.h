@@ -54,6 +54,9 @@ gonio_status gonio_i_inverse_cholesky(gonio_context *context, double *c, size_t 
 gonio_status gonio_i_inverse_gram(gonio_context *context, const double *v, size_t leading, size_t n,
                                   const size_t *rows, size_t count, double *inverse);
 
+/* b (columns x n) becomes b L^-1: with b = x L'^-1 that is x C^-1 for C = L L'. The same limits. */
+void gonio_i_divide_lower(double *b, size_t columns, size_t n, const double *l);
+
 /* A (rows x n, row-major) becomes A L'^-1 for a lower triangular L (n x n), of a matrix that fits
  * LAPACK's integers. */
 void gonio_i_divide_triangle(double *a, size_t rows, size_t n, const double *l);

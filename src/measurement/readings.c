@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -27,6 +28,8 @@ void gonio_readings_free(gonio_readings **readings)
     free((*readings)->path);
     free((*readings)->reading);
     free((*readings)->first_same);
+    free((*readings)->wavelength);
+    free((*readings)->spectrum);
     free(*readings);
     *readings = NULL;
 }
@@ -39,7 +42,46 @@ gonio_readings_view gonio_readings_describe(const gonio_readings *readings)
                                  .path = readings->path,
                                  .basis = readings->basis,
                                  .components = readings->components,
-                                 .method = method != NULL ? method : ""};
+                                 .method = method != NULL ? method : "",
+                                 .wavelengths = readings->wavelengths,
+                                 .wavelength = readings->wavelength,
+                                 .spectrum = readings->spectrum};
+}
+
+size_t gonio_readings_channels(const gonio_readings *readings)
+{
+    return readings->wavelengths > 0 ? readings->wavelengths : GONIO_CHANNELS;
+}
+
+double gonio_readings_value(const gonio_readings *readings, size_t reading, size_t channel)
+{
+    return readings->wavelengths > 0
+               ? readings->spectrum[reading * readings->wavelengths + channel]
+               : readings->reading[reading].value[channel];
+}
+
+double gonio_readings_scale(const gonio_readings *readings, size_t channel)
+{
+    return gonio_log_scale(readings->wavelengths > 0 ? GONIO_CHANNELS : (int)channel);
+}
+
+gonio_status gonio_i_readings_set_wavelengths(gonio_context *context, gonio_readings *readings,
+                                              const double *wavelength, size_t count)
+{
+    double *kept = gonio_i_allocate(context, count, sizeof *kept);
+    double *spectrum = gonio_i_allocate(context, readings->count * count, sizeof *spectrum);
+    if (kept == NULL || spectrum == NULL) {
+        free(kept);
+        free(spectrum);
+        return GONIO_ERROR_MEMORY;
+    }
+    memcpy(kept, wavelength, count * sizeof *kept);
+    free(readings->wavelength);
+    free(readings->spectrum);
+    readings->wavelength = kept;
+    readings->spectrum = spectrum;
+    readings->wavelengths = count;
+    return GONIO_OK;
 }
 
 /* ---- same directions ---- */
@@ -130,12 +172,46 @@ typedef struct columns {
     int angle[4];
     int value[GONIO_CHANNELS];
     int channel;
+    size_t wavelengths;
+    int *spectral;      /* [wavelengths] */
+    double *wavelength; /* [wavelengths], nm */
 } columns;
+
+/* The wavelength that a column is named by; 0 if it is another column. */
+static double wavelength_of(const char *name)
+{
+    char *end = NULL;
+    const double wavelength = strtod(name, &end);
+    const bool named = isdigit((unsigned char)*name) && strcasecmp(end, "nm_per_sr") == 0;
+    return named && wavelength > 0.0 && wavelength < 1e6 ? wavelength : 0.0;
+}
+
+static gonio_status find_wavelengths(gonio_context *context, const gonio_readings *readings,
+                                     columns *c)
+{
+    c->spectral = gonio_i_allocate(context, readings->csv->columns, sizeof *c->spectral);
+    c->wavelength = gonio_i_allocate(context, readings->csv->columns, sizeof *c->wavelength);
+    if (c->spectral == NULL || c->wavelength == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    for (size_t k = 0; k < readings->csv->columns; k++) {
+        const double wavelength = wavelength_of(readings->csv->name[k]);
+        if (wavelength > 0.0) {
+            c->spectral[c->wavelengths] = (int)k;
+            c->wavelength[c->wavelengths++] = wavelength;
+        }
+    }
+    return GONIO_OK;
+}
 
 static gonio_status find_columns(gonio_context *context, const gonio_readings *readings,
                                  bool values_needed, columns *c)
 {
-    bool any = false;
+    const gonio_status status = find_wavelengths(context, readings, c);
+    bool any = c->wavelengths > 0;
+    if (status != GONIO_OK) {
+        return status;
+    }
     for (int k = 0; k < 4; k++) {
         c->angle[k] = gonio_i_csv_column(readings->csv, angle_columns[k]);
         if (c->angle[k] < 0) {
@@ -148,11 +224,17 @@ static gonio_status find_columns(gonio_context *context, const gonio_readings *r
     for (int k = 0; k < GONIO_CHANNELS; k++) {
         c->value[k] = gonio_i_csv_column(readings->csv, value_columns[k]);
         any = any || c->value[k] >= 0;
+        if (c->value[k] >= 0 && c->wavelengths > 0) {
+            return gonio_i_fail(context, GONIO_ERROR_FORMAT,
+                                "%s: columns of colours (%s) and of wavelengths (%gnm_per_sr); "
+                                "delete one kind",
+                                readings->path, value_columns[k], c->wavelength[0]);
+        }
     }
     if (values_needed && !any) {
         return gonio_i_fail(
             context, GONIO_ERROR_FORMAT,
-            "%s: no column of values (R_per_sr, G_per_sr, B_per_sr): a plan that was "
+            "%s: no column of values (R_per_sr, G_per_sr, B_per_sr, or 400nm_per_sr ...): a plan that was "
             "not measured yet?",
             readings->path);
     }
@@ -202,28 +284,39 @@ static bool is_missing(const char *cell)
     return *cell == '\0' || strcasecmp(cell, "na") == 0 || strcasecmp(cell, "nan") == 0;
 }
 
-static gonio_status read_values(gonio_context *context, const gonio_readings *readings, size_t row,
-                                const columns *c, const gonio_readings_options *options,
-                                double value[GONIO_CHANNELS])
+/* NaN for a column that there is not (-1) and for an empty cell. */
+static gonio_status read_value(gonio_context *context, const gonio_readings *readings, size_t row,
+                               int column, const gonio_readings_options *options, double *value)
 {
-    for (int k = 0; k < GONIO_CHANNELS; k++) {
-        const int column = c->value[k];
-        value[k] = NAN;
-        if (column < 0 || is_missing(gonio_i_csv_cell(readings->csv, row, (size_t)column))) {
-            continue;
-        }
-        if (!gonio_i_csv_number(readings->csv, row, (size_t)column, &value[k]) ||
-            !isfinite(value[k])) {
-            return bad_cell(context, readings, row, column, GONIO_ERROR_FORMAT,
-                            "is not a finite number (leave the cell empty where nothing was read)");
-        }
-        if (value[k] < 0.0 && !options->negative_to_zero) {
-            return bad_cell(context, readings, row, column, GONIO_ERROR_DATA,
-                            "is negative: a dark level too high? --negative-to-zero takes it as 0");
-        }
-        value[k] = fmax(value[k], 0.0);
+    *value = NAN;
+    if (column < 0 || is_missing(gonio_i_csv_cell(readings->csv, row, (size_t)column))) {
+        return GONIO_OK;
     }
+    if (!gonio_i_csv_number(readings->csv, row, (size_t)column, value) || !isfinite(*value)) {
+        return bad_cell(context, readings, row, column, GONIO_ERROR_FORMAT,
+                        "is not a finite number (leave the cell empty where nothing was read)");
+    }
+    if (*value < 0.0 && !options->negative_to_zero) {
+        return bad_cell(context, readings, row, column, GONIO_ERROR_DATA,
+                        "is negative: a dark level too high? --negative-to-zero takes it as 0");
+    }
+    *value = fmax(*value, 0.0);
     return GONIO_OK;
+}
+
+static gonio_status read_values(gonio_context *context, gonio_readings *readings, size_t row,
+                                const columns *c, const gonio_readings_options *options)
+{
+    gonio_status status = GONIO_OK;
+    for (int k = 0; k < GONIO_CHANNELS && status == GONIO_OK; k++) {
+        status = read_value(context, readings, row, c->value[k], options,
+                            &readings->reading[row].value[k]);
+    }
+    for (size_t k = 0; k < c->wavelengths && status == GONIO_OK; k++) {
+        status = read_value(context, readings, row, c->spectral[k], options,
+                            &readings->spectrum[row * c->wavelengths + k]);
+    }
+    return status;
 }
 
 static gonio_status read_channel(gonio_context *context, const gonio_readings *readings, size_t row,
@@ -247,7 +340,7 @@ static gonio_status read_channel(gonio_context *context, const gonio_readings *r
                     "is no channel: R, G, B or all");
 }
 
-static gonio_status read_row(gonio_context *context, const gonio_readings *readings, size_t row,
+static gonio_status read_row(gonio_context *context, gonio_readings *readings, size_t row,
                              const columns *c, const gonio_readings_options *options)
 {
     gonio_reading *reading = &readings->reading[row];
@@ -260,7 +353,7 @@ static gonio_status read_row(gonio_context *context, const gonio_readings *readi
         status = read_channel(context, readings, row, c, &reading->channel);
     }
     if (status == GONIO_OK) {
-        status = read_values(context, readings, row, c, options, reading->value);
+        status = read_values(context, readings, row, c, options);
     }
     return status;
 }
@@ -304,16 +397,15 @@ static gonio_status read_notes(gonio_context *context, gonio_readings *readings)
     return status;
 }
 
-static gonio_status read_rows(gonio_context *context, gonio_readings *readings,
-                              const gonio_readings_options *options)
+static gonio_status read_all(gonio_context *context, gonio_readings *readings,
+                             const gonio_readings_options *options, columns *c)
 {
-    columns c = {0};
     readings->count = readings->csv->rows;
     if (readings->count == 0) {
         return gonio_i_fail(context, GONIO_ERROR_DATA, "%s: no lines below the column names",
                             readings->path);
     }
-    gonio_status status = find_columns(context, readings, options->values_needed, &c);
+    gonio_status status = find_columns(context, readings, options->values_needed, c);
     if (status != GONIO_OK) {
         return status;
     }
@@ -322,8 +414,11 @@ static gonio_status read_rows(gonio_context *context, gonio_readings *readings,
     if (readings->reading == NULL || readings->first_same == NULL) {
         return GONIO_ERROR_MEMORY;
     }
+    if (c->wavelengths > 0) {
+        status = gonio_i_readings_set_wavelengths(context, readings, c->wavelength, c->wavelengths);
+    }
     for (size_t row = 0; row < readings->count && status == GONIO_OK; row++) {
-        status = read_row(context, readings, row, &c, options);
+        status = read_row(context, readings, row, c, options);
     }
     if (status == GONIO_OK) {
         status = gonio_i_readings_group(context, readings->reading, readings->count,
@@ -332,6 +427,16 @@ static gonio_status read_rows(gonio_context *context, gonio_readings *readings,
     if (status == GONIO_OK && !options->average_repeats) {
         status = refuse_repeats(context, readings, options->values_needed);
     }
+    return status;
+}
+
+static gonio_status read_rows(gonio_context *context, gonio_readings *readings,
+                              const gonio_readings_options *options)
+{
+    columns c = {0};
+    const gonio_status status = read_all(context, readings, options, &c);
+    free(c.spectral);
+    free(c.wavelength);
     return status;
 }
 
@@ -345,8 +450,11 @@ gonio_status gonio_readings_read(gonio_context *context, const char *path,
         return GONIO_ERROR_MEMORY;
     }
     made->path = strdup(path);
-    gonio_status status =
-        made->path == NULL ? GONIO_ERROR_MEMORY : gonio_i_csv_read(context, path, &made->csv);
+    gonio_status status = GONIO_ERROR_MEMORY;
+    if (made->path != NULL) {
+        status = gonio_i_scattered_probe(path) ? gonio_i_scattered_read(context, path, &made->csv)
+                                               : gonio_i_csv_read(context, path, &made->csv);
+    }
     if (status == GONIO_OK) {
         status = read_notes(context, made);
     }
@@ -372,24 +480,30 @@ static int column_or_new(gonio_i_csv *csv, const char *name)
     return gonio_i_csv_add_column(csv, name) ? (int)csv->columns - 1 : -1;
 }
 
+static bool set_channel(gonio_i_csv *csv, const gonio_readings *readings, size_t channel,
+                        const char *name)
+{
+    const int column = column_or_new(csv, name);
+    bool set = column >= 0;
+    for (size_t row = 0; row < readings->count && set; row++) {
+        const double value = gonio_readings_value(readings, row, channel);
+        set = isnan(value) ? gonio_i_csv_set(csv, row, (size_t)column, "%s", "")
+                           : gonio_i_csv_set(csv, row, (size_t)column, "%.10g", value);
+    }
+    return set;
+}
+
 static bool set_values(gonio_i_csv *csv, const gonio_readings *readings)
 {
-    for (int k = 0; k < GONIO_CHANNELS; k++) {
-        const int column = column_or_new(csv, value_columns[k]);
-        if (column < 0) {
-            return false;
+    bool set = true;
+    for (size_t k = 0; k < gonio_readings_channels(readings) && set; k++) {
+        char name[48];
+        if (readings->wavelengths > 0) {
+            snprintf(name, sizeof name, "%.10gnm_per_sr", readings->wavelength[k]);
         }
-        for (size_t row = 0; row < readings->count; row++) {
-            const double value = readings->reading[row].value[k];
-            const bool set = isnan(value)
-                                 ? gonio_i_csv_set(csv, row, (size_t)column, "%s", "")
-                                 : gonio_i_csv_set(csv, row, (size_t)column, "%.10g", value);
-            if (!set) {
-                return false;
-            }
-        }
+        set = set_channel(csv, readings, k, readings->wavelengths > 0 ? name : value_columns[k]);
     }
-    return true;
+    return set;
 }
 
 /* The header lines of a readings file: what it is and who wrote it, then what the plan said. */

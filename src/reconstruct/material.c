@@ -7,6 +7,7 @@
 #include "../core/core.h"
 #include "../core/vector_math.h"
 #include "../direction/grid.h"
+#include "field.h"
 
 typedef struct reconstructed {
     const gonio_basis *basis;
@@ -158,6 +159,9 @@ gonio_status gonio_reconstruction_material(gonio_context *context, const gonio_b
                                            const gonio_reconstruction *reconstruction,
                                            const char *name, gonio_material **material)
 {
+    if (reconstruction->field != NULL) {
+        return gonio_i_field_material(context, basis, reconstruction, name, material);
+    }
     const size_t count = reconstruction->columns * reconstruction->components;
     reconstructed *r = gonio_i_allocate(context, 1, sizeof *r + count * sizeof(double));
     if (r == NULL) {

@@ -27,11 +27,13 @@ typedef struct gonio_i_reconstruct_method {
     const char *name;
     const char *summary;
     bool needs_full_rank; /* as many independent readings as coefficients */
+    /* NULL: not equation by equation, see estimate.h */
     gonio_status (*solve)(gonio_context *context, const gonio_i_equations *equations,
                           gonio_i_solution *solution);
 } gonio_i_reconstruct_method;
 
 extern const gonio_i_reconstruct_method gonio_i_least_squares_method;
 extern const gonio_i_reconstruct_method gonio_i_ridge_method;
+extern const gonio_i_reconstruct_method gonio_i_posterior_method;
 
 #endif

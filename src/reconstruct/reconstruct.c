@@ -8,11 +8,12 @@
 
 #include "../linalg/linalg.h"
 #include "../measurement/readings.h"
+#include "estimate.h"
 #include "method.h"
 
 void gonio_reconstruct_options_default(gonio_reconstruct_options *options)
 {
-    *options = (gonio_reconstruct_options){0};
+    *options = (gonio_reconstruct_options){.noise = 0.01, .floor = 1e-5};
 }
 
 void gonio_reconstruction_free(gonio_reconstruction **reconstruction)
@@ -21,6 +22,9 @@ void gonio_reconstruction_free(gonio_reconstruction **reconstruction)
         return;
     }
     free((*reconstruction)->coefficients);
+    free((*reconstruction)->field);
+    free((*reconstruction)->deviation);
+    free((*reconstruction)->wavelength);
     free(*reconstruction);
     *reconstruction = NULL;
 }
@@ -132,6 +136,7 @@ static gonio_status solve_column(const solver *s, const gathered *e, size_t colu
 static const gonio_i_reconstruct_method *const methods[] = {
     &gonio_i_least_squares_method,
     &gonio_i_ridge_method,
+    &gonio_i_posterior_method,
 };
 
 enum { METHODS = sizeof methods / sizeof *methods };
@@ -149,10 +154,12 @@ const char *gonio_reconstruct_method_summary(int index)
 }
 
 /* The method asked for, or that of the plan, or the first. */
-static const gonio_i_reconstruct_method *find_method(const char *asked, const char *plan)
+static const gonio_i_reconstruct_method *find_method(const gonio_basis_view *basis,
+                                                     const char *asked, const char *plan)
 {
     const char *planned = plan != NULL ? gonio_plan_method_reconstruction(plan) : NULL;
-    const char *name = asked != NULL ? asked : planned;
+    const char *usual = basis->mixtures > 0 ? "posterior" : NULL;
+    const char *name = asked != NULL ? asked : planned != NULL ? planned : usual;
     for (int k = 0; k < METHODS && name != NULL; k++) {
         if (strcmp(methods[k]->name, name) == 0) {
             return methods[k];
@@ -162,11 +169,12 @@ static const gonio_i_reconstruct_method *find_method(const char *asked, const ch
 }
 
 /* All but the singular values; plan: the name of its method, or NULL. */
-static gonio_status choose_solver(gonio_context *context, const gonio_reconstruct_options *options,
-                                  const char *plan, solver *s)
+static gonio_status choose_solver(gonio_context *context, const gonio_basis_view *basis,
+                                  const gonio_reconstruct_options *options, const char *plan,
+                                  solver *s)
 {
     s->context = context;
-    s->method = find_method(options->method, plan);
+    s->method = find_method(basis, options->method, plan);
     s->eta = options->eta != 0.0 ? options->eta : default_eta;
     if (s->method == NULL) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
@@ -320,7 +328,15 @@ gonio_status gonio_reconstruct(gonio_context *context, const gonio_basis *basis,
     }
     size_t components = 0;
     gonio_status status =
-        choose_solver(context, t.options, gonio_readings_describe(readings).method, &t.solver);
+        choose_solver(context, &view, t.options, gonio_readings_describe(readings).method,
+                      &t.solver);
+    if (status == GONIO_OK && t.solver.method->solve == NULL) {
+        return gonio_i_estimate_readings(context, basis, readings, t.options, reconstruction);
+    }
+    if (status == GONIO_OK && readings->wavelengths > 0) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "%s: spectral readings are for --method posterior", readings->path);
+    }
     if (status == GONIO_OK) {
         status = choose_components(&t, view.components, &components);
     }
@@ -411,11 +427,15 @@ gonio_status gonio_reconstruct_rows_with(gonio_context *context, const gonio_bas
     gonio_reconstruct_options_default(&defaults);
     options = options != NULL ? options : &defaults;
     solver s = {0};
-    const gonio_status status = choose_solver(context, options, NULL, &s);
+    const gonio_basis_view view = gonio_basis_describe(basis);
+    const gonio_status status = choose_solver(context, &view, options, NULL, &s);
     if (status != GONIO_OK) {
         return status;
     }
-    const size_t available = gonio_basis_describe(basis).components;
+    if (s.method->solve == NULL) {
+        return gonio_i_estimate_rows(context, basis, options, rows, count, b, reconstruction);
+    }
+    const size_t available = view.components;
     const size_t components =
         options->components > 0 ? options->components : default_components(&s, count, available);
     return reconstruct_rows(&s, basis, components, rows, count, b, reconstruction);

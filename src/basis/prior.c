@@ -1,0 +1,141 @@
+/* The prior: see prior.h. */
+#include "prior.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "../direction/grid.h"
+
+/* The weight that learning gave a column, on average 1 (basis.h, mixtures). */
+static double weight_of(const gonio_basis_view *view, size_t column)
+{
+    const double all = (double)view->columns;
+    const double measured = all - (double)view->mixtures;
+    if (view->mixtures == 0) {
+        return 1.0;
+    }
+    return 0.5 * all / ((double)column < measured ? measured : (double)view->mixtures);
+}
+
+/* H - m = V S W' with every column times the root of its weight, so that z of column j is
+ * W_j ((columns - 1) / weight)^(1/2). */
+static void find_samples(gonio_i_prior *prior)
+{
+    const gonio_basis_view *view = &prior->view;
+    for (size_t j = 0; j < prior->samples; j++) {
+        const double weight = weight_of(view, j);
+        const double factor = sqrt((double)(view->columns - 1) / weight);
+        prior->share[j] = weight / (double)view->columns;
+        for (size_t k = 0; k < prior->components; k++) {
+            prior->sample[j * prior->components + k] =
+                factor * view->loadings[j * prior->components + k];
+        }
+    }
+}
+
+gonio_status gonio_i_prior_create(gonio_context *context, const gonio_basis *basis,
+                                  gonio_i_prior **prior)
+{
+    gonio_i_prior *made = gonio_i_allocate(context, 1, sizeof *made);
+    if (made == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    made->basis = basis;
+    made->view = gonio_basis_describe(basis);
+    made->components = made->view.components;
+    made->samples = made->view.loadings != NULL ? made->view.columns : 0;
+    made->deviation = gonio_i_allocate(context, made->components, sizeof *made->deviation);
+    made->sample =
+        gonio_i_allocate(context, made->samples * made->components, sizeof *made->sample);
+    made->share = gonio_i_allocate(context, made->samples, sizeof *made->share);
+    if (made->deviation == NULL || made->sample == NULL || made->share == NULL) {
+        gonio_i_prior_free(&made);
+        return GONIO_ERROR_MEMORY;
+    }
+    for (size_t k = 0; k < made->components; k++) {
+        made->deviation[k] = sqrt(made->view.variances[k]);
+    }
+    find_samples(made);
+    *prior = made;
+    return GONIO_OK;
+}
+
+void gonio_i_prior_free(gonio_i_prior **prior)
+{
+    if (prior == NULL || *prior == NULL) {
+        return;
+    }
+    free((*prior)->deviation);
+    free((*prior)->sample);
+    free((*prior)->share);
+    free(*prior);
+    *prior = NULL;
+}
+
+static void scale(const gonio_i_prior *prior, double *f)
+{
+    for (size_t k = 0; k < prior->components; k++) {
+        f[k] *= prior->deviation[k];
+    }
+}
+
+void gonio_i_prior_at(const gonio_i_prior *prior, gonio_half_difference at, int channel,
+                      double *mean, double *f)
+{
+    gonio_basis_row_at(prior->basis, at, channel, prior->components, mean, f);
+    scale(prior, f);
+}
+
+void gonio_i_prior_row(const gonio_i_prior *prior, size_t row, double *f)
+{
+    const double *v = prior->view.vectors + row * prior->components;
+    for (size_t k = 0; k < prior->components; k++) {
+        f[k] = v[k];
+    }
+    scale(prior, f);
+}
+
+gonio_i_place gonio_i_place_of(gonio_half_difference at)
+{
+    const double quarter = M_PI / 2.0;
+    const double turn = sqrt(fmax(sin(at.theta_h) * sin(at.theta_d), 0.0)) / 1.5;
+    return (gonio_i_place){{GONIO_THETA_H_BINS / 10.0 * sqrt(fmax(at.theta_h, 0.0) / quarter),
+                            at.theta_d / quarter * 90.0 / 20.0, turn * cos(2.0 * at.phi_d),
+                            turn * sin(2.0 * at.phi_d)}};
+}
+
+double gonio_i_smoothness(const gonio_i_place *a, const gonio_i_place *b)
+{
+    double square = 0.0;
+    for (int k = 0; k < 4; k++) {
+        square += (a->p[k] - b->p[k]) * (a->p[k] - b->p[k]);
+    }
+    return exp(-0.5 * square);
+}
+
+gonio_half_difference gonio_i_row_coordinates(const gonio_basis_view *view, size_t row,
+                                              int *channel)
+{
+    const size_t each = view->channels == GONIO_JOINT ? GONIO_CHANNELS : 1;
+    const int32_t cell = view->cell[row / each];
+    *channel = (int)(row % each);
+    const gonio_bin bin = gonio_cell_bin(view->representation, cell);
+    gonio_half_difference at = gonio_bin_centre(bin);
+    const double low =
+        (gonio_i_first_valid_phi(bin.theta_h, bin.theta_d) + 0.5) * M_PI / GONIO_PHI_D_BINS;
+    at.phi_d = view->representation == GONIO_BIVARIATE
+                   ? M_PI / 2.0
+                   : fmin(fmax(at.phi_d, low), fmax(M_PI - low, low));
+    return at;
+}
+
+double gonio_i_cell_bins(gonio_representation representation, int32_t cell)
+{
+    const int depth = GONIO_BINS / gonio_grid_cells(representation);
+    const gonio_bin bin = gonio_bin_from_index(cell * depth);
+    const int first = gonio_i_first_valid_phi(bin.theta_h, bin.theta_d);
+    const int low = bin.phi_d > first ? bin.phi_d : first;
+    const int end = bin.phi_d + depth;
+    const int high = end < GONIO_PHI_D_BINS - first ? end : GONIO_PHI_D_BINS - first;
+    return high > low ? high - low : 0.0;
+}

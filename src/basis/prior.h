@@ -1,0 +1,56 @@
+/* What a basis says of a material before anything of it was read.
+ *
+ * In the basis's log space a channel of a material is
+ *
+ *     g(x) = m(x) + f(x) z + r(x),   f(x) = row x of V diag(lambda)^(1/2),
+ *
+ * z the database's part, of mean 0 and covariance I; r a smooth remainder that the database has
+ * never seen, of mean 0 and covariance alpha^2 k(x, x'), k = exp(-|p(x) - p(x')|^2 / 2), p the
+ * place of x below. The columns that the basis was learned from are samples of z. */
+#ifndef GONIO_PRIOR_H
+#define GONIO_PRIOR_H
+
+#include "basis.h"
+
+typedef struct gonio_i_prior {
+    const gonio_basis *basis;
+    gonio_basis_view view;
+    size_t components; /* K, all of the basis */
+    double *deviation; /* [K]: lambda^(1/2) */
+    size_t samples;    /* columns; 0 if the basis has no loadings */
+    double *sample;    /* [samples][K]: z of each column */
+    double *share;     /* [samples], add up to 1 */
+} gonio_i_prior;
+
+/* The basis must outlive it. Errors: _MEMORY. */
+gonio_status gonio_i_prior_create(gonio_context *context, const gonio_basis *basis,
+                                  gonio_i_prior **prior);
+void gonio_i_prior_free(gonio_i_prior **prior);
+
+/* m and f at any directions: f[K]. */
+void gonio_i_prior_at(const gonio_i_prior *prior, gonio_half_difference at, int channel,
+                      double *mean, double *f);
+
+/* f of a row of the basis. */
+void gonio_i_prior_row(const gonio_i_prior *prior, size_t row, double *f);
+
+/* Half/difference coordinates in which the remainder is smooth: lengths of 10 bins of theta_h
+ * (which crowd around the mirror direction), 20 degrees of theta_d, and phi_d as far as it matters
+ * there: two directions that differ in phi_d alone are the closer the nearer h is to the normal or
+ * d to h. */
+typedef struct gonio_i_place {
+    double p[4];
+} gonio_i_place;
+
+gonio_i_place gonio_i_place_of(gonio_half_difference at);
+double gonio_i_smoothness(const gonio_i_place *a, const gonio_i_place *b);
+
+/* The coordinates that a row of the basis stands for, above the horizon where its cell has any such
+ * bin, and its channel (joint) or 0. */
+gonio_half_difference gonio_i_row_coordinates(const gonio_basis_view *view, size_t row,
+                                              int *channel);
+
+/* Valid bins of the grid that a cell stands for. */
+double gonio_i_cell_bins(gonio_representation representation, int32_t cell);
+
+#endif

@@ -1,0 +1,69 @@
+/* Readings taken out of others of the same material: see measurement.h. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "readings.h"
+
+static const double SAME = 1e-4; /* radians */
+
+/* How far apart two directions are, for an isotropic and reciprocal material. */
+static double distance(gonio_half_difference a, gonio_half_difference b)
+{
+    const double turn = fabs(a.phi_d - b.phi_d);
+    const double phi = fmin(turn, M_PI - turn) * sin(a.theta_d) * fmin(1.0, a.theta_h / SAME);
+    return fmax(fmax(fabs(a.theta_h - b.theta_h), fabs(a.theta_d - b.theta_d)), phi);
+}
+
+/* The nearest reading; `count` if none is near. */
+static size_t find(const gonio_half_difference *known, size_t count, gonio_half_difference at)
+{
+    size_t nearest = count;
+    double least = SAME;
+    for (size_t k = 0; k < count; k++) {
+        const double here = distance(known[k], at);
+        if (here <= least) {
+            least = here;
+            nearest = k;
+        }
+    }
+    return nearest;
+}
+
+static void copy(gonio_readings *plan, size_t row, const gonio_readings *known, size_t from)
+{
+    for (int k = 0; k < GONIO_CHANNELS; k++) {
+        plan->reading[row].value[k] = known->reading[from].value[k];
+    }
+    for (size_t k = 0; k < known->wavelengths; k++) {
+        plan->spectrum[row * known->wavelengths + k] =
+            known->spectrum[from * known->wavelengths + k];
+    }
+}
+
+gonio_status gonio_readings_look_up(gonio_context *context, gonio_readings *plan,
+                                    const gonio_readings *known)
+{
+    gonio_half_difference *at = gonio_i_allocate(context, known->count, sizeof *at);
+    gonio_status status = at == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    for (size_t k = 0; k < known->count && status == GONIO_OK; k++) {
+        at[k] = gonio_half_difference_from_pair(known->reading[k].pair);
+    }
+    if (status == GONIO_OK && known->wavelengths > 0) {
+        status = gonio_i_readings_set_wavelengths(context, plan, known->wavelength,
+                                                  known->wavelengths);
+    }
+    for (size_t k = 0; k < plan->count && status == GONIO_OK; k++) {
+        const size_t from = find(at, known->count,
+                                 gonio_half_difference_from_pair(plan->reading[k].pair));
+        if (from == known->count) {
+            status = gonio_i_fail(context, GONIO_ERROR_DATA,
+                                  "%s:%zu: %s has no reading at these directions; plan with "
+                                  "--candidates to choose among those it has",
+                                  plan->path, plan->reading[k].line, known->path);
+        } else {
+            copy(plan, k, known, from);
+        }
+    }
+    free(at);
+    return status;
+}

@@ -1,0 +1,291 @@
+/* One column's Gaussian problem: see equations.h. */
+#include "equations.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../linalg/linalg.h"
+
+/* Deviations from which on a reading is taken to be wrong; of a Gaussian one in 3 million is. */
+static const double OUTLYING = 5.0;
+
+enum { MOST_ROUNDS = 20 };
+
+/* A variance that leaves a reading no say. */
+static const double NO_SAY = 1e6;
+
+static gonio_status allocate(gonio_i_gaussian *e)
+{
+    gonio_context *c = e->context;
+    const size_t n = e->n;
+    e->f = gonio_i_allocate(c, n * e->components, sizeof *e->f);
+    e->place = gonio_i_allocate(c, n, sizeof *e->place);
+    e->y = gonio_i_allocate(c, n, sizeof *e->y);
+    e->variance = gonio_i_allocate(c, n, sizeof *e->variance);
+    e->bound = gonio_i_allocate(c, n, sizeof *e->bound);
+    e->left_out = gonio_i_allocate(c, n, sizeof *e->left_out);
+    e->gram = gonio_i_allocate(c, n * n, sizeof *e->gram);
+    e->smooth = gonio_i_allocate(c, n * n, sizeof *e->smooth);
+    e->lower = gonio_i_allocate(c, n * n, sizeof *e->lower);
+    e->weight = gonio_i_allocate(c, e->prior->samples, sizeof *e->weight);
+    e->centre = gonio_i_allocate(c, e->components, sizeof *e->centre);
+    e->rest = gonio_i_allocate(c, n, sizeof *e->rest);
+    e->solved = gonio_i_allocate(c, n, sizeof *e->solved);
+    const bool done = e->f && e->place && e->y && e->variance && e->bound && e->left_out &&
+                      e->gram && e->smooth && e->lower && e->weight && e->centre && e->rest &&
+                      e->solved;
+    return done ? GONIO_OK : GONIO_ERROR_MEMORY;
+}
+
+void gonio_i_gaussian_end(gonio_i_gaussian *e)
+{
+    free(e->f);
+    free(e->place);
+    free(e->y);
+    free(e->variance);
+    free(e->bound);
+    free(e->left_out);
+    free(e->gram);
+    free(e->smooth);
+    free(e->lower);
+    free(e->weight);
+    free(e->centre);
+    free(e->rest);
+    free(e->solved);
+    *e = (gonio_i_gaussian){0};
+}
+
+gonio_status gonio_i_gaussian_begin(gonio_context *context, const gonio_i_prior *prior,
+                                    const gonio_i_column *column, gonio_i_gaussian *e)
+{
+    *e = (gonio_i_gaussian){.context = context,
+                            .prior = prior,
+                            .n = column->count,
+                            .components = prior->components,
+                            .h = prior->samples > 0 ? GONIO_I_KERNEL_WIDTH : 1.0};
+    const gonio_status status = allocate(e);
+    if (status != GONIO_OK) {
+        return status;
+    }
+    for (size_t i = 0; i < e->n; i++) {
+        const gonio_i_observation *o = &column->observation[i];
+        double mean = 0.0;
+        gonio_i_prior_at(prior, o->at, o->channel, &mean, e->f + i * e->components);
+        e->place[i] = gonio_i_place_of(o->at);
+        e->y[i] = o->g - mean;
+        e->variance[i] = o->variance;
+        e->bound[i] = o->bound;
+        for (size_t j = 0; j <= i; j++) {
+            const double k = gonio_i_smoothness(&e->place[i], &e->place[j]);
+            e->smooth[i * e->n + j] = k;
+            e->smooth[j * e->n + i] = k;
+        }
+    }
+    return gonio_i_product_transposed(context, e->f, e->n, e->components, e->f, e->n, e->gram,
+                                      e->n);
+}
+
+/* L of S; the sum of the logarithms of its diagonal goes to `logarithm`. */
+static gonio_status factorise(gonio_i_gaussian *e, double *logarithm)
+{
+    const size_t n = e->n;
+    for (size_t i = 0; i < n * n; i++) {
+        e->lower[i] = e->h * e->h * e->gram[i] + e->alpha * e->alpha * e->smooth[i];
+    }
+    for (size_t i = 0; i < n; i++) {
+        e->lower[i * n + i] += e->left_out[i] ? NO_SAY : e->variance[i];
+    }
+    const gonio_status status = gonio_i_cholesky(e->context, e->lower, n);
+    *logarithm = 0.0;
+    for (size_t i = 0; i < n && status == GONIO_OK; i++) {
+        *logarithm += log(e->lower[i * n + i]);
+    }
+    return status;
+}
+
+static double square_distance(const double *a, const double *b, size_t n)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        sum += (a[i] - b[i]) * (a[i] - b[i]);
+    }
+    return sum;
+}
+
+/* weight: from logarithms to numbers that add up to 1; returns the logarithm of their sum. */
+static double normalise(double *weight, size_t count)
+{
+    double most = -INFINITY;
+    double sum = 0.0;
+    for (size_t j = 0; j < count; j++) {
+        most = fmax(most, weight[j]);
+    }
+    for (size_t j = 0; j < count; j++) {
+        weight[j] = exp(weight[j] - most);
+        sum += weight[j];
+    }
+    for (size_t j = 0; j < count; j++) {
+        weight[j] /= sum;
+    }
+    return most + log(sum);
+}
+
+/* q and z; returns in e->evidence the logarithm of sum_j share_j exp(-|...|^2/2). */
+static gonio_status weigh_samples(gonio_i_gaussian *e)
+{
+    const size_t n = e->n;
+    const size_t samples = e->prior->samples;
+    const double a = sqrt(1.0 - e->h * e->h);
+    double *seen = gonio_i_allocate(e->context, (samples + 1) * n, sizeof *seen);
+    if (seen == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    double *y = seen + samples * n;
+    const gonio_status status = gonio_i_product_transposed(
+        e->context, e->prior->sample, samples, e->components, e->f, n, seen, n);
+    for (size_t i = 0; i < samples * n; i++) {
+        seen[i] *= a;
+    }
+    memcpy(y, e->y, n * sizeof *y);
+    gonio_i_divide_triangle(seen, samples + 1, n, e->lower);
+    for (size_t j = 0; j < samples; j++) {
+        e->weight[j] = log(e->prior->share[j]) - 0.5 * square_distance(y, seen + j * n, n);
+    }
+    e->evidence = normalise(e->weight, samples);
+    for (size_t j = 0; j < samples; j++) {
+        for (size_t k = 0; k < e->components; k++) {
+            e->centre[k] += a * e->weight[j] * e->prior->sample[j * e->components + k];
+        }
+    }
+    free(seen);
+    return status;
+}
+
+gonio_status gonio_i_gaussian_solve(gonio_i_gaussian *e, double alpha)
+{
+    double logarithm = 0.0;
+    e->alpha = alpha;
+    gonio_status status = factorise(e, &logarithm);
+    memset(e->centre, 0, e->components * sizeof *e->centre);
+    if (status == GONIO_OK && e->prior->samples > 0) {
+        status = weigh_samples(e);
+    }
+    if (status != GONIO_OK) {
+        return status;
+    }
+    double square = 0.0;
+    for (size_t i = 0; i < e->n; i++) {
+        e->rest[i] = e->y[i];
+        for (size_t k = 0; k < e->components; k++) {
+            e->rest[i] -= e->f[i * e->components + k] * e->centre[k];
+        }
+        e->solved[i] = e->rest[i];
+    }
+    gonio_i_divide_triangle(e->solved, 1, e->n, e->lower);
+    for (size_t i = 0; i < e->n; i++) {
+        square += e->solved[i] * e->solved[i];
+    }
+    gonio_i_divide_lower(e->solved, 1, e->n, e->lower);
+    const double mixed = e->prior->samples > 0 ? e->evidence : -0.5 * square;
+    e->evidence = mixed - logarithm - 0.5 * (double)e->n * log(2.0 * M_PI);
+    return GONIO_OK;
+}
+
+/* Of a Gaussian without one of its values: the difference (S^-1 r)_i / (S^-1)_ii of variance
+ * 1/(S^-1)_ii (Sundararajan and Keerthi 2001). */
+gonio_status gonio_i_gaussian_leave_one_out(const gonio_i_gaussian *e, double *difference,
+                                            double *variance)
+{
+    const size_t n = e->n;
+    double *inverse = gonio_i_allocate(e->context, n * n, sizeof *inverse);
+    if (inverse == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    for (size_t i = 0; i < n; i++) {
+        inverse[i * n + i] = 1.0;
+    }
+    gonio_i_divide_triangle(inverse, n, n, e->lower);
+    for (size_t i = 0; i < n; i++) {
+        double sum = 0.0;
+        for (size_t k = 0; k < n; k++) {
+            sum += inverse[i * n + k] * inverse[i * n + k];
+        }
+        variance[i] = 1.0 / sum;
+        difference[i] = e->solved[i] / sum;
+    }
+    free(inverse);
+    return GONIO_OK;
+}
+
+/* What settling needs to know of the readings. */
+typedef struct judgement {
+    double *difference; /* [n] */
+    double *variance;   /* [n] */
+    bool *outlying;     /* [n] */
+} judgement;
+
+/* A bound that the other readings keep by themselves says nothing. */
+static bool judge_bounds(gonio_i_gaussian *e, const judgement *j)
+{
+    bool changed = false;
+    for (size_t i = 0; i < e->n; i++) {
+        /* difference: reading less what the others say; of one left out, what the model says. */
+        const bool kept = e->bound[i] != 0 && e->bound[i] * j->difference[i] < 0.0;
+        changed = changed || kept != e->left_out[i];
+        e->left_out[i] = kept;
+    }
+    return changed;
+}
+
+/* The worst of the readings that the others contradict gets a variance to match; a few at a time,
+ * as a wrong reading makes its neighbours look wrong. */
+static bool judge_readings(gonio_i_gaussian *e, const judgement *j)
+{
+    const size_t most = 1 + e->n / 40;
+    size_t found = 0;
+    for (; found < most; found++) {
+        size_t worst = e->n;
+        double largest = OUTLYING;
+        for (size_t i = 0; i < e->n; i++) {
+            const double deviations = fabs(j->difference[i]) / sqrt(j->variance[i]);
+            if (!j->outlying[i] && !e->left_out[i] && deviations > largest) {
+                largest = deviations;
+                worst = i;
+            }
+        }
+        if (worst == e->n) {
+            break;
+        }
+        j->outlying[worst] = true;
+        e->variance[worst] = j->difference[worst] * j->difference[worst];
+    }
+    return found > 0;
+}
+
+gonio_status gonio_i_gaussian_settle(gonio_i_gaussian *e, size_t *outlying)
+{
+    judgement j = {gonio_i_allocate(e->context, e->n, sizeof *j.difference),
+                   gonio_i_allocate(e->context, e->n, sizeof *j.variance),
+                   gonio_i_allocate(e->context, e->n, sizeof *j.outlying)};
+    gonio_status status = j.difference == NULL || j.variance == NULL || j.outlying == NULL
+                              ? GONIO_ERROR_MEMORY
+                              : GONIO_OK;
+    bool changed = true;
+    for (int round = 0; round < MOST_ROUNDS && changed && status == GONIO_OK; round++) {
+        status = gonio_i_gaussian_leave_one_out(e, j.difference, j.variance);
+        if (status == GONIO_OK) {
+            const bool bounds = judge_bounds(e, &j);
+            changed = judge_readings(e, &j) || bounds;
+            status = changed ? gonio_i_gaussian_solve(e, e->alpha) : GONIO_OK;
+        }
+    }
+    *outlying = 0;
+    for (size_t i = 0; i < e->n && status == GONIO_OK; i++) {
+        *outlying += j.outlying[i];
+    }
+    free(j.difference);
+    free(j.variance);
+    free(j.outlying);
+    return status;
+}

@@ -1,0 +1,227 @@
+/* Reconstruction by posterior: see estimate.h. */
+#include "estimate.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "method.h"
+
+enum { MOST_READINGS = 6000 }; /* of a column: their covariance is held in memory */
+
+static gonio_status check(gonio_context *context, const gonio_basis_view *view,
+                          const gonio_reconstruct_options *options)
+{
+    if (view->mapping != GONIO_LOG) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "posterior works on a basis of the log mapping (gonio learn without "
+                            "--mapping relative)");
+    }
+    if (!(options->noise >= 0.0 && isfinite(options->noise)) ||
+        !(options->floor >= 0.0 && isfinite(options->floor)) || !(options->saturation >= 0.0)) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "noise, floor and saturation are numbers from 0");
+    }
+    return GONIO_OK;
+}
+
+/* Every column has something to go by. */
+static gonio_status check_columns(gonio_context *context, const gonio_i_columns *columns,
+                                  const char *path)
+{
+    for (size_t k = 0; k < columns->count; k++) {
+        const size_t count = columns->column[k].count;
+        if (count == 0) {
+            return gonio_i_fail(context, GONIO_ERROR_UNDETERMINED,
+                                "%sno reading in channel %zu: are the cells of its values empty?",
+                                path, k + 1);
+        }
+        if (count > MOST_READINGS) {
+            return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                                "%s%zu readings in a channel are more than posterior takes (%d); "
+                                "average neighbours, or use --method least-squares",
+                                path, count, MOST_READINGS);
+        }
+    }
+    return GONIO_OK;
+}
+
+static gonio_status allocate(gonio_context *context, const gonio_basis_view *view, size_t columns,
+                             const gonio_reconstruct_options *options, gonio_reconstruction **made)
+{
+    gonio_reconstruction *r = gonio_i_allocate(context, 1, sizeof *r);
+    if (r == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    r->columns = columns;
+    r->components = view->components;
+    r->coefficients =
+        gonio_i_allocate(context, columns * r->components, sizeof *r->coefficients);
+    r->field = gonio_i_allocate(context, columns * view->rows, sizeof *r->field);
+    if (options->deviation) {
+        r->deviation = gonio_i_allocate(context, columns * view->rows, sizeof *r->deviation);
+    }
+    if (r->coefficients == NULL || r->field == NULL ||
+        (options->deviation && r->deviation == NULL)) {
+        gonio_reconstruction_free(&r);
+        return GONIO_ERROR_MEMORY;
+    }
+    *made = r;
+    return GONIO_OK;
+}
+
+static gonio_status find(gonio_context *context, const gonio_i_prior *prior,
+                         const gonio_i_columns *columns, const gonio_reconstruct_options *options,
+                         gonio_reconstruction *r)
+{
+    const gonio_i_posterior_options how = {.smoothness = -1.0, .deviation = options->deviation};
+    gonio_i_posterior p = {
+        .coefficients = r->coefficients, .field = r->field, .deviation = r->deviation};
+    const gonio_status status =
+        gonio_i_posterior_find(context, prior, columns->column, columns->count, &how, &p);
+    r->smoothness = p.smoothness;
+    r->predicted_e6 = p.predicted;
+    r->outlying = p.outlying;
+    r->residual = p.residual;
+    for (size_t k = 0; k < columns->count; k++) {
+        r->readings = columns->column[k].count > r->readings ? columns->column[k].count
+                                                             : r->readings;
+    }
+    return status;
+}
+
+static gonio_status keep_wavelengths(gonio_context *context, const gonio_readings *readings,
+                                     gonio_reconstruction *r)
+{
+    const gonio_readings_view view = gonio_readings_describe(readings);
+    if (view.wavelengths == 0) {
+        return GONIO_OK;
+    }
+    r->wavelengths = view.wavelengths;
+    r->wavelength = gonio_i_allocate(context, view.wavelengths, sizeof *r->wavelength);
+    if (r->wavelength == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    memcpy(r->wavelength, view.wavelength, view.wavelengths * sizeof *r->wavelength);
+    return GONIO_OK;
+}
+
+static gonio_status estimate(gonio_context *context, const gonio_i_prior *prior,
+                             const gonio_readings *readings,
+                             const gonio_reconstruct_options *options, gonio_reconstruction *r,
+                             const gonio_i_columns *columns)
+{
+    gonio_status status = keep_wavelengths(context, readings, r);
+    if (status == GONIO_OK && !options->believe) {
+        status = gonio_i_suspect(context, prior, readings, options, &r->suspicion);
+    }
+    return status == GONIO_OK ? find(context, prior, columns, options, r) : status;
+}
+
+gonio_status gonio_i_estimate_readings(gonio_context *context, const gonio_basis *basis,
+                                       const gonio_readings *readings,
+                                       const gonio_reconstruct_options *options,
+                                       gonio_reconstruction **reconstruction)
+{
+    const gonio_basis_view view = gonio_basis_describe(basis);
+    gonio_status status = check(context, &view, options);
+    if (status == GONIO_OK && view.channels == GONIO_JOINT &&
+        gonio_readings_channels(readings) != GONIO_CHANNELS) {
+        status = gonio_i_fail(context, GONIO_ERROR_MISMATCH,
+                              "spectral readings need a basis of separate channels (gonio learn "
+                              "--channels separate)");
+    }
+    if (status != GONIO_OK) {
+        return status;
+    }
+    gonio_i_columns columns;
+    gonio_i_prior *prior = NULL;
+    gonio_reconstruction *made = NULL;
+    char *origin = gonio_i_format("%s: ", gonio_readings_describe(readings).path);
+    status = gonio_i_columns_create(context, &view, readings, options, NULL, &columns);
+    if (status == GONIO_OK) {
+        status = origin == NULL ? GONIO_ERROR_MEMORY : check_columns(context, &columns, origin);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_prior_create(context, basis, &prior);
+    }
+    if (status == GONIO_OK) {
+        status = allocate(context, &view, columns.count, options, &made);
+    }
+    if (status == GONIO_OK) {
+        status = estimate(context, prior, readings, options, made, &columns);
+    }
+    gonio_i_columns_free(&columns);
+    gonio_i_prior_free(&prior);
+    free(origin);
+    if (status != GONIO_OK) {
+        gonio_reconstruction_free(&made);
+        return status;
+    }
+    *reconstruction = made;
+    return GONIO_OK;
+}
+
+/* ---- from rows ---- */
+
+static gonio_status observe_rows(gonio_context *context, const gonio_basis_view *view,
+                                 const size_t *rows, size_t count, const double *b,
+                                 gonio_i_columns *columns)
+{
+    *columns = (gonio_i_columns){.count = view->channels == GONIO_JOINT ? 1 : GONIO_CHANNELS};
+    columns->column = gonio_i_allocate(context, columns->count, sizeof *columns->column);
+    for (size_t k = 0; columns->column != NULL && k < columns->count; k++) {
+        gonio_i_column *column = &columns->column[k];
+        column->count = count;
+        column->observation = gonio_i_allocate(context, count, sizeof *column->observation);
+        for (size_t i = 0; column->observation != NULL && i < count; i++) {
+            gonio_i_observation *o = &column->observation[i];
+            *o = (gonio_i_observation){.g = b[k * count + i], .variance = 0.03 * 0.03};
+            o->at = gonio_i_row_coordinates(view, rows[i], &o->channel);
+            o->bound = o->g <= 0.0 ? -1 : 0;
+        }
+        if (column->observation == NULL) {
+            return GONIO_ERROR_MEMORY;
+        }
+    }
+    return columns->column != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
+}
+
+gonio_status gonio_i_estimate_rows(gonio_context *context, const gonio_basis *basis,
+                                   const gonio_reconstruct_options *options, const size_t *rows,
+                                   size_t count, const double *b,
+                                   gonio_reconstruction **reconstruction)
+{
+    const gonio_basis_view view = gonio_basis_describe(basis);
+    gonio_i_columns columns = {0};
+    gonio_i_prior *prior = NULL;
+    gonio_reconstruction *made = NULL;
+    gonio_status status = check(context, &view, options);
+    if (status == GONIO_OK) {
+        status = observe_rows(context, &view, rows, count, b, &columns);
+    }
+    if (status == GONIO_OK) {
+        status = check_columns(context, &columns, "");
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_prior_create(context, basis, &prior);
+    }
+    if (status == GONIO_OK) {
+        status = allocate(context, &view, columns.count, options, &made);
+    }
+    if (status == GONIO_OK) {
+        status = find(context, prior, &columns, options, made);
+    }
+    gonio_i_columns_free(&columns);
+    gonio_i_prior_free(&prior);
+    if (status != GONIO_OK) {
+        gonio_reconstruction_free(&made);
+        return status;
+    }
+    *reconstruction = made;
+    return GONIO_OK;
+}
+
+const gonio_i_reconstruct_method gonio_i_posterior_method = {
+    "posterior", "what the database and the readings say together, with its uncertainty", false,
+    NULL};

@@ -1,0 +1,255 @@
+/* A reconstruction's field as a material and at single directions: see reconstruct.h. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../core/vector_math.h"
+#include "../direction/grid.h"
+#include "../measurement/readings.h"
+#include "estimate.h"
+#include "field.h"
+
+/* Weights of the rows around directions, as gonio_basis_row_at has them. */
+static int stencil_at(const gonio_basis_view *view, gonio_half_difference at,
+                      gonio_i_stencil stencil[GONIO_I_TRILINEAR])
+{
+    if (view->representation == GONIO_BIVARIATE) {
+        gonio_i_bilinear(at, stencil);
+        return GONIO_I_BILINEAR;
+    }
+    if (view->representation == GONIO_SECTORED) {
+        gonio_i_trilinear_sectors(at, stencil);
+    } else {
+        gonio_i_trilinear(at, stencil);
+    }
+    return GONIO_I_TRILINEAR;
+}
+
+double gonio_i_field_at(const gonio_basis *basis, const double *field, int channel,
+                        gonio_half_difference at)
+{
+    gonio_i_stencil stencil[GONIO_I_TRILINEAR];
+    const gonio_basis_view view = gonio_basis_describe(basis);
+    const bool joint = view.channels == GONIO_JOINT;
+    const int points = stencil_at(&view, at, stencil);
+    double value = 0.0;
+    for (int k = 0; k < points; k++) {
+        const size_t position = gonio_basis_position(
+            basis, gonio_cell_of_bin(view.representation, stencil[k].bin));
+        value += stencil[k].weight *
+                 field[joint ? position * GONIO_CHANNELS + (size_t)channel : position];
+    }
+    return value;
+}
+
+/* ---- predicting ---- */
+
+static size_t channels_of(const gonio_reconstruction *r)
+{
+    return r->wavelengths > 0 ? r->wavelengths : GONIO_CHANNELS;
+}
+
+static double scale_of(const gonio_reconstruction *r, size_t channel)
+{
+    return gonio_log_scale(r->wavelengths > 0 ? GONIO_CHANNELS : (int)channel);
+}
+
+/* Where a channel's rows begin in a field or a deviation. */
+static const double *rows_of(const gonio_basis *basis, const gonio_reconstruction *r,
+                             const double *field, size_t channel)
+{
+    return field + (r->columns > 1 ? channel * gonio_basis_describe(basis).rows : 0);
+}
+
+void gonio_reconstruction_predict(const gonio_basis *basis, const gonio_reconstruction *r,
+                                  gonio_half_difference at, double *value, double *deviation)
+{
+    for (size_t k = 0; k < channels_of(r); k++) {
+        const double g = gonio_i_field_at(basis, rows_of(basis, r, r->field, k), (int)k, at);
+        value[k] = scale_of(r, k) * expm1(fmin(fmax(g, 0.0), GONIO_I_LARGEST_LOG));
+        if (deviation != NULL) {
+            deviation[k] =
+                gonio_i_field_at(basis, rows_of(basis, r, r->deviation, k), (int)k, at);
+        }
+    }
+}
+
+gonio_status gonio_reconstruction_predict_readings(gonio_context *context,
+                                                   const gonio_basis *basis,
+                                                   const gonio_reconstruction *r,
+                                                   gonio_readings *readings)
+{
+    if (r->field == NULL) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "only a reconstruction by posterior predicts single readings");
+    }
+    double *value = gonio_i_allocate(context, channels_of(r), sizeof *value);
+    gonio_status status = value == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    if (status == GONIO_OK && r->wavelengths > 0) {
+        status =
+            gonio_i_readings_set_wavelengths(context, readings, r->wavelength, r->wavelengths);
+    }
+    for (size_t k = 0; k < readings->count && status == GONIO_OK; k++) {
+        gonio_reading *reading = &readings->reading[k];
+        gonio_reconstruction_predict(basis, r, gonio_half_difference_from_pair(reading->pair),
+                                     value, NULL);
+        double *to = r->wavelengths > 0 ? readings->spectrum + k * r->wavelengths : reading->value;
+        memcpy(to, value, channels_of(r) * sizeof *value);
+    }
+    free(value);
+    return status;
+}
+
+/* ---- as a material ---- */
+
+/* A field over the grid, of three channels. */
+typedef struct spread_field {
+    const gonio_basis *basis;
+    gonio_basis_view view;
+    bool plain;  /* values as they are, not exponentials */
+    double *g;   /* [channel][position] */
+} spread_field;
+
+static void release(void *self)
+{
+    spread_field *f = self;
+    free(f->g);
+    free(f);
+}
+
+/* One row of bins: between the middles of sectors, or a cell for all or for each. */
+static void fill_row(const spread_field *f, int theta_h, int theta_d, size_t channel, int first,
+                     double *row)
+{
+    const double *g = f->g + channel * f->view.cells;
+    const int32_t cell = theta_h * GONIO_THETA_D_BINS + theta_d;
+    const int depth = GONIO_BINS / gonio_grid_cells(f->view.representation);
+    const int runs = GONIO_PHI_D_BINS / depth;
+    for (int p = first; p < GONIO_PHI_D_BINS - first; p++) {
+        const double at = (p + 0.5) / depth - 0.5 + runs;
+        const int low = (int)at;
+        const size_t a = gonio_basis_position(f->basis, cell * runs + low % runs);
+        const size_t b = gonio_basis_position(f->basis, cell * runs + (low + 1) % runs);
+        row[p] = g[a] + (at - low) * (g[b] - g[a]);
+    }
+}
+
+static void finish_row(const spread_field *f, size_t channel, size_t count, double *row)
+{
+    for (size_t k = 0; k < count; k++) {
+        row[k] = row[k] > 0.0 ? fmin(row[k], GONIO_I_LARGEST_LOG) : 0.0;
+    }
+    if (!f->plain) {
+        gonio_i_expm1(count, row, row);
+        for (size_t k = 0; k < count; k++) {
+            row[k] *= gonio_log_scale((int)channel);
+        }
+    }
+}
+
+static gonio_status read_field(void *self, gonio_context *context, int theta_h, double *rho)
+{
+    (void)context;
+    const spread_field *f = self;
+    for (size_t k = 0; k < GONIO_SLAB_VALUES; k++) {
+        rho[k] = -1.0;
+    }
+    for (int theta_d = 0; theta_d < GONIO_THETA_D_BINS; theta_d++) {
+        const int first = gonio_i_first_valid_phi(theta_h, theta_d);
+        for (size_t channel = 0; channel < GONIO_CHANNELS && 2 * first < GONIO_PHI_D_BINS;
+             channel++) {
+            double *row = rho + channel * GONIO_SLAB_BINS + (size_t)theta_d * GONIO_PHI_D_BINS;
+            fill_row(f, theta_h, theta_d, channel, first, row);
+            finish_row(f, channel, (size_t)(GONIO_PHI_D_BINS - 2 * first), row + first);
+        }
+    }
+    return GONIO_OK;
+}
+
+/* [channel][position] of R, G, B. */
+static void copy_colours(const gonio_reconstruction *r, const double *from, spread_field *f)
+{
+    const bool joint = r->columns == 1;
+    for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
+        for (size_t k = 0; k < f->view.cells; k++) {
+            f->g[channel * f->view.cells + k] =
+                joint ? from[k * GONIO_CHANNELS + channel] : from[channel * f->view.rows + k];
+        }
+    }
+}
+
+/* The colours of spectra, cell by cell. */
+static void mix_colours(const gonio_reconstruction *r, double *spectrum, spread_field *f)
+{
+    for (size_t k = 0; k < f->view.cells; k++) {
+        double rgb[GONIO_CHANNELS];
+        for (size_t j = 0; j < r->wavelengths; j++) {
+            const double g = r->field[j * f->view.rows + k];
+            spectrum[j] = scale_of(r, j) * expm1(fmin(fmax(g, 0.0), GONIO_I_LARGEST_LOG));
+        }
+        gonio_i_spectrum_to_rgb(r->wavelength, spectrum, r->wavelengths, rgb);
+        for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
+            f->g[channel * f->view.cells + k] = gonio_log_from_brdf(rgb[channel], (int)channel);
+        }
+    }
+}
+
+static gonio_status fill_field(gonio_context *context, const gonio_reconstruction *r,
+                               const double *from, spread_field *f)
+{
+    if (r->wavelengths == 0) {
+        copy_colours(r, from, f);
+        return GONIO_OK;
+    }
+    double *spectrum = gonio_i_allocate(context, r->wavelengths, sizeof *spectrum);
+    if (spectrum == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    mix_colours(r, spectrum, f);
+    free(spectrum);
+    return GONIO_OK;
+}
+
+static gonio_status create(gonio_context *context, const gonio_basis *basis,
+                           const gonio_reconstruction *r, const double *from, bool plain,
+                           const char *name, gonio_material **material)
+{
+    spread_field *f = gonio_i_allocate(context, 1, sizeof *f);
+    if (f == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    f->basis = basis;
+    f->view = gonio_basis_describe(basis);
+    f->plain = plain;
+    f->g = gonio_i_allocate(context, GONIO_CHANNELS * f->view.cells, sizeof *f->g);
+    gonio_status status =
+        f->g == NULL ? GONIO_ERROR_MEMORY : fill_field(context, r, from, f);
+    const gonio_material_source source = {read_field, release, f};
+    if (status == GONIO_OK) {
+        status = gonio_material_create(context, name, "reconstruction", source, material);
+    }
+    if (status != GONIO_OK) {
+        release(f);
+    }
+    return status;
+}
+
+gonio_status gonio_i_field_material(gonio_context *context, const gonio_basis *basis,
+                                    const gonio_reconstruction *r, const char *name,
+                                    gonio_material **material)
+{
+    return create(context, basis, r, r->field, false, name, material);
+}
+
+gonio_status gonio_reconstruction_deviation_material(gonio_context *context,
+                                                     const gonio_basis *basis,
+                                                     const gonio_reconstruction *r,
+                                                     gonio_material **material)
+{
+    if (r->deviation == NULL || r->wavelengths > 0) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "a table of deviations is made of readings in R, G, B, where they "
+                            "were asked for");
+    }
+    return create(context, basis, r, r->deviation, true, "deviation", material);
+}

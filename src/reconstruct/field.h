@@ -1,0 +1,15 @@
+/* A field g over the cells of a basis as a material. */
+#ifndef GONIO_FIELD_H
+#define GONIO_FIELD_H
+
+#include <gonio/reconstruct.h>
+
+/* Its exponential is finite. */
+#define GONIO_I_LARGEST_LOG 600.0
+
+/* As gonio_reconstruction_material, which calls it for a reconstruction with a field. */
+gonio_status gonio_i_field_material(gonio_context *context, const gonio_basis *basis,
+                                    const gonio_reconstruction *reconstruction, const char *name,
+                                    gonio_material **material);
+
+#endif

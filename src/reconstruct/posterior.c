@@ -1,0 +1,212 @@
+/* The posterior of all columns: see posterior.h. */
+#include "posterior.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../linalg/linalg.h"
+#include "equations.h"
+#include "spread.h"
+
+/* alpha is one of these, in log units. */
+static const double SMOOTHNESS[] = {0.0, 0.03, 0.06, 0.12, 0.25, 0.5, 1.0};
+
+enum {
+    CHOICES = sizeof SMOOTHNESS / sizeof *SMOOTHNESS,
+    MOST_TRIED = 128,        /* readings of a column that alpha is chosen by */
+    MOST_COLUMNS_TRIED = 8,  /* columns that it is chosen by */
+};
+
+/* Readings are wrong more often than Gaussians say: what is left out is scored by Student's t with
+ * this many degrees of freedom. */
+static const double FREEDOM = 4.0;
+
+/* ---- choosing alpha ---- */
+
+/* ln of Student's density of a difference, but for a constant. */
+static double score_of(double difference, double variance)
+{
+    const double square = difference * difference / variance;
+    return -0.5 * log(variance) - 0.5 * (FREEDOM + 1.0) * log1p(square / FREEDOM);
+}
+
+static gonio_status add_scores(gonio_i_gaussian *e, double score[CHOICES])
+{
+    double *difference = gonio_i_allocate(e->context, e->n, sizeof *difference);
+    double *variance = gonio_i_allocate(e->context, e->n, sizeof *variance);
+    gonio_status status =
+        difference == NULL || variance == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    for (int k = 0; k < CHOICES && status == GONIO_OK; k++) {
+        status = gonio_i_gaussian_solve(e, SMOOTHNESS[k]);
+        if (status == GONIO_OK) {
+            status = gonio_i_gaussian_leave_one_out(e, difference, variance);
+        }
+        for (size_t i = 0; i < e->n && status == GONIO_OK; i++) {
+            score[k] += score_of(difference[i], variance[i]);
+        }
+    }
+    free(difference);
+    free(variance);
+    return status;
+}
+
+/* At most MOST_TRIED readings of a column, evenly spaced. */
+static gonio_status thin(gonio_context *context, const gonio_i_column *column,
+                         gonio_i_column *thinned)
+{
+    const size_t count = column->count < MOST_TRIED ? column->count : MOST_TRIED;
+    thinned->observation = gonio_i_allocate(context, count, sizeof *thinned->observation);
+    thinned->count = count;
+    if (thinned->observation == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    for (size_t i = 0; i < count; i++) {
+        thinned->observation[i] = column->observation[i * column->count / count];
+    }
+    return GONIO_OK;
+}
+
+static gonio_status score_column(gonio_context *context, const gonio_i_prior *prior,
+                                 const gonio_i_column *column, double score[CHOICES])
+{
+    gonio_i_column thinned = {0};
+    gonio_i_gaussian e = {0};
+    gonio_status status = thin(context, column, &thinned);
+    if (status == GONIO_OK) {
+        status = gonio_i_gaussian_begin(context, prior, &thinned, &e);
+    }
+    if (status == GONIO_OK) {
+        status = add_scores(&e, score);
+    }
+    gonio_i_gaussian_end(&e);
+    free(thinned.observation);
+    return status;
+}
+
+static gonio_status choose_smoothness(gonio_context *context, const gonio_i_prior *prior,
+                                      const gonio_i_column *columns, size_t count, double *alpha)
+{
+    double score[CHOICES] = {0.0};
+    const size_t tried = count < MOST_COLUMNS_TRIED ? count : MOST_COLUMNS_TRIED;
+    gonio_status status = GONIO_OK;
+    for (size_t k = 0; k < tried && status == GONIO_OK; k++) {
+        const gonio_i_column *column = &columns[k * count / tried];
+        status = column->count > 1 ? score_column(context, prior, column, score) : GONIO_OK;
+    }
+    int best = 0;
+    for (int k = 1; k < CHOICES; k++) {
+        best = score[k] > score[best] ? k : best;
+    }
+    *alpha = SMOOTHNESS[best];
+    return status;
+}
+
+gonio_status gonio_i_posterior_evidence(gonio_context *context, const gonio_i_prior *prior,
+                                        const gonio_i_column *column, double smoothness,
+                                        double *evidence)
+{
+    gonio_i_gaussian e;
+    gonio_status status = gonio_i_gaussian_begin(context, prior, column, &e);
+    if (status == GONIO_OK) {
+        status = gonio_i_gaussian_solve(&e, smoothness);
+    }
+    *evidence = e.evidence;
+    gonio_i_gaussian_end(&e);
+    return status;
+}
+
+/* ---- one column ---- */
+
+/* c = z + h^2 F' S^-1 (y - F z), in units of the prior. */
+static void find_coefficients(const gonio_i_gaussian *e, double *c)
+{
+    memcpy(c, e->centre, e->components * sizeof *c);
+    for (size_t i = 0; i < e->n; i++) {
+        for (size_t k = 0; k < e->components; k++) {
+            c[k] += e->h * e->h * e->solved[i] * e->f[i * e->components + k];
+        }
+    }
+}
+
+/* Root mean square of what is left between the readings and the field at them: D S^-1 (y - F z). */
+static double square_left(const gonio_i_gaussian *e)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < e->n; i++) {
+        const double left = e->left_out[i] ? 0.0 : e->variance[i] * e->solved[i];
+        sum += left * left;
+    }
+    return sum;
+}
+
+/* The sums over rows and columns that the predicted error is made of. */
+typedef struct predicted_sums {
+    double error;
+    double square;
+} predicted_sums;
+
+static gonio_status solve_column(gonio_i_gaussian *e, size_t column, gonio_i_posterior *p,
+                                 predicted_sums *sums)
+{
+    const size_t rows = e->prior->view.rows;
+    double *c = p->coefficients + column * e->components;
+    find_coefficients(e, c);
+    const gonio_i_spread_target target = {
+        .c = c,
+        .field = p->field + column * rows,
+        .deviation = p->deviation != NULL ? p->deviation + column * rows : NULL};
+    const gonio_status status =
+        gonio_i_spread(e, &target, &sums->error, &sums->square);
+    for (size_t k = 0; k < e->components; k++) {
+        c[k] *= e->prior->deviation[k];
+    }
+    return status;
+}
+
+static gonio_status find_column(gonio_context *context, const gonio_i_prior *prior,
+                                const gonio_i_column *columns, size_t column,
+                                gonio_i_posterior *p, predicted_sums *sums)
+{
+    gonio_i_gaussian e;
+    size_t outlying = 0;
+    gonio_status status = gonio_i_gaussian_begin(context, prior, &columns[column], &e);
+    if (status == GONIO_OK) {
+        status = gonio_i_gaussian_solve(&e, p->smoothness);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_gaussian_settle(&e, &outlying);
+    }
+    if (status == GONIO_OK) {
+        status = solve_column(&e, column, p, sums);
+        p->outlying += outlying;
+        p->residual += square_left(&e);
+    }
+    gonio_i_gaussian_end(&e);
+    return status;
+}
+
+gonio_status gonio_i_posterior_find(gonio_context *context, const gonio_i_prior *prior,
+                                    const gonio_i_column *columns, size_t count,
+                                    const gonio_i_posterior_options *options,
+                                    gonio_i_posterior *p)
+{
+    predicted_sums sums = {0.0, 0.0};
+    size_t readings = 0;
+    gonio_status status = GONIO_OK;
+    p->smoothness = options->smoothness;
+    p->outlying = 0;
+    p->residual = 0.0;
+    if (!(options->smoothness >= 0.0)) {
+        status = choose_smoothness(context, prior, columns, count, &p->smoothness);
+    }
+    for (size_t k = 0; k < count && status == GONIO_OK; k++) {
+        status = find_column(context, prior, columns, k, p, &sums);
+        readings += columns[k].count;
+    }
+    if (status == GONIO_OK) {
+        p->predicted = 100.0 * sqrt(sums.error / sums.square);
+        p->residual = readings > 0 ? sqrt(p->residual / (double)readings) : 0.0;
+    }
+    return status;
+}

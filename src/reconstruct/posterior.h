@@ -1,0 +1,65 @@
+/* The posterior: what readings of a material say of all of it, given a prior (basis/prior.h).
+ *
+ * With y = g - m at the readings, F their rows f, k the smoothness between them and D the variances
+ * of noise, the covariance of y is
+ *
+ *     S = h^2 F F' + alpha^2 k + D.
+ *
+ * The columns of the database are not only its covariance: each one, shrunk by a = (1 - h^2)^(1/2),
+ * is the centre of a Gaussian of covariance h^2 I, weighted by how well it explains the readings
+ * (a Gaussian mixture with a common covariance; Silverman 1986, West 1993):
+ *
+ *     q_j ~ share_j exp(-|L^-1 (y - a F z_j)|^2 / 2),   S = L L',   z = a sum q_j z_j,
+ *     c = z + h^2 F' S^-1 (y - F z),   g(x) = m(x) + f(x) c + alpha^2 k(x, .) S^-1 (y - F z).
+ *
+ * alpha is chosen by leaving readings out one at a time, all columns together. A reading that the
+ * others contradict by more than `OUTLYING` deviations counts with a variance to match. */
+#ifndef GONIO_POSTERIOR_H
+#define GONIO_POSTERIOR_H
+
+#include <gonio/reconstruct.h>
+
+#include "../basis/prior.h"
+
+/* A reading of one column. */
+typedef struct gonio_i_observation {
+    gonio_half_difference at;
+    int channel;     /* of the row, if the basis is joint */
+    double g;        /* in log space */
+    double variance; /* of noise, in log space */
+    int bound;       /* 0; -1: g is at most this (a reading of zero); 1: at least (saturated) */
+} gonio_i_observation;
+
+typedef struct gonio_i_column {
+    size_t count;
+    gonio_i_observation *observation;
+} gonio_i_column;
+
+typedef struct gonio_i_posterior_options {
+    double smoothness; /* alpha; negative: chosen */
+    bool deviation;    /* of every row wanted */
+} gonio_i_posterior_options;
+
+/* What is found; arrays belong to the caller and are filled in. */
+typedef struct gonio_i_posterior {
+    double *coefficients; /* [columns][K], of V */
+    double *field;        /* [columns][rows]: g */
+    double *deviation;    /* [columns][rows] of g, or NULL */
+    double smoothness;    /* alpha */
+    double predicted;     /* of E6, per cent */
+    size_t outlying;      /* readings that the others contradict, all columns */
+    double residual;      /* root mean square of what the others leave, log units */
+} gonio_i_posterior;
+
+/* Errors: _MEMORY, _NUMERICAL, _CANCELLED. */
+gonio_status gonio_i_posterior_find(gonio_context *context, const gonio_i_prior *prior,
+                                    const gonio_i_column *columns, size_t count,
+                                    const gonio_i_posterior_options *options,
+                                    gonio_i_posterior *posterior);
+
+/* ln of the density of the readings of a column under the prior, with a given alpha. */
+gonio_status gonio_i_posterior_evidence(gonio_context *context, const gonio_i_prior *prior,
+                                        const gonio_i_column *column, double smoothness,
+                                        double *evidence);
+
+#endif
