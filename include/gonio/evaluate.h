@@ -32,6 +32,15 @@ typedef struct gonio_comparison {
 GONIO_API gonio_status gonio_compare(gonio_context *context, const gonio_material *reference,
                                      const gonio_material *other, gonio_comparison *comparison);
 
+/* The same errors over readings: of reference reading k and of reading k of the other, which is at
+ * the same directions (gonio_readings_look_up), in all channels that both have. left_out[count], or
+ * NULL: readings that do not count, for they were used. Errors: _MISMATCH (other numbers of
+ * readings or channels), _DATA (nothing to compare). */
+GONIO_API gonio_status gonio_compare_readings(gonio_context *context,
+                                              const gonio_readings *reference,
+                                              const gonio_readings *other, const bool *left_out,
+                                              gonio_error *error, size_t *compared);
+
 #ifdef __cplusplus
 }
 #endif

@@ -67,6 +67,10 @@ GONIO_API double gonio_readings_value(const gonio_readings *readings, size_t rea
                                       size_t channel);
 GONIO_API double gonio_readings_scale(const gonio_readings *readings, size_t channel);
 
+/* Which readings have the directions of one in `others`: same[count]. */
+GONIO_API gonio_status gonio_readings_find(gonio_context *context, const gonio_readings *readings,
+                                           const gonio_readings *others, bool *same);
+
 /* Takes the values of a plan's directions from readings of the same material at more directions:
  * those with the same half/difference coordinates to 1e-4 radians. Errors: _DATA if there are none
  * at a direction. */

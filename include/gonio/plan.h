@@ -1,8 +1,11 @@
 /* A plan: where to measure.
  *
- * Selection (Ali et al., section 3.8): of the rows of V_K choose n, X, that minimise the condition
+ * By default the readings that leave the least expected error of the reconstruction by posterior
+ * (reconstruct.h): each the best next one, with exchanges (docs/accuracy.md).
+ *
+ * Selection of Ali et al., section 3.8: of the rows of V_K choose n, X, that minimise the condition
  * number kappa = lambda_max(X'X)/lambda_min(X'X), by swaps until no single one lowers it. The other
- * methods are those that it is compared with: docs/method.md. */
+ * methods are those that both are compared with: docs/method.md. */
 #ifndef GONIO_PLAN_H
 #define GONIO_PLAN_H
 
@@ -30,7 +33,8 @@ typedef struct gonio_plan_step {
 
 typedef struct gonio_plan {
     size_t count;
-    gonio_plan_entry *entries; /* ascending row of the basis */
+    gonio_plan_entry *entries; /* ascending row of the basis; by expected-error in the order of
+                                * reading: the first of them are a good plan too */
     size_t components;         /* K that the plan was made for */
     double condition_number;   /* kappa of X'X, infinity if singular; of matusik, nielsen and
                                 * frost, that of the rows of V S */
@@ -40,10 +44,20 @@ typedef struct gonio_plan {
         tests; /* rows tried at a position, all starts: one eigenvalue solve each in the paper */
     size_t steps;
     gonio_plan_step *history; /* all restarts, in order; not kept in files */
+    double *expected;         /* [count] by expected-error: the E6 to expect of a material after
+                               * each reading, per cent; NULL by other methods */
 } gonio_plan;
 
+/* Errors that a plan can be made for: evaluate.h. */
+typedef enum gonio_metric {
+    GONIO_E6 = 0,
+    GONIO_CUBE_ROOT = 1,
+    GONIO_LOG_RELATIVE_ERROR = 2
+} gonio_metric;
+
 typedef struct gonio_plan_options {
-    const char *method; /* "condition" by default: gonio_plan_method_name */
+    const char *method; /* NULL: what suits the basis, expected-error for one with mixtures and
+                         * condition for others; gonio_plan_method_name */
     const char *start;  /* of the swaps: "random" (default): gonio_plan_start_name */
     size_t components;  /* K; 0 for all of the basis, with nielsen and frost for n if it is less */
     size_t count;       /* n, rows to choose; 80 by default */
@@ -51,6 +65,13 @@ typedef struct gonio_plan_options {
     uint64_t seed;      /* same seed, same plan, on any number of threads */
     bool keep_history;  /* true by default; a search of very many starts may do without */
     double phi_d;       /* where on the free angle to measure a bivariate cell; pi/2 by default */
+    /* Of expected-error only: */
+    gonio_metric metric;          /* whose expected value is to be small */
+    const gonio_pair *candidates; /* choose among these directions, for the least error at all of
+                                   * them; NULL: any, for the least error over the grid */
+    size_t candidate_count;       /* at most 6,000 */
+    double target;                /* per cent: as few readings as reach this E6, `count` at most; 0:
+                                   * `count` */
 } gonio_plan_options;
 
 GONIO_API void gonio_plan_options_default(gonio_plan_options *options);

@@ -40,14 +40,34 @@ static void copy(gonio_readings *plan, size_t row, const gonio_readings *known, 
     }
 }
 
+static gonio_half_difference *coordinates(gonio_context *context, const gonio_readings *readings)
+{
+    gonio_half_difference *at = gonio_i_allocate(context, readings->count, sizeof *at);
+    for (size_t k = 0; at != NULL && k < readings->count; k++) {
+        at[k] = gonio_half_difference_from_pair(readings->reading[k].pair);
+    }
+    return at;
+}
+
+gonio_status gonio_readings_find(gonio_context *context, const gonio_readings *readings,
+                                 const gonio_readings *others, bool *same)
+{
+    gonio_half_difference *at = coordinates(context, others);
+    for (size_t k = 0; at != NULL && k < readings->count; k++) {
+        const gonio_half_difference here =
+            gonio_half_difference_from_pair(readings->reading[k].pair);
+        same[k] = find(at, others->count, here) < others->count;
+    }
+    const gonio_status status = at != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
+    free(at);
+    return status;
+}
+
 gonio_status gonio_readings_look_up(gonio_context *context, gonio_readings *plan,
                                     const gonio_readings *known)
 {
-    gonio_half_difference *at = gonio_i_allocate(context, known->count, sizeof *at);
+    gonio_half_difference *at = coordinates(context, known);
     gonio_status status = at == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
-    for (size_t k = 0; k < known->count && status == GONIO_OK; k++) {
-        at[k] = gonio_half_difference_from_pair(known->reading[k].pair);
-    }
     if (status == GONIO_OK && known->wavelengths > 0) {
         status = gonio_i_readings_set_wavelengths(context, plan, known->wavelength,
                                                   known->wavelengths);

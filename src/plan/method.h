@@ -45,6 +45,7 @@ typedef struct gonio_i_method {
     gonio_status (*select)(const gonio_i_selection_problem *problem, gonio_i_selection *selection);
 } gonio_i_method;
 
+extern const gonio_i_method gonio_i_expected_error_method;
 extern const gonio_i_method gonio_i_condition_method;
 extern const gonio_i_method gonio_i_random_method;
 extern const gonio_i_method gonio_i_matusik_method;

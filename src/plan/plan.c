@@ -9,6 +9,7 @@
 
 #include "../direction/grid.h"
 #include "../linalg/linalg.h"
+#include "design.h"
 #include "method.h"
 #include "start.h"
 
@@ -18,6 +19,7 @@ static const struct {
     const char *reconstruction; /* reconstruct.h */
     bool few_components;        /* no more components than readings */
 } methods[] = {
+    {&gonio_i_expected_error_method, "posterior", false},
     {&gonio_i_condition_method, "least-squares", false},
     {&gonio_i_random_method, "least-squares", false},
     {&gonio_i_matusik_method, "least-squares", false},
@@ -55,8 +57,7 @@ const char *gonio_plan_method_reconstruction(const char *method)
 
 void gonio_plan_options_default(gonio_plan_options *options)
 {
-    *options = (gonio_plan_options){.method = methods[0].method->name,
-                                    .count = 80,
+    *options = (gonio_plan_options){.count = 80,
                                     .restarts = 5,
                                     .keep_history = true,
                                     .start = "random",
@@ -179,6 +180,15 @@ void gonio_i_sort_rows(size_t *rows, size_t count)
 
 /* ---- selecting ---- */
 
+/* The method asked for, or what suits the basis. */
+static const char *method_of(const gonio_basis_view *basis, const gonio_plan_options *options)
+{
+    const bool mixtures = basis != NULL && basis->mixtures > 0;
+    const gonio_i_method *usual =
+        mixtures ? &gonio_i_expected_error_method : &gonio_i_condition_method;
+    return options->method != NULL ? options->method : usual->name;
+}
+
 static gonio_status check_selection(gonio_context *context, size_t rows, size_t components,
                                     const gonio_plan_options *options)
 {
@@ -243,12 +253,14 @@ gonio_status gonio_plan_select(gonio_context *context, const double *vectors, si
                                size_t leading, size_t components, const gonio_plan_options *options,
                                size_t *chosen, gonio_selection_report *report)
 {
+    gonio_plan_options named = *options;
+    named.method = method_of(NULL, options);
     gonio_i_selection_problem problem = {.context = context,
                                          .vectors = vectors,
                                          .rows = rows,
                                          .components = components,
                                          .stride = leading};
-    return select_rows(&problem, options, chosen, report);
+    return select_rows(&problem, &named, chosen, report);
 }
 
 gonio_status gonio_condition_number(gonio_context *context, const double *vectors, size_t leading,
@@ -279,17 +291,16 @@ gonio_status gonio_condition_number(gonio_context *context, const double *vector
 /* ---- plans ---- */
 
 /* The pair to measure a cell at. */
-static gonio_pair pair_of(const gonio_basis_view *basis, int32_t cell, double phi_d)
+gonio_pair gonio_i_pair_of(const gonio_basis_view *basis, int32_t cell, double phi_d)
 {
-    if (basis->representation == GONIO_FULL) {
-        return gonio_pair_from_half_difference(gonio_bin_centre(gonio_bin_from_index(cell)));
-    }
-    const gonio_bin bin = {cell / GONIO_THETA_D_BINS, cell % GONIO_THETA_D_BINS, 0};
+    const gonio_bin bin = gonio_cell_bin(basis->representation, cell);
     gonio_half_difference c = gonio_bin_centre(bin);
     const int first = gonio_i_first_valid_phi(bin.theta_h, bin.theta_d);
     const double low = (first + 0.5) / GONIO_PHI_D_BINS * M_PI;
-    const bool all_valid = first == 0;
-    c.phi_d = all_valid ? phi_d : fmin(fmax(phi_d, low), M_PI - low);
+    c.phi_d = basis->representation == GONIO_BIVARIATE ? phi_d : c.phi_d;
+    if (first > 0) {
+        c.phi_d = fmin(fmax(c.phi_d, low), M_PI - low);
+    }
     return gonio_pair_from_half_difference(c);
 }
 
@@ -302,7 +313,7 @@ static void fill_entries(const gonio_basis_view *basis, const size_t *chosen, do
         const int32_t cell = basis->cell[position];
         plan->entries[j] =
             (gonio_plan_entry){cell, joint ? (int)(chosen[j] % GONIO_CHANNELS) : GONIO_ALL_CHANNELS,
-                               pair_of(basis, cell, phi_d)};
+                               gonio_i_pair_of(basis, cell, phi_d)};
     }
 }
 
@@ -316,7 +327,7 @@ void gonio_plan_rows(const gonio_plan *plan, const gonio_basis *basis, size_t *r
     }
 }
 
-static gonio_plan *allocate_plan(gonio_context *context, size_t count)
+gonio_plan *gonio_i_allocate_plan(gonio_context *context, size_t count)
 {
     gonio_plan *made = gonio_i_allocate(context, 1, sizeof *made);
     if (made != NULL) {
@@ -367,9 +378,19 @@ static size_t choose_components(const gonio_basis_view *basis, const gonio_plan_
 }
 
 gonio_status gonio_plan_create(gonio_context *context, const gonio_basis *basis,
-                               const gonio_plan_options *options, gonio_plan **plan)
+                               const gonio_plan_options *asked, gonio_plan **plan)
 {
     const gonio_basis_view view = gonio_basis_describe(basis);
+    gonio_plan_options named = *asked;
+    named.method = method_of(&view, asked);
+    const gonio_plan_options *options = &named;
+    if (strcmp(options->method, gonio_i_expected_error_method.name) == 0) {
+        return gonio_i_design_plan(context, basis, options, plan);
+    }
+    if (options->candidates != NULL || options->target > 0.0) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "candidates and target errors are for the method expected-error");
+    }
     const size_t components = choose_components(&view, options);
     if (components > view.components) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
@@ -386,7 +407,7 @@ gonio_status gonio_plan_create(gonio_context *context, const gonio_basis *basis,
     if (status != GONIO_OK) {
         return status;
     }
-    gonio_plan *made = allocate_plan(context, options->count);
+    gonio_plan *made = gonio_i_allocate_plan(context, options->count);
     if (made == NULL) {
         return GONIO_ERROR_MEMORY;
     }
@@ -409,6 +430,7 @@ void gonio_plan_free(gonio_plan **plan)
     }
     free((*plan)->entries);
     free((*plan)->history);
+    free((*plan)->expected);
     free(*plan);
     *plan = NULL;
 }

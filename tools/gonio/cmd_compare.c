@@ -2,8 +2,10 @@
 #include "tool.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 
 typedef struct options {
+    const char *without;
     int verbose;
     int json;
 } options;
@@ -61,6 +63,100 @@ static gonio_status compare_one(tool *t, const gonio_material *reference, const 
     return status;
 }
 
+/* ---- readings ---- */
+
+static const gonio_readings_options any_values = {
+    .values_needed = true, .average_repeats = true, .negative_to_zero = true};
+
+/* The other's values at the directions of the reference. */
+static gonio_status read_like(tool *t, const char *reference, const char *path,
+                              gonio_readings **other)
+{
+    gonio_readings *known = NULL;
+    gonio_status status = gonio_readings_read(t->context, path, &any_values, &known);
+    if (status == GONIO_OK) {
+        status = gonio_readings_read(t->context, reference, &any_values, other);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_readings_look_up(t->context, *other, known);
+    }
+    gonio_readings_free(&known);
+    return status;
+}
+
+static gonio_status compare_readings(tool *t, const char *reference_path,
+                                     const gonio_readings *reference, const char *path,
+                                     const bool *left_out, const options *o, json_t *results)
+{
+    gonio_readings *other = NULL;
+    gonio_error error;
+    size_t compared = 0;
+    gonio_status status = read_like(t, reference_path, path, &other);
+    if (status == GONIO_OK) {
+        status =
+            gonio_compare_readings(t->context, reference, other, left_out, &error, &compared);
+    }
+    gonio_readings_free(&other);
+    if (status == GONIO_OK && o->json) {
+        json_array_append_new(results,
+                              json_pack("{s:s, s:I, s:o}", "file", path, "readings",
+                                        (json_int_t)compared, "all", error_json(&error)));
+    } else if (status == GONIO_OK) {
+        print_row(path, &error);
+        printf("  %zu readings compared\n", compared);
+    }
+    return status;
+}
+
+/* Which of the reference's readings were used to make the others. */
+static gonio_status find_left_out(tool *t, const gonio_readings *reference, const char *without,
+                                  bool **left_out)
+{
+    gonio_readings *used = NULL;
+    const gonio_readings_options directions = {.average_repeats = true, .negative_to_zero = true};
+    *left_out = calloc(gonio_readings_describe(reference).count, sizeof **left_out);
+    gonio_status status = *left_out == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    if (status == GONIO_OK && without != NULL) {
+        status = gonio_readings_read(t->context, without, &directions, &used);
+    }
+    if (status == GONIO_OK && used != NULL) {
+        status = gonio_readings_find(t->context, reference, used, *left_out);
+    }
+    gonio_readings_free(&used);
+    return status;
+}
+
+static gonio_status compare_all_readings(tool *t, const options *o, const char **paths,
+                                         size_t count, json_t *results)
+{
+    gonio_readings *reference = NULL;
+    bool *left_out = NULL;
+    gonio_status status = gonio_readings_read(t->context, paths[0], &any_values, &reference);
+    if (status == GONIO_OK) {
+        status = find_left_out(t, reference, o->without, &left_out);
+    }
+    for (size_t k = 1; k < count && status == GONIO_OK; k++) {
+        status = compare_readings(t, paths[0], reference, paths[k], left_out, o, results);
+    }
+    free(left_out);
+    gonio_readings_free(&reference);
+    return status;
+}
+
+/* ---- tables ---- */
+
+static gonio_status compare_all_tables(tool *t, const options *o, const char **paths, size_t count,
+                                       json_t *results)
+{
+    gonio_material *reference = NULL;
+    gonio_status status = gonio_material_open(t->context, paths[0], &reference);
+    for (size_t k = 1; k < count && status == GONIO_OK; k++) {
+        status = compare_one(t, reference, paths[k], o, results);
+    }
+    gonio_material_free(&reference);
+    return status;
+}
+
 static int run(tool *t, const options *o)
 {
     size_t count = 0;
@@ -68,16 +164,17 @@ static int run(tool *t, const options *o)
     if (count < 2) {
         return tool_usage_error(t, "REFERENCE and at least one OTHER are needed");
     }
-    gonio_material *reference = NULL;
-    gonio_status status = gonio_material_open(t->context, arguments[0], &reference);
+    const bool readings = tool_is_readings(arguments[0]);
+    if (o->without != NULL && !readings) {
+        return tool_usage_error(t, "--without is for readings: %s is none", arguments[0]);
+    }
     json_t *results = json_array();
-    if (status == GONIO_OK && !o->json) {
+    if (!o->json) {
         printf("%-28s %9s %9s %9s\n", "", "E6 %", "cbrt %", "log-rel");
     }
-    for (size_t k = 1; k < count && status == GONIO_OK; k++) {
-        status = compare_one(t, reference, arguments[k], o, results);
-    }
-    gonio_material_free(&reference);
+    const gonio_status status = readings
+                                    ? compare_all_readings(t, o, arguments, count, results)
+                                    : compare_all_tables(t, o, arguments, count, results);
     if (status == GONIO_OK && o->json) {
         return tool_print_json(
             t, json_pack("{s:s, s:o}", "reference", arguments[0], "comparisons", results));
@@ -91,6 +188,8 @@ int cmd_compare(int argc, const char **argv)
     options o = {0};
     const struct poptOption table[] = {
         {"verbose", 'v', POPT_ARG_NONE, &o.verbose, 0, "Each channel, and the bins compared", NULL},
+        {"without", '\0', POPT_ARG_STRING, &o.without, 0,
+         "Of readings: leave out the directions of this file (those that were used)", "FILE"},
         {"json", '\0', POPT_ARG_NONE, &o.json, 0, "Print the result as JSON", NULL},
         TOOL_OPTIONS};
     tool t;

@@ -297,8 +297,7 @@ static info_function *kind_of(const char *path)
         const bool basis = memmem(head, size, basis_mark, sizeof basis_mark - 1) != NULL;
         return basis ? info_basis : info_material;
     }
-    const bool text = size > 0 && memchr(head, '\0', size) == NULL;
-    return text ? info_readings : info_material;
+    return tool_is_readings(path) ? info_readings : info_material;
 }
 
 static int run(const tool *t, int json)

@@ -10,6 +10,26 @@ typedef struct options {
     long seed;
 } options;
 
+/* Takes the values from readings that were made at more directions. */
+static gonio_status look_up(tool *t, const options *o, gonio_readings *plan, const char *path)
+{
+    const gonio_readings_options any = {
+        .values_needed = true, .average_repeats = true, .negative_to_zero = true};
+    gonio_readings *known = NULL;
+    gonio_status status = gonio_readings_read(t->context, path, &any, &known);
+    if (status == GONIO_OK) {
+        status = gonio_readings_look_up(t->context, plan, known);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_readings_write(t->context, plan, t->command_line, o->output);
+    }
+    if (status == GONIO_OK && !tool_quiet) {
+        printf("%s: %zu readings of %s\n", o->output, gonio_readings_describe(plan).count, path);
+    }
+    gonio_readings_free(&known);
+    return status;
+}
+
 static gonio_status measure(tool *t, const options *o, const char *plan, const char *path)
 {
     gonio_readings_options how = {.values_needed = false, .negative_to_zero = true};
@@ -18,6 +38,11 @@ static gonio_status measure(tool *t, const options *o, const char *plan, const c
     gonio_material *material = NULL;
     gonio_table *table = NULL;
     gonio_status status = gonio_readings_read(t->context, plan, &how, &readings);
+    if (status == GONIO_OK && tool_is_readings(path)) {
+        status = look_up(t, o, readings, path);
+        gonio_readings_free(&readings);
+        return status;
+    }
     if (status == GONIO_OK) {
         status = gonio_material_open(t->context, path, &material);
     }

@@ -3,7 +3,10 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+enum { MOST_FOR_TARGET = 300 };
 
 typedef struct options {
     const char *output;
@@ -15,23 +18,73 @@ typedef struct options {
     int restarts;
     long seed;
     double phi_d; /* degrees */
+    const char *candidates;
+    const char *metric;
+    const char *target; /* per cent */
+    double target_error;
     int json;
 } options;
+
+static const char *const metrics[] = {"e6", "cube-root", "log-relative"};
+
+/* Its place in the list; -1 if it is not in it. */
+static int metric_of(const char *name)
+{
+    for (int k = 0; k < 3; k++) {
+        if (strcmp(name, metrics[k]) == 0) {
+            return k;
+        }
+    }
+    return -1;
+}
+
+/* "3" or "3%"; -1 if it is neither, or not above 0. */
+static double percent_of(const char *text)
+{
+    char *end = NULL;
+    const double percent = strtod(text, &end);
+    end += *end == '%';
+    return *end == '\0' && percent > 0.0 && isfinite(percent) ? percent : -1.0;
+}
 
 static int report(const tool *t, const gonio_plan *plan, const options *o)
 {
     if (o->json) {
-        return tool_print_json(t, json_pack("{s:s, s:s, s:I, s:I, s:o}", "plan", o->output,
+        const double expected = plan->expected != NULL ? plan->expected[plan->count - 1] : INFINITY;
+        return tool_print_json(t, json_pack("{s:s, s:s, s:I, s:I, s:o, s:o}", "plan", o->output,
                                             "method", plan->method, "readings",
                                             (json_int_t)plan->count, "components",
                                             (json_int_t)plan->components, "condition_number",
-                                            tool_json_number(plan->condition_number)));
+                                            tool_json_number(plan->condition_number),
+                                            "expected_e6_percent", tool_json_number(expected)));
     }
-    if (!tool_quiet) {
+    if (!tool_quiet && plan->expected != NULL) {
+        printf("%s: %zu readings, in order of use; expected error (E6) %.2f %%\n", o->output,
+               plan->count, plan->expected[plan->count - 1]);
+    } else if (!tool_quiet) {
         printf("%s: %zu readings for %zu components, condition number %.3f\n", o->output,
                plan->count, plan->components, plan->condition_number);
     }
     return 0;
+}
+
+/* The directions of a readings file, with or without values. */
+static gonio_status read_candidates(tool *t, const char *path, gonio_pair **pairs, size_t *count)
+{
+    const gonio_readings_options how = {.average_repeats = true, .negative_to_zero = true};
+    gonio_readings *readings = NULL;
+    gonio_status status = gonio_readings_read(t->context, path, &how, &readings);
+    if (status != GONIO_OK) {
+        return status;
+    }
+    const gonio_readings_view view = gonio_readings_describe(readings);
+    *pairs = calloc(view.count, sizeof **pairs);
+    *count = view.count;
+    for (size_t k = 0; *pairs != NULL && k < view.count; k++) {
+        (*pairs)[k] = view.reading[k].pair;
+    }
+    gonio_readings_free(&readings);
+    return *pairs != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
 }
 
 static gonio_status make_plan(tool *t, const options *o, const char *basis_path, gonio_plan **plan)
@@ -47,11 +100,22 @@ static gonio_status make_plan(tool *t, const options *o, const char *basis_path,
     how.seed = (uint64_t)o->seed;
     how.keep_history = o->history != NULL;
     how.phi_d = o->phi_d * M_PI / 180.0;
-    gonio_status status = tool_basis(t, basis_path, &basis);
+    how.metric = (gonio_metric)metric_of(o->metric);
+    how.target = o->target_error;
+    gonio_pair *candidates = NULL;
+    gonio_status status = GONIO_OK;
+    if (o->candidates != NULL) {
+        status = read_candidates(t, o->candidates, &candidates, &how.candidate_count);
+        how.candidates = candidates;
+    }
+    if (status == GONIO_OK) {
+        status = tool_basis(t, basis_path, o->method, &basis);
+    }
     if (status == GONIO_OK) {
         status = gonio_plan_create(t->context, basis, &how, plan);
     }
     gonio_basis_free(&basis);
+    free(candidates);
     return status;
 }
 
@@ -73,12 +137,23 @@ static int check(const tool *t, const options *o, size_t count, const char **arg
     if (code == 0) {
         code = tool_check_count(t, "--restarts", o->restarts, 1);
     }
+    if (code == 0 && metric_of(o->metric) < 0) {
+        code = tool_usage_error(t, "--metric: '%s' is none of e6, cube-root, log-relative", o->metric);
+    }
+    if (code == 0 && o->target != NULL && o->target_error < 0.0) {
+        code = tool_usage_error(t, "--target-error: '%s' is no error in per cent above 0", o->target);
+    }
+    if (code == 0 && o->candidates != NULL) {
+        code = tool_check_output(t, o->output, &o->candidates, 1);
+    }
     return code != 0 ? code : tool_check_count(t, "--basis", o->components, 0);
 }
 
-static int run(tool *t, const options *o)
+static int run(tool *t, options *o)
 {
     size_t count = 0;
+    o->count = o->count != 0 ? o->count : o->target != NULL ? MOST_FOR_TARGET : 80;
+    o->target_error = o->target != NULL ? percent_of(o->target) : 0.0;
     const char **arguments = tool_arguments(t, &count);
     const int code = check(t, o, count, arguments);
     if (code != 0) {
@@ -100,14 +175,23 @@ static int run(tool *t, const options *o)
 int cmd_plan(int argc, const char **argv)
 {
     options o = {
-        .method = "condition", .start = "random", .count = 80, .restarts = 5, .phi_d = 90.0};
+        .start = "random", .restarts = 5, .phi_d = 90.0, .metric = "e6"};
     const struct poptOption table[] = {
         {"output", 'o', POPT_ARG_STRING, &o.output, 0, "The plan to write (CSV)", "PLAN"},
-        {"number", 'n', POPT_ARG_INT, &o.count, 0, "How many readings (default: 80)", "N"},
+        {"number", 'n', POPT_ARG_INT, &o.count, 0,
+         "How many readings (default: 80; with --target-error at most 300)", "N"},
+        {"target-error", '\0', POPT_ARG_STRING, &o.target, 0,
+         "As few readings as are expected to reach this error (E6), e.g. 3%", "PERCENT"},
+        {"candidates", '\0', POPT_ARG_STRING, &o.candidates, 0,
+         "Choose among the directions of this file (a plan, readings, or scattered readings)",
+         "FILE"},
+        {"metric", '\0', POPT_ARG_STRING, &o.metric, 0,
+         "The error that is to be small: e6 (default), cube-root or log-relative", "METRIC"},
         {"basis", 'K', POPT_ARG_INT, &o.components, 0,
          "Use the first K components (default: all of the basis; nielsen, frost: at most N)", "K"},
         {"method", '\0', POPT_ARG_STRING, &o.method, 0,
-         "condition (lowest condition number; the default), random, matusik, nielsen or frost",
+         "expected-error (the least to expect; the default), condition (lowest condition number, "
+         "the paper's; the default for bases without mixtures), random, matusik, nielsen or frost",
          "METHOD"},
         {"start", '\0', POPT_ARG_STRING, &o.start, 0,
          "What the swaps begin with: random (default), qr or volume", "START"},
@@ -124,7 +208,7 @@ int cmd_plan(int argc, const char **argv)
     tool t;
     int code = tool_begin(&t, argc, argv, table, "[OPTION...] [BASIS] -o PLAN",
                           "Without BASIS, the basis of the built-in materials serves.\n"
-                          "Example: gonio plan merl.gonio --basis 35 -n 80 -o plan.csv");
+                          "Example: gonio plan merl.gonio -n 20 -o plan.csv");
     if (code < 0) {
         code = run(&t, &o);
     }

@@ -10,6 +10,12 @@ typedef struct options {
     const char *output;
     const char *method;
     double eta;
+    double noise; /* per cent */
+    double floor;
+    double saturation;
+    const char *at;
+    const char *deviation;
+    int believe;
     int components;
     int all_channels;
     int other_basis;
@@ -21,7 +27,23 @@ typedef struct options {
 /* Says what was made: a line, or an object appended to `results`. */
 static void report(const gonio_reconstruction *r, const char *output, json_t *results)
 {
-    if (results != NULL) {
+    if (results != NULL && r->field != NULL) {
+        json_array_append_new(
+            results,
+            json_pack("{s:s, s:I, s:I, s:f, s:f, s:I, s:f, s:s?}", "output", output, "channels",
+                      (json_int_t)r->columns, "readings", (json_int_t)r->readings,
+                      "expected_e6_percent", r->predicted_e6, "residual_log", r->residual,
+                      "outlying", (json_int_t)r->outlying, "remainder_log", r->smoothness,
+                      "suspicion", r->suspicion));
+    } else if (!tool_quiet && results == NULL && r->field != NULL) {
+        printf("%s: from %zu readings in %zu channels; expected error (E6) %.2f %%, residual %.4f "
+               "(log units)%s",
+               output, r->readings, r->columns, r->predicted_e6, r->residual,
+               r->outlying > 0 ? "" : "\n");
+        if (r->outlying > 0) {
+            printf(", %zu values that the others contradict\n", r->outlying);
+        }
+    } else if (results != NULL) {
         json_array_append_new(
             results, json_pack("{s:s, s:I, s:I, s:o, s:f}", "output", output, "components",
                                (json_int_t)r->components, "readings", (json_int_t)r->readings,
@@ -34,15 +56,82 @@ static void report(const gonio_reconstruction *r, const char *output, json_t *re
     }
 }
 
+static gonio_reconstruct_options settings(const options *o)
+{
+    return (gonio_reconstruct_options){.components = (size_t)o->components,
+                                       .all_channels = o->all_channels,
+                                       .other_basis = o->other_basis,
+                                       .method = o->method,
+                                       .eta = o->eta,
+                                       .noise = o->noise / 100.0,
+                                       .floor = o->floor,
+                                       .saturation = o->saturation,
+                                       .deviation = o->deviation != NULL,
+                                       .believe = o->believe};
+}
+
+/* The deviations as a table, or the values at the directions of a file. */
+static gonio_status write_more(tool *t, const options *o, const gonio_basis *basis,
+                               const gonio_reconstruction *made)
+{
+    const gonio_readings_options any = {.average_repeats = true, .negative_to_zero = true};
+    gonio_material *deviation = NULL;
+    gonio_readings *at = NULL;
+    gonio_status status = GONIO_OK;
+    if (o->deviation != NULL) {
+        status = gonio_reconstruction_deviation_material(t->context, basis, made, &deviation);
+    }
+    if (status == GONIO_OK && o->at != NULL) {
+        status = gonio_readings_read(t->context, o->at, &any, &at);
+    }
+    if (status == GONIO_OK && at != NULL) {
+        status = gonio_reconstruction_predict_readings(t->context, basis, made, at);
+    }
+    if (status == GONIO_OK && at != NULL) {
+        status = gonio_readings_write(t->context, at, t->command_line, o->output);
+    }
+    if (status == GONIO_OK && deviation != NULL) {
+        status = gonio_material_write_merl(t->context, deviation, o->deviation);
+    }
+    gonio_material_free(&deviation);
+    gonio_readings_free(&at);
+    return status;
+}
+
+/* One readings file, where more than the table is wanted. */
+static gonio_status reconstruct_one(tool *t, const options *o, const gonio_basis *basis,
+                                    const gonio_readings *readings, const char *output,
+                                    json_t *results)
+{
+    const gonio_reconstruct_options how = settings(o);
+    gonio_reconstruction *made = NULL;
+    gonio_material *material = NULL;
+    gonio_status status = gonio_reconstruct(t->context, basis, readings, &how, &made);
+    if (status == GONIO_OK && o->at == NULL) {
+        status = gonio_reconstruction_material(t->context, basis, made, "reconstruction", &material);
+    }
+    if (status == GONIO_OK && material != NULL) {
+        status = gonio_material_write_merl(t->context, material, output);
+    }
+    if (status == GONIO_OK) {
+        status = write_more(t, o, basis, made);
+    }
+    if (status == GONIO_OK) {
+        report(made, output, results);
+    }
+    gonio_material_free(&material);
+    gonio_reconstruction_free(&made);
+    return status;
+}
+
 static gonio_status reconstruct(tool *t, const options *o, const gonio_basis *basis,
                                 gonio_readings *const *readings, char *const *outputs, size_t count,
                                 json_t *results)
 {
-    const gonio_reconstruct_options how = {.components = (size_t)o->components,
-                                           .all_channels = o->all_channels,
-                                           .other_basis = o->other_basis,
-                                           .method = o->method,
-                                           .eta = o->eta};
+    if (o->at != NULL || o->deviation != NULL) {
+        return reconstruct_one(t, o, basis, readings[0], outputs[0], results);
+    }
+    const gonio_reconstruct_options how = settings(o);
     gonio_reconstruction **made = calloc(count, sizeof(gonio_reconstruction *));
     if (made == NULL) {
         return GONIO_ERROR_MEMORY;
@@ -86,7 +175,8 @@ static int reconstruct_all(tool *t, const options *o, const char *basis_path,
         status = gonio_readings_read(t->context, paths[k], &how, &readings[k]);
     }
     if (status == GONIO_OK) {
-        status = tool_basis(t, basis_path, &basis);
+        const char *planned = gonio_readings_describe(readings[0]).method;
+        status = tool_basis(t, basis_path, o->method != NULL ? o->method : planned, &basis);
     }
     if (status == GONIO_OK) {
         status = reconstruct(t, o, basis, readings, outputs, count, results);
@@ -129,6 +219,25 @@ static int choose_outputs(const tool *t, const options *o, const char *const *in
     return code;
 }
 
+/* The options of what is written besides, and of the instrument. */
+static int check_more(const tool *t, const options *o, const char *const *inputs, size_t count,
+                      size_t readings)
+{
+    if ((o->at != NULL || o->deviation != NULL) && readings > 1) {
+        return tool_usage_error(t, "--at and --deviation take one READINGS");
+    }
+    if (!(o->noise >= 0.0) || !(o->floor >= 0.0) || !(o->saturation >= 0.0)) {
+        return tool_usage_error(t, "--noise, --floor and --saturation cannot be negative");
+    }
+    if (o->at != NULL && tool_check_output(t, o->output, &o->at, 1) != 0) {
+        return EXIT_USAGE;
+    }
+    if (o->deviation != NULL && strcmp(o->deviation, o->output) == 0) {
+        return tool_usage_error(t, "--deviation and -o name the same file");
+    }
+    return o->deviation != NULL ? tool_check_output(t, o->deviation, inputs, count) : 0;
+}
+
 static int run(tool *t, const options *o)
 {
     size_t count = 0;
@@ -144,6 +253,9 @@ static int run(tool *t, const options *o)
                                : choose_outputs(t, o, arguments, count, paths, readings, outputs);
     if (code == 0) {
         code = tool_check_count(t, "--basis", o->components, 0);
+    }
+    if (code == 0) {
+        code = check_more(t, o, arguments, count, readings);
     }
     if (code == 0 && !(o->eta > 0.0)) {
         code = tool_usage_error(t, "--eta has to be above 0");
@@ -166,19 +278,34 @@ static int run(tool *t, const options *o)
 
 int cmd_reconstruct(int argc, const char **argv)
 {
-    options o = {.eta = 40.0};
+    options o = {.eta = 40.0, .noise = 1.0, .floor = 1e-5};
     const struct poptOption table[] = {
         {"output", 'o', POPT_ARG_STRING, &o.output, 0,
          "The MERL .binary table to write, or a folder for NAME.binary", "OUT"},
         {"basis", 'K', POPT_ARG_INT, &o.components, 0,
          "Use the first K components (default: as the plan says, or all)", "K"},
         {"method", '\0', POPT_ARG_STRING, &o.method, 0,
-         "least-squares or ridge (default: what the plan was made for, or least-squares)",
+         "posterior, least-squares or ridge (default: what the plan was made for, or posterior for "
+         "a basis with mixtures and least-squares for others)",
          "METHOD"},
         {"eta", '\0', POPT_ARG_DOUBLE, &o.eta, 0,
          "How much ridge holds against large coefficients (default: 40)", "ETA"},
         {"all-channels", '\0', POPT_ARG_NONE, &o.all_channels, 0,
          "Use every channel that was read, not only the planned one", NULL},
+        {"noise", '\0', POPT_ARG_DOUBLE, &o.noise, 0,
+         "Standard deviation of a reading, in per cent of its value (posterior; default: 1)",
+         "PERCENT"},
+        {"floor", '\0', POPT_ARG_DOUBLE, &o.floor, 0,
+         "Standard deviation of a reading of darkness, 1/sr (posterior; default: 1e-5)", "VALUE"},
+        {"saturation", '\0', POPT_ARG_DOUBLE, &o.saturation, 0,
+         "Readings of this value or more mean at least it, 1/sr (posterior)", "VALUE"},
+        {"deviation", '\0', POPT_ARG_STRING, &o.deviation, 0,
+         "Write the standard deviation of ln(1 + rho/s) too, as a table (posterior)", "FILE"},
+        {"at", '\0', POPT_ARG_STRING, &o.at, 0,
+         "Predict readings at the directions of this file, as CSV, in place of a table (posterior)",
+         "FILE"},
+        {"believe", '\0', POPT_ARG_NONE, &o.believe, 0,
+         "Do not look for wrong units or angles", NULL},
         {"average-repeats", '\0', POPT_ARG_NONE, &o.average_repeats, 0,
          "Accept directions that were read more than once", NULL},
         {"negative-to-zero", '\0', POPT_ARG_NONE, &o.negative_to_zero, 0,

@@ -317,8 +317,11 @@ static char *cache_folder(void)
     return folder;
 }
 
-static gonio_status learn_atlas(tool *t, gonio_basis **basis)
+static gonio_status learn_atlas(tool *t, bool paper, gonio_basis **basis)
 {
+    const gonio_database_options kind = {.representation = paper ? GONIO_BIVARIATE : GONIO_SECTORED,
+                                         .channels = paper ? GONIO_JOINT : GONIO_SEPARATE};
+    const gonio_basis_options how = {.mixtures = paper ? 0 : GONIO_DEFAULT_MIXTURES};
     const int count = gonio_atlas_count();
     char **paths = calloc((size_t)count, sizeof *paths);
     gonio_status status = paths == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
@@ -328,11 +331,11 @@ static gonio_status learn_atlas(tool *t, gonio_basis **basis)
     }
     gonio_database *database = NULL;
     if (status == GONIO_OK) {
-        status = gonio_database_create(t->context, (const char *const *)paths, (size_t)count, NULL,
+        status = gonio_database_create(t->context, (const char *const *)paths, (size_t)count, &kind,
                                        &database);
     }
     if (status == GONIO_OK) {
-        status = gonio_basis_learn(t->context, database, NULL, basis);
+        status = gonio_basis_learn(t->context, database, &how, basis);
     }
     gonio_database_free(&database);
     for (int k = 0; paths != NULL && k < count; k++) {
@@ -342,7 +345,7 @@ static gonio_status learn_atlas(tool *t, gonio_basis **basis)
     return status;
 }
 
-static gonio_status make_builtin(tool *t, const char *path)
+static gonio_status make_builtin(tool *t, const char *path, bool paper)
 {
     gonio_basis *basis = NULL;
     if (!tool_quiet) {
@@ -350,15 +353,18 @@ static gonio_status make_builtin(tool *t, const char *path)
                    "no BASIS given: learning one from the built-in materials (once; kept in the "
                    "cache)");
     }
-    gonio_status status = learn_atlas(t, &basis);
+    gonio_status status = learn_atlas(t, paper, &basis);
     if (status == GONIO_OK) {
-        status = gonio_basis_write(t->context, basis, "gonio learn atlas:", path);
+        status = gonio_basis_write(t->context, basis,
+                                   paper ? "gonio learn atlas: --grid bivariate"
+                                         : "gonio learn atlas:",
+                                   path);
     }
     gonio_basis_free(&basis);
     return status;
 }
 
-gonio_status tool_builtin_basis(tool *t, char **path)
+gonio_status tool_builtin_basis(tool *t, bool paper, char **path)
 {
     char *folder = cache_folder();
     if (folder == NULL) {
@@ -367,25 +373,33 @@ gonio_status tool_builtin_basis(tool *t, char **path)
                    "with 'gonio learn atlas: -o FILE' and give it as BASIS");
         return GONIO_ERROR_IO;
     }
-    const int length = asprintf(path, "%s/atlas-%s.gonio", folder, gonio_version());
+    const int length = asprintf(path, "%s/atlas-%s%s.gonio", folder, gonio_version(),
+                                paper ? "-bivariate" : "");
     free(folder);
     if (length < 0) {
         return GONIO_ERROR_MEMORY;
     }
-    const gonio_status status = access(*path, F_OK) == 0 ? GONIO_OK : make_builtin(t, *path);
+    const gonio_status status = access(*path, F_OK) == 0 ? GONIO_OK : make_builtin(t, *path, paper);
     if (status != GONIO_OK) {
         free(*path);
     }
     return status;
 }
 
-gonio_status tool_basis(tool *t, const char *path, gonio_basis **basis)
+/* Whether a method of planning or reconstructing works on the paper's kind of basis. */
+static bool is_papers(const char *method)
+{
+    return method != NULL && *method != '\0' && strcmp(method, "expected-error") != 0 &&
+           strcmp(method, "posterior") != 0;
+}
+
+gonio_status tool_basis(tool *t, const char *path, const char *method, gonio_basis **basis)
 {
     if (path != NULL) {
         return gonio_basis_read(t->context, path, basis);
     }
     char *builtin = NULL;
-    gonio_status status = tool_builtin_basis(t, &builtin);
+    gonio_status status = tool_builtin_basis(t, is_papers(method), &builtin);
     if (status == GONIO_OK) {
         status = gonio_basis_read(t->context, builtin, basis);
         free(builtin);
@@ -408,4 +422,15 @@ int tool_print_json(const tool *t, json_t *json)
     putchar('\n');
     json_decref(json);
     return 0;
+}
+
+bool tool_is_readings(const char *path)
+{
+    char head[8192];
+    FILE *file = strncmp(path, "atlas:", 6) != 0 ? fopen(path, "rbe") : NULL;
+    const size_t size = file != NULL ? fread(head, 1, sizeof head, file) : 0;
+    if (file != NULL) {
+        fclose(file);
+    }
+    return size > 0 && memchr(head, '\0', size) == NULL;
 }

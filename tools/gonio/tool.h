@@ -75,10 +75,13 @@ int tool_check_count(const tool *t, const char *option, long value, long least);
 
 /* A BASIS argument, or with NULL the basis of the built-in materials, made on first use and kept in
  * the cache folder. */
-gonio_status tool_basis(tool *t, const char *path, gonio_basis **basis);
+gonio_status tool_basis(tool *t, const char *path, const char *method, gonio_basis **basis);
 
 /* The built-in basis's path, made if need be; to be released with free(). */
-gonio_status tool_builtin_basis(tool *t, char **path);
+gonio_status tool_builtin_basis(tool *t, bool paper, char **path);
+
+/* Whether a file is a plan or readings, by its content: text. */
+bool tool_is_readings(const char *path);
 
 /* A JSON number; null if it is infinite or NaN, which JSON lacks. */
 json_t *tool_json_number(double value);

@@ -1,0 +1,313 @@
+/* Plans of least expected error: see design.h. */
+#include "design.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../linalg/linalg.h"
+#include "expected_error.h"
+
+/* Deviation of a reading, log units: noise, and what the model leaves open inside a cell. */
+static const double NOISE = 0.05;
+
+/* Of the remainder that the database has never seen, log units, between candidates. */
+static const double SMOOTHNESS = 0.2;
+
+enum { MOST_CANDIDATES = 6000 };
+
+/* What the expected error is multiplied by: how much larger the error of materials of the ten
+ * splits was than the prior expects (docs/accuracy.md). */
+static const double CALIBRATION = 1.0;
+
+typedef struct place_list {
+    gonio_context *context;
+    gonio_i_prior *prior;
+    size_t rows;
+    size_t components; /* of f below: K, or as many as there are candidates */
+    double *f;
+    double *mean; /* [rows] */
+    double *loss;
+    bool *allowed;
+    gonio_half_difference *at;
+    double *identity;
+} place_list;
+
+static void free_places(place_list *p)
+{
+    gonio_i_prior_free(&p->prior);
+    free(p->f);
+    free(p->mean);
+    free(p->loss);
+    free(p->allowed);
+    free(p->at);
+    free(p->identity);
+}
+
+static gonio_status allocate_places(place_list *p)
+{
+    gonio_context *c = p->context;
+    p->f = gonio_i_allocate(c, p->rows * p->components, sizeof *p->f);
+    p->mean = gonio_i_allocate(c, p->rows, sizeof *p->mean);
+    p->loss = gonio_i_allocate(c, p->rows, sizeof *p->loss);
+    p->allowed = gonio_i_allocate(c, p->rows, sizeof *p->allowed);
+    p->at = gonio_i_allocate(c, p->rows, sizeof *p->at);
+    p->identity = gonio_i_allocate(c, p->components * p->components, sizeof *p->identity);
+    for (size_t k = 0; p->identity != NULL && k < p->components; k++) {
+        p->identity[k * (p->components + 1)] = 1.0;
+    }
+    const bool done =
+        p->f && p->mean && p->loss && p->allowed && p->at && p->identity;
+    return done ? GONIO_OK : GONIO_ERROR_MEMORY;
+}
+
+/* How much a metric's square grows with that of g, at the mean of the prior. */
+static double metric_weight(gonio_metric metric, gonio_half_difference at, double mean, int channel)
+{
+    double incident = 0.0;
+    double outgoing = 0.0;
+    gonio_cosines(at, &incident, &outgoing);
+    const double cosines = fmax(incident * outgoing, 0.0);
+    const double s = gonio_log_scale(channel);
+    const double rho = s * expm1(fmax(mean, 0.0));
+    if (metric == GONIO_CUBE_ROOT) { /* d cbrt(rho c)/dg = cbrt(c) (rho + s) rho^(-2/3) / 3 */
+        return pow(cosines, 2.0 / 3.0) * pow(rho + s, 2.0 / 3.0);
+    }
+    if (metric == GONIO_LOG_RELATIVE_ERROR) { /* d ln(rho w + e)/dg = w (rho + s)/(rho w + e) */
+        const double w = fmin(fmax(cosines, 0.01), 1.0);
+        const double slope = w * (rho + s) / (rho * w + 0.001);
+        return slope * slope;
+    }
+    return 1.0;
+}
+
+/* All rows of the basis. */
+static gonio_status list_rows(place_list *p, gonio_metric metric)
+{
+    const gonio_basis_view *view = &p->prior->view;
+    const size_t each = view->channels == GONIO_JOINT ? GONIO_CHANNELS : 1;
+    p->rows = view->rows;
+    p->components = p->prior->components;
+    const gonio_status status = allocate_places(p);
+    for (size_t row = 0; row < p->rows && status == GONIO_OK; row++) {
+        int channel = 0;
+        const double bins = gonio_i_cell_bins(view->representation, view->cell[row / each]);
+        p->at[row] = gonio_i_row_coordinates(view, row, &channel);
+        gonio_i_prior_row(p->prior, row, p->f + row * p->components);
+        p->mean[row] = view->mean[row];
+        p->allowed[row] = bins > 0.0;
+        p->loss[row] = bins * metric_weight(metric, p->at[row], p->mean[row], channel);
+    }
+    return status;
+}
+
+/* The covariance between candidates, as a triangle: f f' = F F' + alpha^2 k. */
+static gonio_status factorise(place_list *p, const double *f)
+{
+    const size_t n = p->rows;
+    gonio_status status = gonio_i_product_transposed(p->context, f, n, p->prior->components, f, n,
+                                                     p->f, n);
+    for (size_t i = 0; i < n && status == GONIO_OK; i++) {
+        const gonio_i_place a = gonio_i_place_of(p->at[i]);
+        for (size_t j = 0; j < n; j++) {
+            const gonio_i_place b = gonio_i_place_of(p->at[j]);
+            p->f[i * n + j] += SMOOTHNESS * SMOOTHNESS * gonio_i_smoothness(&a, &b);
+        }
+        p->f[i * n + i] += 1e-6; /* the same directions listed twice */
+    }
+    return status == GONIO_OK ? gonio_i_cholesky(p->context, p->f, n) : status;
+}
+
+static gonio_status list_candidates(place_list *p, const gonio_plan_options *options)
+{
+    p->rows = options->candidate_count;
+    p->components = p->rows;
+    double *f =
+        gonio_i_allocate(p->context, p->rows * p->prior->components, sizeof *f);
+    gonio_status status = f == NULL ? GONIO_ERROR_MEMORY : allocate_places(p);
+    for (size_t k = 0; k < p->rows && status == GONIO_OK; k++) {
+        p->at[k] = gonio_half_difference_from_pair(options->candidates[k]);
+        gonio_i_prior_at(p->prior, p->at[k], 0, &p->mean[k], f + k * p->prior->components);
+        p->allowed[k] = true;
+        p->loss[k] = metric_weight(options->metric, p->at[k], p->mean[k], 0);
+    }
+    if (status == GONIO_OK) {
+        status = factorise(p, f);
+    }
+    free(f);
+    return status;
+}
+
+/* Mean over the measured columns of the database of 1/|g|, by the weights of the rows. */
+static gonio_status mean_reciprocal(const place_list *p, double *mean)
+{
+    const gonio_i_prior *prior = p->prior;
+    const size_t measured = prior->view.columns - prior->view.mixtures;
+    const size_t used = prior->samples > 0 ? measured : 0;
+    double *f = gonio_i_allocate(p->context, prior->components, sizeof *f);
+    double *square = gonio_i_allocate(p->context, used + 1, sizeof *square);
+    if (f == NULL || square == NULL) {
+        free(f);
+        free(square);
+        return GONIO_ERROR_MEMORY;
+    }
+    const size_t step = p->rows / 4096 + 1; /* a sample of the rows is enough */
+    for (size_t row = 0; row < p->rows; row += step) {
+        double m = 0.0;
+        gonio_i_prior_at(prior, p->at[row], 0, &m, f);
+        for (size_t j = 0; j < used; j++) {
+            double g = m;
+            for (size_t k = 0; k < prior->components; k++) {
+                g += f[k] * prior->sample[j * prior->components + k];
+            }
+            square[j] += (double)step * p->loss[row] * g * g;
+        }
+        square[used] += (double)step * p->loss[row] * m * m;
+    }
+    *mean = used > 0 ? 0.0 : 1.0 / sqrt(square[used]);
+    for (size_t j = 0; j < used; j++) {
+        *mean += 1.0 / sqrt(fmax(square[j], 1e-300)) / (double)used;
+    }
+    free(f);
+    free(square);
+    return GONIO_OK;
+}
+
+static void fill_entry(const place_list *p, const gonio_plan_options *options, size_t row,
+                       gonio_plan_entry *entry)
+{
+    const gonio_basis_view *view = &p->prior->view;
+    if (options->candidates != NULL) {
+        const gonio_bin bin = gonio_bin_of(p->at[row]);
+        *entry = (gonio_plan_entry){gonio_cell_of_bin(view->representation, bin),
+                                    GONIO_ALL_CHANNELS, options->candidates[row]};
+        return;
+    }
+    const bool joint = view->channels == GONIO_JOINT;
+    const int32_t cell = view->cell[joint ? row / GONIO_CHANNELS : row];
+    *entry = (gonio_plan_entry){cell, joint ? (int)(row % GONIO_CHANNELS) : GONIO_ALL_CHANNELS,
+                                gonio_i_pair_of(view, cell, options->phi_d)};
+}
+
+static gonio_status check(gonio_context *context, const place_list *p,
+                          const gonio_plan_options *options)
+{
+    size_t allowed = 0;
+    for (size_t row = 0; row < p->rows; row++) {
+        allowed += p->allowed[row];
+    }
+    if (options->count > allowed) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "%zu readings asked for, but there are only %zu directions to choose "
+                            "from",
+                            options->count, allowed);
+    }
+    return GONIO_OK;
+}
+
+/* As few readings as reach the target, if there is one. */
+static gonio_status cut(gonio_context *context, const gonio_plan_options *options, gonio_plan *plan)
+{
+    size_t n = 0;
+    while (options->target > 0.0 && n < plan->count && plan->expected[n] > options->target) {
+        n++;
+    }
+    if (options->target > 0.0 && n == plan->count) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "%zu readings leave an expected error of %.2f %%, above the target of "
+                            "%.2f %%; allow more readings (-n), or learn from more materials",
+                            plan->count, plan->expected[plan->count - 1], options->target);
+    }
+    plan->count = options->target > 0.0 ? n + 1 : plan->count;
+    return GONIO_OK;
+}
+
+static gonio_status fill_plan(const place_list *p, const gonio_plan_options *options,
+                              gonio_plan *plan)
+{
+    size_t *chosen = gonio_i_allocate(p->context, plan->count, sizeof *chosen);
+    plan->expected = gonio_i_allocate(p->context, plan->count, sizeof *plan->expected);
+    const gonio_i_design_problem problem = {.context = p->context,
+                                            .f = p->f,
+                                            .rows = p->rows,
+                                            .components = p->components,
+                                            .covariance = p->identity,
+                                            .loss = p->loss,
+                                            .allowed = p->allowed,
+                                            .variance = NOISE * NOISE,
+                                            .count = plan->count};
+    double reciprocal = 0.0;
+    gonio_status status =
+        chosen == NULL || plan->expected == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    if (status == GONIO_OK) {
+        status = mean_reciprocal(p, &reciprocal);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_design_find(&problem, chosen, plan->expected);
+    }
+    for (size_t k = 0; k < plan->count && status == GONIO_OK; k++) {
+        plan->expected[k] =
+            100.0 * CALIBRATION * sqrt(fmax(plan->expected[k], 0.0)) * reciprocal;
+        fill_entry(p, options, chosen[k], &plan->entries[k]);
+    }
+    free(chosen);
+    return status == GONIO_OK ? cut(p->context, options, plan) : status;
+}
+
+static gonio_status check_options(gonio_context *context, const gonio_plan_options *options)
+{
+    if (options->count == 0) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "a plan needs at least 1 reading");
+    }
+    if (options->candidates != NULL && options->candidate_count > MOST_CANDIDATES) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "%zu candidates are more than %d; leave some out",
+                            options->candidate_count, MOST_CANDIDATES);
+    }
+    return GONIO_OK;
+}
+
+gonio_status gonio_i_design_plan(gonio_context *context, const gonio_basis *basis,
+                                 const gonio_plan_options *options, gonio_plan **plan)
+{
+    place_list p = {.context = context};
+    gonio_plan *made = NULL;
+    gonio_status status = check_options(context, options);
+    if (status == GONIO_OK) {
+        status = gonio_i_prior_create(context, basis, &p.prior);
+    }
+    if (status == GONIO_OK) {
+        status = options->candidates != NULL ? list_candidates(&p, options)
+                                             : list_rows(&p, options->metric);
+    }
+    if (status == GONIO_OK) {
+        status = check(context, &p, options);
+    }
+    if (status == GONIO_OK) {
+        made = gonio_i_allocate_plan(context, options->count);
+        status = made == NULL ? GONIO_ERROR_MEMORY : fill_plan(&p, options, made);
+    }
+    if (status == GONIO_OK) {
+        made->components = p.prior->components;
+        made->basis = p.prior->view.fingerprint;
+        made->condition_number = INFINITY;
+        snprintf(made->method, sizeof made->method, "%s", options->method);
+        *plan = made;
+    } else {
+        gonio_plan_free(&made);
+    }
+    free_places(&p);
+    return status;
+}
+
+/* It needs to know the basis: gonio_plan_select refuses it. */
+static gonio_status refuse(const gonio_i_selection_problem *problem, gonio_i_selection *selection)
+{
+    (void)selection;
+    return gonio_i_fail(problem->context, GONIO_ERROR_ARGUMENT,
+                        "expected-error works on a basis, not on bare rows");
+}
+
+const gonio_i_method gonio_i_expected_error_method = {
+    "expected-error", "the readings that leave the least expected error", false, refuse};

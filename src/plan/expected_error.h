@@ -1,0 +1,24 @@
+/* Choosing the readings that leave the least expected error: see expected_error.c. */
+#ifndef GONIO_EXPECTED_ERROR_H
+#define GONIO_EXPECTED_ERROR_H
+
+#include "method.h"
+
+typedef struct gonio_i_design_problem {
+    gonio_context *context;
+    const double *f;          /* [rows][components] */
+    size_t rows;
+    size_t components;
+    const double *covariance; /* [components][components]: of z before the first reading */
+    const double *loss;       /* [rows]: weight of the squared error of g there */
+    const bool *allowed;      /* [rows]: whether it can be read */
+    double variance;          /* of the noise of a reading, log units */
+    size_t count;
+} gonio_i_design_problem;
+
+/* chosen[count], in the order of reading; remaining[count] (or NULL): the expected loss after each
+ * of them. `count` is at most the number of rows allowed. Errors: _MEMORY, _CANCELLED. */
+gonio_status gonio_i_design_find(const gonio_i_design_problem *problem, size_t *chosen,
+                                 double *remaining);
+
+#endif
