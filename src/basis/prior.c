@@ -6,6 +6,9 @@
 
 #include "../direction/grid.h"
 
+static const double PEAK = 8.0;
+static const double WIDTH = M_PI / 180.0;
+
 /* The weight that learning gave a column, on average 1 (basis.h, mixtures). */
 static double weight_of(const gonio_basis_view *view, size_t column)
 {
@@ -101,7 +104,8 @@ gonio_i_place gonio_i_place_of(gonio_half_difference at)
     const double turn = sqrt(fmax(sin(at.theta_h) * sin(at.theta_d), 0.0)) / 1.5;
     return (gonio_i_place){{GONIO_THETA_H_BINS / 10.0 * sqrt(fmax(at.theta_h, 0.0) / quarter),
                             at.theta_d / quarter * 90.0 / 20.0, turn * cos(2.0 * at.phi_d),
-                            turn * sin(2.0 * at.phi_d)}};
+                            turn * sin(2.0 * at.phi_d)},
+                           exp(-0.5 * at.theta_h * at.theta_h / (WIDTH * WIDTH))};
 }
 
 double gonio_i_smoothness(const gonio_i_place *a, const gonio_i_place *b)
@@ -110,7 +114,9 @@ double gonio_i_smoothness(const gonio_i_place *a, const gonio_i_place *b)
     for (int k = 0; k < 4; k++) {
         square += (a->p[k] - b->p[k]) * (a->p[k] - b->p[k]);
     }
-    return exp(-0.5 * square);
+    const double smooth = exp(-0.5 * square);
+    const double peak = PEAK * PEAK * a->peak * b->peak;
+    return peak > 1e-9 ? smooth + peak * exp(-2.0 * square) : smooth;
 }
 
 gonio_half_difference gonio_i_row_coordinates(const gonio_basis_view *view, size_t row,

@@ -5,8 +5,8 @@
  *     g(x) = m(x) + f(x) z + r(x),   f(x) = row x of V diag(lambda)^(1/2),
  *
  * z the database's part, of mean 0 and covariance I; r a smooth remainder that the database has
- * never seen, of mean 0 and covariance alpha^2 k(x, x'), k = exp(-|p(x) - p(x')|^2 / 2), p the
- * place of x below. The columns that the basis was learned from are samples of z. */
+ * never seen, of mean 0 and covariance alpha^2 k(x, x') below. The columns that the basis was
+ * learned from are samples of z. */
 #ifndef GONIO_PRIOR_H
 #define GONIO_PRIOR_H
 
@@ -34,12 +34,19 @@ void gonio_i_prior_at(const gonio_i_prior *prior, gonio_half_difference at, int 
 /* f of a row of the basis. */
 void gonio_i_prior_row(const gonio_i_prior *prior, size_t row, double *f);
 
-/* Half/difference coordinates in which the remainder is smooth: lengths of 10 bins of theta_h
+/* The remainder has covariance alpha^2 k(x, x'),
+ *
+ *     k = exp(-|p - p'|^2/2) + PEAK^2 exp(-(theta_h^2 + theta_h'^2)/(2 WIDTH^2)) exp(-2 |p - p'|^2):
+ *
+ * near the mirror direction, within about a degree, peaks can be narrower than any in the database.
+ *
+ * Half/difference coordinates in which the remainder is smooth: lengths of 10 bins of theta_h
  * (which crowd around the mirror direction), 20 degrees of theta_d, and phi_d as far as it matters
  * there: two directions that differ in phi_d alone are the closer the nearer h is to the normal or
  * d to h. */
 typedef struct gonio_i_place {
     double p[4];
+    double peak; /* exp(-theta_h^2/(2 WIDTH^2)) */
 } gonio_i_place;
 
 gonio_i_place gonio_i_place_of(gonio_half_difference at);

@@ -123,6 +123,17 @@ gonio_status gonio_i_eigen(gonio_context *context, double *a, size_t n, bool vec
     return check_info(context, "dsyevd", info);
 }
 
+gonio_status gonio_i_product(gonio_context *context, const double *a, size_t rows, size_t k,
+                             const double *b, size_t n, double *c)
+{
+    const gonio_status status = check_size(context, rows, n > k ? n : k);
+    if (status == GONIO_OK) {
+        cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, (int)rows, (int)n, (int)k, 1.0, a,
+                    (int)k, b, (int)n, 0.0, c, (int)n);
+    }
+    return status;
+}
+
 gonio_status gonio_i_cholesky(gonio_context *context, double *c, size_t n)
 {
     gonio_status status = check_size(context, n, n);

@@ -36,6 +36,10 @@ gonio_status gonio_i_product_transposed(gonio_context *context, const double *a,
 gonio_status gonio_i_product_rows(gonio_context *context, const double *a, size_t rows, size_t k,
                                   size_t leading, const double *b, size_t n, double *c);
 
+/* C (rows x n) = A B for A (rows x k) and B (k x n), row-major. */
+gonio_status gonio_i_product(gonio_context *context, const double *a, size_t rows, size_t k,
+                             const double *b, size_t n, double *c);
+
 /* Eigenvalues (ascending) of a symmetric n x n matrix, and with `vectors` its eigenvectors: on
  * return row j of a is the eigenvector of the j-th value. a is overwritten in any case. */
 gonio_status gonio_i_eigen(gonio_context *context, double *a, size_t n, bool vectors,

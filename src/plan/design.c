@@ -15,7 +15,10 @@ static const double NOISE = 0.05;
 /* Of the remainder that the database has never seen, log units, between candidates. */
 static const double SMOOTHNESS = 0.2;
 
-enum { MOST_CANDIDATES = 6000 };
+/* Variance that may stay out of the covariance between candidates. */
+static const double LEFT = 1e-4;
+
+enum { MOST_CANDIDATES = 6000, MOST_RANK = 500 };
 
 /* What the expected error is multiplied by: how much larger the error of materials of the ten
  * splits was than the prior expects (docs/accuracy.md). */
@@ -33,6 +36,15 @@ typedef struct place_list {
     gonio_half_difference *at;
     double *identity;
 } place_list;
+
+static double dot(const double *a, const double *b, size_t n)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        sum += a[i] * b[i];
+    }
+    return sum;
+}
 
 static void free_places(place_list *p)
 {
@@ -102,27 +114,64 @@ static gonio_status list_rows(place_list *p, gonio_metric metric)
     return status;
 }
 
-/* The covariance between candidates, as a triangle: f f' = F F' + alpha^2 k. */
-static gonio_status factorise(place_list *p, const double *f)
+/* Given    f[rows][K] and places of candidates, whose covariance is C = f f' + alpha^2 k
+ * Returned p->f[rows][p->components], p->f p->f' = C to within LEFT of every variance
+ * Method   Cholesky with pivoting on the largest variance left (Higham 2002, sec. 10.3); columns of
+ *          C are made as they are needed */
+static void factorise(place_list *p, const double *f, const gonio_i_place *place, double *left)
 {
-    const size_t n = p->rows;
-    gonio_status status = gonio_i_product_transposed(p->context, f, n, p->prior->components, f, n,
-                                                     p->f, n);
-    for (size_t i = 0; i < n && status == GONIO_OK; i++) {
-        const gonio_i_place a = gonio_i_place_of(p->at[i]);
-        for (size_t j = 0; j < n; j++) {
-            const gonio_i_place b = gonio_i_place_of(p->at[j]);
-            p->f[i * n + j] += SMOOTHNESS * SMOOTHNESS * gonio_i_smoothness(&a, &b);
-        }
-        p->f[i * n + i] += 1e-6; /* the same directions listed twice */
+    const size_t most = p->components;
+    const size_t k = p->prior->components;
+    for (size_t i = 0; i < p->rows; i++) {
+        left[i] = dot(f + i * k, f + i * k, k) +
+                  SMOOTHNESS * SMOOTHNESS * gonio_i_smoothness(&place[i], &place[i]);
     }
-    return status == GONIO_OK ? gonio_i_cholesky(p->context, p->f, n) : status;
+    size_t rank = 0;
+    for (; rank < most; rank++) {
+        size_t pivot = 0;
+        for (size_t i = 1; i < p->rows; i++) {
+            pivot = left[i] > left[pivot] ? i : pivot;
+        }
+        if (left[pivot] < LEFT) {
+            break;
+        }
+        const double root = sqrt(left[pivot]);
+        for (size_t i = 0; i < p->rows; i++) {
+            const double c =
+                dot(f + i * k, f + pivot * k, k) +
+                SMOOTHNESS * SMOOTHNESS * gonio_i_smoothness(&place[i], &place[pivot]);
+            const double known = dot(p->f + i * most, p->f + pivot * most, rank);
+            p->f[i * most + rank] = (c - known) / root;
+        }
+        for (size_t i = 0; i < p->rows; i++) {
+            left[i] -= p->f[i * most + rank] * p->f[i * most + rank];
+        }
+        left[pivot] = 0.0;
+    }
+}
+
+static gonio_status factorise_candidates(place_list *p, const double *f)
+{
+    double *left = gonio_i_allocate(p->context, p->rows, sizeof *left);
+    gonio_i_place *place = gonio_i_allocate(p->context, p->rows, sizeof *place);
+    if (left == NULL || place == NULL) {
+        free(left);
+        free(place);
+        return GONIO_ERROR_MEMORY;
+    }
+    for (size_t i = 0; i < p->rows; i++) {
+        place[i] = gonio_i_place_of(p->at[i]);
+    }
+    factorise(p, f, place, left);
+    free(left);
+    free(place);
+    return GONIO_OK;
 }
 
 static gonio_status list_candidates(place_list *p, const gonio_plan_options *options)
 {
     p->rows = options->candidate_count;
-    p->components = p->rows;
+    p->components = p->rows < MOST_RANK ? p->rows : MOST_RANK;
     double *f =
         gonio_i_allocate(p->context, p->rows * p->prior->components, sizeof *f);
     gonio_status status = f == NULL ? GONIO_ERROR_MEMORY : allocate_places(p);
@@ -133,7 +182,7 @@ static gonio_status list_candidates(place_list *p, const gonio_plan_options *opt
         p->loss[k] = metric_weight(options->metric, p->at[k], p->mean[k], 0);
     }
     if (status == GONIO_OK) {
-        status = factorise(p, f);
+        status = factorise_candidates(p, f);
     }
     free(f);
     return status;

@@ -7,7 +7,8 @@
 
 #include "../linalg/linalg.h"
 
-/* Deviations from which on a reading is taken to be wrong; of a Gaussian one in 3 million is. */
+/* Deviations from which on a reading is taken to be wrong, in units of what is usual among the
+ * readings, or of the model's own if that is more; of a Gaussian one in 3 million is. */
 static const double OUTLYING = 5.0;
 
 enum { MOST_ROUNDS = 20 };
@@ -25,6 +26,7 @@ static gonio_status allocate(gonio_i_gaussian *e)
     e->variance = gonio_i_allocate(c, n, sizeof *e->variance);
     e->bound = gonio_i_allocate(c, n, sizeof *e->bound);
     e->left_out = gonio_i_allocate(c, n, sizeof *e->left_out);
+    e->seen = gonio_i_allocate(c, e->prior->samples * n, sizeof *e->seen);
     e->gram = gonio_i_allocate(c, n * n, sizeof *e->gram);
     e->smooth = gonio_i_allocate(c, n * n, sizeof *e->smooth);
     e->lower = gonio_i_allocate(c, n * n, sizeof *e->lower);
@@ -33,7 +35,7 @@ static gonio_status allocate(gonio_i_gaussian *e)
     e->rest = gonio_i_allocate(c, n, sizeof *e->rest);
     e->solved = gonio_i_allocate(c, n, sizeof *e->solved);
     const bool done = e->f && e->place && e->y && e->variance && e->bound && e->left_out &&
-                      e->gram && e->smooth && e->lower && e->weight && e->centre && e->rest &&
+                      e->seen && e->gram && e->smooth && e->lower && e->weight && e->centre && e->rest &&
                       e->solved;
     return done ? GONIO_OK : GONIO_ERROR_MEMORY;
 }
@@ -46,6 +48,7 @@ void gonio_i_gaussian_end(gonio_i_gaussian *e)
     free(e->variance);
     free(e->bound);
     free(e->left_out);
+    free(e->seen);
     free(e->gram);
     free(e->smooth);
     free(e->lower);
@@ -54,6 +57,23 @@ void gonio_i_gaussian_end(gonio_i_gaussian *e)
     free(e->rest);
     free(e->solved);
     *e = (gonio_i_gaussian){0};
+}
+
+/* F F' and a F z_j. */
+static gonio_status see_samples(gonio_i_gaussian *e)
+{
+    const double a = sqrt(1.0 - e->h * e->h);
+    const size_t values = e->prior->samples * e->n;
+    gonio_status status = gonio_i_product_transposed(e->context, e->f, e->n, e->components, e->f,
+                                                     e->n, e->gram, e->n);
+    if (status == GONIO_OK && values > 0) {
+        status = gonio_i_product_transposed(e->context, e->prior->sample, e->prior->samples,
+                                            e->components, e->f, e->n, e->seen, e->n);
+    }
+    for (size_t i = 0; i < values; i++) {
+        e->seen[i] *= a;
+    }
+    return status;
 }
 
 gonio_status gonio_i_gaussian_begin(gonio_context *context, const gonio_i_prior *prior,
@@ -82,8 +102,7 @@ gonio_status gonio_i_gaussian_begin(gonio_context *context, const gonio_i_prior 
             e->smooth[j * e->n + i] = k;
         }
     }
-    return gonio_i_product_transposed(context, e->f, e->n, e->components, e->f, e->n, e->gram,
-                                      e->n);
+    return see_samples(e);
 }
 
 /* L of S; the sum of the logarithms of its diagonal goes to `logarithm`. */
@@ -136,17 +155,13 @@ static gonio_status weigh_samples(gonio_i_gaussian *e)
 {
     const size_t n = e->n;
     const size_t samples = e->prior->samples;
-    const double a = sqrt(1.0 - e->h * e->h);
     double *seen = gonio_i_allocate(e->context, (samples + 1) * n, sizeof *seen);
     if (seen == NULL) {
         return GONIO_ERROR_MEMORY;
     }
+    const double a = sqrt(1.0 - e->h * e->h);
     double *y = seen + samples * n;
-    const gonio_status status = gonio_i_product_transposed(
-        e->context, e->prior->sample, samples, e->components, e->f, n, seen, n);
-    for (size_t i = 0; i < samples * n; i++) {
-        seen[i] *= a;
-    }
+    memcpy(seen, e->seen, samples * n * sizeof *seen);
     memcpy(y, e->y, n * sizeof *y);
     gonio_i_divide_triangle(seen, samples + 1, n, e->lower);
     for (size_t j = 0; j < samples; j++) {
@@ -159,7 +174,7 @@ static gonio_status weigh_samples(gonio_i_gaussian *e)
         }
     }
     free(seen);
-    return status;
+    return GONIO_OK;
 }
 
 gonio_status gonio_i_gaussian_solve(gonio_i_gaussian *e, double alpha)
@@ -222,8 +237,27 @@ gonio_status gonio_i_gaussian_leave_one_out(const gonio_i_gaussian *e, double *d
 typedef struct judgement {
     double *difference; /* [n] */
     double *variance;   /* [n] */
+    double *deviations; /* [n]: scratch */
     bool *outlying;     /* [n] */
 } judgement;
+
+static int compare_numbers(const void *a, const void *b)
+{
+    const double x = *(const double *)a;
+    const double y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* The median of the deviations, as a Gaussian's standard deviation; 1 at least: a material that
+ * the prior knows badly is off everywhere, and that is no reason to believe none of it. */
+static double usual_deviation(const gonio_i_gaussian *e, const judgement *j)
+{
+    for (size_t i = 0; i < e->n; i++) {
+        j->deviations[i] = fabs(j->difference[i]) / sqrt(j->variance[i]);
+    }
+    qsort(j->deviations, e->n, sizeof *j->deviations, compare_numbers);
+    return fmax(1.0, j->deviations[e->n / 2] / 0.6745);
+}
 
 /* A bound that the other readings keep by themselves says nothing. */
 static bool judge_bounds(gonio_i_gaussian *e, const judgement *j)
@@ -243,10 +277,11 @@ static bool judge_bounds(gonio_i_gaussian *e, const judgement *j)
 static bool judge_readings(gonio_i_gaussian *e, const judgement *j)
 {
     const size_t most = 1 + e->n / 40;
+    const double usual = usual_deviation(e, j);
     size_t found = 0;
     for (; found < most; found++) {
         size_t worst = e->n;
-        double largest = OUTLYING;
+        double largest = OUTLYING * usual;
         for (size_t i = 0; i < e->n; i++) {
             const double deviations = fabs(j->difference[i]) / sqrt(j->variance[i]);
             if (!j->outlying[i] && !e->left_out[i] && deviations > largest) {
@@ -267,8 +302,10 @@ gonio_status gonio_i_gaussian_settle(gonio_i_gaussian *e, size_t *outlying)
 {
     judgement j = {gonio_i_allocate(e->context, e->n, sizeof *j.difference),
                    gonio_i_allocate(e->context, e->n, sizeof *j.variance),
+                   gonio_i_allocate(e->context, e->n, sizeof *j.deviations),
                    gonio_i_allocate(e->context, e->n, sizeof *j.outlying)};
-    gonio_status status = j.difference == NULL || j.variance == NULL || j.outlying == NULL
+    gonio_status status = j.difference == NULL || j.variance == NULL || j.deviations == NULL ||
+                                  j.outlying == NULL
                               ? GONIO_ERROR_MEMORY
                               : GONIO_OK;
     bool changed = true;
@@ -286,6 +323,7 @@ gonio_status gonio_i_gaussian_settle(gonio_i_gaussian *e, size_t *outlying)
     }
     free(j.difference);
     free(j.variance);
+    free(j.deviations);
     free(j.outlying);
     return status;
 }

@@ -20,6 +20,7 @@ typedef struct gonio_i_gaussian {
     double *variance;      /* [n]: D */
     int *bound;            /* [n] */
     bool *left_out;        /* [n]: a bound that is kept anyway, which says nothing */
+    double *seen;          /* [samples][n]: a F z_j */
     double *gram;          /* [n][n]: F F' */
     double *smooth;        /* [n][n]: k */
     double alpha;

@@ -146,27 +146,44 @@ typedef struct predicted_sums {
     double square;
 } predicted_sums;
 
-static gonio_status solve_column(gonio_i_gaussian *e, size_t column, gonio_i_posterior *p,
-                                 predicted_sums *sums)
+/* What a column's field is made of, kept until all columns are solved. */
+static gonio_status keep_column(gonio_i_gaussian *e, size_t column, gonio_i_posterior *p,
+                                gonio_i_spread_column *kept)
 {
-    const size_t rows = e->prior->view.rows;
-    double *c = p->coefficients + column * e->components;
-    find_coefficients(e, c);
-    const gonio_i_spread_target target = {
-        .c = c,
-        .field = p->field + column * rows,
-        .deviation = p->deviation != NULL ? p->deviation + column * rows : NULL};
-    const gonio_status status =
-        gonio_i_spread(e, &target, &sums->error, &sums->square);
-    for (size_t k = 0; k < e->components; k++) {
-        c[k] *= e->prior->deviation[k];
+    const size_t n = e->alpha > 0.0 ? e->n : 0;
+    *kept = (gonio_i_spread_column){
+        .n = n,
+        .place = gonio_i_allocate(e->context, n, sizeof *kept->place),
+        .weight = gonio_i_allocate(e->context, n, sizeof *kept->weight),
+        .c = p->coefficients + column * e->components,
+        .field = p->field + column * e->prior->view.rows};
+    if (kept->place == NULL || kept->weight == NULL) {
+        return GONIO_ERROR_MEMORY;
     }
-    return status;
+    for (size_t i = 0; i < n; i++) {
+        kept->place[i] = e->place[i];
+        kept->weight[i] = e->alpha * e->alpha * e->solved[i];
+    }
+    return GONIO_OK;
+}
+
+static gonio_status solve_column(gonio_i_gaussian *e, size_t column, gonio_i_posterior *p,
+                                 predicted_sums *sums, gonio_i_spread_column *kept)
+{
+    double *c = p->coefficients + column * e->components;
+    double *deviation =
+        p->deviation != NULL ? p->deviation + column * e->prior->view.rows : NULL;
+    find_coefficients(e, c);
+    const gonio_status status = keep_column(e, column, p, kept);
+    return status == GONIO_OK
+               ? gonio_i_spread_variance(e, c, deviation, &sums->error, &sums->square)
+               : status;
 }
 
 static gonio_status find_column(gonio_context *context, const gonio_i_prior *prior,
                                 const gonio_i_column *columns, size_t column,
-                                gonio_i_posterior *p, predicted_sums *sums)
+                                gonio_i_posterior *p, predicted_sums *sums,
+                                gonio_i_spread_column *kept)
 {
     gonio_i_gaussian e;
     size_t outlying = 0;
@@ -178,7 +195,7 @@ static gonio_status find_column(gonio_context *context, const gonio_i_prior *pri
         status = gonio_i_gaussian_settle(&e, &outlying);
     }
     if (status == GONIO_OK) {
-        status = solve_column(&e, column, p, sums);
+        status = solve_column(&e, column, p, sums, kept);
         p->outlying += outlying;
         p->residual += square_left(&e);
     }
@@ -193,16 +210,31 @@ gonio_status gonio_i_posterior_find(gonio_context *context, const gonio_i_prior 
 {
     predicted_sums sums = {0.0, 0.0};
     size_t readings = 0;
-    gonio_status status = GONIO_OK;
+    gonio_i_spread_column *kept = gonio_i_allocate(context, count, sizeof *kept);
+    gonio_status status = kept == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
     p->smoothness = options->smoothness;
     p->outlying = 0;
     p->residual = 0.0;
-    if (!(options->smoothness >= 0.0)) {
+    if (status == GONIO_OK && !(options->smoothness >= 0.0)) {
         status = choose_smoothness(context, prior, columns, count, &p->smoothness);
     }
     for (size_t k = 0; k < count && status == GONIO_OK; k++) {
-        status = find_column(context, prior, columns, k, p, &sums);
+        status = find_column(context, prior, columns, k, p, &sums, &kept[k]);
         readings += columns[k].count;
+        if (status == GONIO_OK) {
+            status = gonio_i_progress(context, "reconstructing", (double)(k + 1) / (double)count);
+        }
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_spread_fields(context, prior, kept, count);
+    }
+    for (size_t k = 0; kept != NULL && k < count; k++) {
+        free(kept[k].place);
+        free(kept[k].weight);
+    }
+    free(kept);
+    for (size_t k = 0; k < count * prior->components && status == GONIO_OK; k++) {
+        p->coefficients[k] *= prior->deviation[k % prior->components];
     }
     if (status == GONIO_OK) {
         p->predicted = 100.0 * sqrt(sums.error / sums.square);

@@ -1,6 +1,6 @@
 /* The field and its deviation: see spread.h.
  *
- * With t(x) = (f(x), k(x, .)) the variance of g(x) is alpha^2 + t Q t', where
+ * With t(x) = (f(x), k(x, .)) the variance of g(x) is alpha^2 k(x, x) + t Q t', where
  *
  *     Q = diag(h^2 I, 0) - w S^-1 w' + sum_j q_j d_j d_j',   w = (h^2 F', alpha^2 I),
  *     d_j = a ((z_j - z) - h^2 F' S^-1 F (z_j - z), -alpha^2 S^-1 F (z_j - z)):
@@ -25,37 +25,42 @@ static const double CALIBRATION = 1.0;
 
 typedef struct spreader {
     const gonio_i_gaussian *e;
-    const gonio_i_spread_target *target;
-    size_t n; /* readings whose smoothness counts: none if alpha is 0 */
-    size_t size;     /* of t */
-    double *q;       /* [size][size] */
+    const double *c;
+    double *deviation; /* [rows], or NULL */
+    size_t n;    /* readings whose smoothness counts: none if alpha is 0 */
+    size_t size; /* of t */
+    double *q;   /* [size][size] */
 } spreader;
 
-static void fill_t(const spreader *s, size_t row, double *t)
+static void fill_t(const gonio_i_prior *prior, const gonio_i_place *place, size_t n, size_t row,
+                   double *t)
 {
     int channel = 0;
-    gonio_i_prior_row(s->e->prior, row, t);
-    if (s->n > 0) {
-        const gonio_i_place place =
-            gonio_i_place_of(gonio_i_row_coordinates(&s->e->prior->view, row, &channel));
-        for (size_t i = 0; i < s->n; i++) {
-            t[s->e->components + i] = gonio_i_smoothness(&place, &s->e->place[i]);
+    gonio_i_prior_row(prior, row, t);
+    if (n > 0) {
+        const gonio_i_place here =
+            gonio_i_place_of(gonio_i_row_coordinates(&prior->view, row, &channel));
+        for (size_t i = 0; i < n; i++) {
+            t[prior->components + i] = gonio_i_smoothness(&here, &place[i]);
         }
     }
+}
+
+static double dot(const double *a, const double *b, size_t n)
+{
+    double sum = 0.0;
+    for (size_t k = 0; k < n; k++) {
+        sum += a[k] * b[k];
+    }
+    return sum;
 }
 
 /* m + f c + alpha^2 k S^-1 (y - F z). */
 static double value_of(const spreader *s, size_t row, const double *t)
 {
     const gonio_i_gaussian *e = s->e;
-    double g = e->prior->view.mean[row];
-    for (size_t k = 0; k < e->components; k++) {
-        g += t[k] * s->target->c[k];
-    }
-    for (size_t i = 0; i < s->n; i++) {
-        g += e->alpha * e->alpha * t[e->components + i] * e->solved[i];
-    }
-    return g;
+    return e->prior->view.mean[row] + dot(t, s->c, e->components) +
+           e->alpha * e->alpha * dot(t + e->components, e->solved, s->n);
 }
 
 /* Q less w S^-1 w', by rows w L'^-1. */
@@ -87,59 +92,64 @@ static gonio_status take_out_readings(const spreader *s, double *q)
     return status;
 }
 
-/* d_j q_j^(1/2) of one sample; seen: scratch of n values. */
-static void fill_difference(const spreader *s, size_t sample, double *seen, double *d)
+/* d_j q_j^(1/2) of the samples listed: d[count][size]; seen, solved: scratch of count x n. */
+static gonio_status fill_differences(const spreader *s, const size_t *listed, size_t count,
+                                     double *d, double *seen, double *move)
 {
     const gonio_i_gaussian *e = s->e;
     const double a = sqrt(1.0 - e->h * e->h);
-    const double root = sqrt(e->weight[sample]);
-    for (size_t k = 0; k < e->components; k++) {
-        d[k] = root * (a * e->prior->sample[sample * e->components + k] - e->centre[k]);
-    }
-    for (size_t i = 0; i < e->n; i++) {
-        seen[i] = 0.0;
+    for (size_t j = 0; j < count; j++) {
+        const double root = sqrt(e->weight[listed[j]]);
         for (size_t k = 0; k < e->components; k++) {
-            seen[i] += e->f[i * e->components + k] * d[k];
+            d[j * s->size + k] =
+                root * (a * e->prior->sample[listed[j] * e->components + k] - e->centre[k]);
         }
     }
-    gonio_i_divide_triangle(seen, 1, e->n, e->lower);
-    gonio_i_divide_lower(seen, 1, e->n, e->lower);
-    for (size_t i = 0; i < e->n; i++) {
+    gonio_status status = gonio_i_product_rows(e->context, d, count, e->components, s->size, e->f,
+                                               e->n, seen);
+    gonio_i_divide_triangle(seen, count, e->n, e->lower);
+    gonio_i_divide_lower(seen, count, e->n, e->lower);
+    if (status == GONIO_OK) {
+        status = gonio_i_product(e->context, seen, count, e->n, e->f, e->components, move);
+    }
+    for (size_t j = 0; j < count && status == GONIO_OK; j++) {
         for (size_t k = 0; k < e->components; k++) {
-            d[k] -= e->h * e->h * e->f[i * e->components + k] * seen[i];
+            d[j * s->size + k] -= e->h * e->h * move[j * e->components + k];
         }
-        if (s->n > 0) {
-            d[e->components + i] = -e->alpha * e->alpha * seen[i];
+        for (size_t i = 0; i < s->n; i++) {
+            d[j * s->size + e->components + i] = -e->alpha * e->alpha * seen[j * e->n + i];
         }
     }
+    return status;
 }
 
 /* Q plus sum_j q_j d_j d_j'. */
 static gonio_status add_samples(const spreader *s, double *q)
 {
     const gonio_i_gaussian *e = s->e;
+    const size_t samples = e->prior->samples;
+    size_t *listed = gonio_i_allocate(e->context, samples, sizeof *listed);
     size_t count = 0;
-    for (size_t j = 0; j < e->prior->samples; j++) {
+    for (size_t j = 0; listed != NULL && j < samples; j++) {
+        listed[count] = j;
         count += e->weight[j] > NEGLIGIBLE;
     }
-    if (count == 0) {
-        return GONIO_OK;
-    }
     double *d = gonio_i_allocate(e->context, count * s->size, sizeof *d);
-    double *seen = gonio_i_allocate(e->context, e->n, sizeof *seen);
-    gonio_status status = d == NULL || seen == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
-    count = 0;
-    for (size_t j = 0; j < e->prior->samples && status == GONIO_OK; j++) {
-        if (e->weight[j] > NEGLIGIBLE) {
-            fill_difference(s, j, seen, d + count++ * s->size);
-        }
+    double *seen = gonio_i_allocate(e->context, count * e->n, sizeof *seen);
+    double *move = gonio_i_allocate(e->context, count * e->components, sizeof *move);
+    const bool done = listed != NULL && d != NULL && seen != NULL && move != NULL;
+    gonio_status status = done ? GONIO_OK : GONIO_ERROR_MEMORY;
+    if (status == GONIO_OK && count > 0) {
+        status = fill_differences(s, listed, count, d, seen, move);
     }
-    if (status == GONIO_OK) {
+    if (status == GONIO_OK && count > 0) {
         status = gonio_i_add_gram_rows(e->context, d, count, s->size, q);
         gonio_i_mirror(q, s->size);
     }
+    free(listed);
     free(d);
     free(seen);
+    free(move);
     return status;
 }
 
@@ -156,34 +166,38 @@ static gonio_status find_q(spreader *s)
     return status == GONIO_OK ? add_samples(s, s->q) : status;
 }
 
-static double dot(const double *a, const double *b, size_t n)
+/* k(x, x) of a row. */
+static double remainder_at(const spreader *s, size_t row)
 {
-    double sum = 0.0;
-    for (size_t k = 0; k < n; k++) {
-        sum += a[k] * b[k];
-    }
-    return sum;
+    int channel = 0;
+    const gonio_i_place here =
+        gonio_i_place_of(gonio_i_row_coordinates(&s->e->prior->view, row, &channel));
+    return gonio_i_smoothness(&here, &here);
 }
 
 /* Rows first, first + step, ... of which `count` make a block; t, product: [count][size]. */
-static gonio_status spread_variances(const spreader *s, size_t first, size_t step, size_t count,
-                                     const double *t, double *product, double *error,
-                                     double *square)
+static gonio_status spread_block(const spreader *s, size_t first, size_t step, size_t count,
+                                 double *t, double *product, double *error, double *square)
 {
     const gonio_i_gaussian *e = s->e;
-    const gonio_status status = gonio_i_product_transposed(e->context, t, count, s->size, s->q,
-                                                           s->size, product, s->size);
     const gonio_basis_view *view = &e->prior->view;
     const size_t each = view->channels == GONIO_JOINT ? GONIO_CHANNELS : 1;
+#pragma omp parallel for schedule(static) num_threads(gonio_context_threads(e->context))
+    for (size_t b = 0; b < count; b++) {
+        fill_t(e->prior, e->place, s->n, first + b * step, t + b * s->size);
+    }
+    const gonio_status status = gonio_i_product_transposed(e->context, t, count, s->size, s->q,
+                                                           s->size, product, s->size);
     for (size_t b = 0; b < count && status == GONIO_OK; b++) {
         const size_t row = first + b * step;
-        const double prior = e->alpha * e->alpha;
+        const double *here = t + b * s->size;
+        const double prior = s->n > 0 ? e->alpha * e->alpha * remainder_at(s, row) : 0.0;
         const double variance =
-            CALIBRATION * fmax(prior + dot(t + b * s->size, product + b * s->size, s->size), 0.0);
+            CALIBRATION * fmax(prior + dot(here, product + b * s->size, s->size), 0.0);
         const double bins = gonio_i_cell_bins(view->representation, view->cell[row / each]);
-        const double g = fmax(s->target->field[row], 0.0);
-        if (s->target->deviation != NULL) {
-            s->target->deviation[row] = sqrt(variance);
+        const double g = fmax(value_of(s, row, here), 0.0);
+        if (s->deviation != NULL) {
+            s->deviation[row] = sqrt(variance);
         }
         *error += bins * variance;
         *square += bins * (g * g + variance);
@@ -191,48 +205,67 @@ static gonio_status spread_variances(const spreader *s, size_t first, size_t ste
     return status;
 }
 
-/* Every step-th row: values (if wanted) and variances (if wanted). */
-static gonio_status spread_rows(const spreader *s, size_t step, bool values, bool variances,
-                                double *error, double *square)
+gonio_status gonio_i_spread_variance(const gonio_i_gaussian *gaussian, const double *c,
+                                     double *deviation, double *error, double *square)
 {
-    const size_t rows = s->e->prior->view.rows;
-    double *t = gonio_i_allocate(s->e->context, BLOCK * s->size, sizeof *t);
-    double *product = gonio_i_allocate(s->e->context, BLOCK * s->size, sizeof *product);
-    gonio_status status = t == NULL || product == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    spreader s = {.e = gaussian, .c = c, .deviation = deviation};
+    s.n = gaussian->alpha > 0.0 ? gaussian->n : 0;
+    s.size = gaussian->components + s.n;
+    const size_t rows = gaussian->prior->view.rows;
+    const size_t step = deviation != NULL ? 1 : rows / SAMPLE + 1;
+    gonio_status status = find_q(&s);
+    double *t = gonio_i_allocate(gaussian->context, BLOCK * s.size, sizeof *t);
+    double *product = gonio_i_allocate(gaussian->context, BLOCK * s.size, sizeof *product);
+    if (t == NULL || product == NULL) {
+        status = GONIO_ERROR_MEMORY;
+    }
     for (size_t first = 0; first < rows && status == GONIO_OK; first += BLOCK * step) {
         const size_t left = (rows - first + step - 1) / step;
-        const size_t count = left < BLOCK ? left : BLOCK;
-#pragma omp parallel for num_threads(gonio_context_threads(s->e->context))
-        for (size_t b = 0; b < count; b++) {
-            const size_t row = first + b * step;
-            fill_t(s, row, t + b * s->size);
-            if (values) {
-                s->target->field[row] = value_of(s, row, t + b * s->size);
-            }
-        }
-        if (variances) {
-            status = spread_variances(s, first, step, count, t, product, error, square);
-        }
+        status = spread_block(&s, first, step, left < BLOCK ? left : BLOCK, t, product, error,
+                              square);
     }
+    free(s.q);
     free(t);
     free(product);
     return status;
 }
 
-gonio_status gonio_i_spread(const gonio_i_gaussian *gaussian, const gonio_i_spread_target *target,
-                            double *error, double *square)
+/* ---- fields ---- */
+
+/* Whether a column was read where the one before it was: then k is the same. */
+static bool same_places(const gonio_i_spread_column *a, const gonio_i_spread_column *b)
 {
-    spreader s = {.e = gaussian, .target = target, .n = gaussian->alpha > 0.0 ? gaussian->n : 0};
-    s.size = gaussian->components + s.n;
-    const size_t rows = gaussian->prior->view.rows;
-    const bool all = target->deviation != NULL;
-    gonio_status status = find_q(&s);
-    if (status == GONIO_OK) {
-        status = spread_rows(&s, 1, true, all, error, square);
+    return a->n == b->n &&
+           (a->n == 0 || memcmp(a->place, b->place, a->n * sizeof *a->place) == 0);
+}
+
+gonio_status gonio_i_spread_fields(gonio_context *context, const gonio_i_prior *prior,
+                                   const gonio_i_spread_column *columns, size_t count)
+{
+    size_t most = 0;
+    bool failed = false;
+    for (size_t j = 0; j < count; j++) {
+        most = columns[j].n > most ? columns[j].n : most;
     }
-    if (status == GONIO_OK && !all) {
-        status = spread_rows(&s, rows / SAMPLE + 1, false, true, error, square);
+#pragma omp parallel num_threads(gonio_context_threads(context))
+    {
+        double *t = gonio_i_allocate(context, prior->components + most, sizeof *t);
+        if (t == NULL) {
+#pragma omp atomic write
+            failed = true;
+        }
+#pragma omp for schedule(static)
+        for (size_t row = 0; row < prior->view.rows; row++) {
+            for (size_t j = 0; j < count && t != NULL; j++) {
+                const gonio_i_spread_column *c = &columns[j];
+                if (j == 0 || !same_places(c, c - 1)) {
+                    fill_t(prior, c->place, c->n, row, t);
+                }
+                c->field[row] = prior->view.mean[row] + dot(t, c->c, prior->components) +
+                                dot(t + prior->components, c->weight, c->n);
+            }
+        }
+        free(t);
     }
-    free(s.q);
-    return status;
+    return failed ? GONIO_ERROR_MEMORY : GONIO_OK;
 }

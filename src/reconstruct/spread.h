@@ -4,15 +4,23 @@
 
 #include "equations.h"
 
-typedef struct gonio_i_spread_target {
-    const double *c;   /* [K], in units of the prior */
-    double *field;     /* [rows]: g */
-    double *deviation; /* [rows], or NULL */
-} gonio_i_spread_target;
-
 /* Adds to `error` the expected square of the field's error over the bins of the grid, and to
- * `square` that of g itself: from every row if the deviation is wanted, otherwise from a sample. */
-gonio_status gonio_i_spread(const gonio_i_gaussian *gaussian, const gonio_i_spread_target *target,
-                            double *error, double *square);
+ * `square` that of g itself: from every row if the deviation[rows] is wanted (not NULL), otherwise
+ * from a sample. c[K]: coefficients in units of the prior. */
+gonio_status gonio_i_spread_variance(const gonio_i_gaussian *gaussian, const double *c,
+                                     double *deviation, double *error, double *square);
+
+/* The field of a column: what it is made of. */
+typedef struct gonio_i_spread_column {
+    size_t n;             /* readings whose smoothness counts */
+    gonio_i_place *place; /* [n] */
+    double *weight;       /* [n]: alpha^2 S^-1 (y - F z) */
+    const double *c;      /* [K] */
+    double *field;        /* [rows]: to be filled */
+} gonio_i_spread_column;
+
+/* g = m + f c + k weight in every row, of all columns. */
+gonio_status gonio_i_spread_fields(gonio_context *context, const gonio_i_prior *prior,
+                                   const gonio_i_spread_column *columns, size_t count);
 
 #endif
