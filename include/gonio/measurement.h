@@ -83,6 +83,8 @@ typedef struct gonio_instrument_options {
     double noise; /* standard deviation relative to the value: 0.01 is 1 per cent */
     double floor; /* standard deviation of the additive noise, 1/sr */
     uint64_t seed;
+    double outliers; /* share of directions, 0 to 1, where all values are ten times too large or too
+                      * small */
 } gonio_instrument_options;
 
 /* No noise. */

@@ -37,11 +37,15 @@ static gonio_status read_one(gonio_context *context, const gonio_readings *readi
                             readings->path, reading->line);
     }
     gonio_i_random random;
+    gonio_i_random wrongness;
     gonio_i_random_seed(&random, options->seed, stream_of(&reading->pair));
+    gonio_i_random_seed(&wrongness, ~options->seed, stream_of(&reading->pair));
+    const bool wrong = gonio_i_random_uniform(&wrongness) < options->outliers;
+    const double factor = !wrong ? 1.0 : gonio_i_random_uniform(&wrongness) < 0.5 ? 10.0 : 0.1;
     for (int k = 0; k < GONIO_CHANNELS; k++) {
         const double gain = 1.0 + options->noise * gonio_i_random_normal(&random);
         const double offset = options->floor * gonio_i_random_normal(&random);
-        reading->value[k] = fmax(reading->value[k] * gain + offset, 0.0);
+        reading->value[k] = fmax(factor * reading->value[k] * gain + offset, 0.0);
     }
     return GONIO_OK;
 }
@@ -56,6 +60,10 @@ gonio_status gonio_measure(gonio_context *context, gonio_readings *readings,
         !(options->floor >= 0.0 && isfinite(options->floor))) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
                             "noise and floor are finite numbers from 0");
+    }
+    if (!(options->outliers >= 0.0 && options->outliers <= 1.0)) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "the share of outliers is a number from 0 to 1");
     }
     gonio_status status = GONIO_OK;
     for (size_t k = 0; k < readings->count && status == GONIO_OK; k++) {

@@ -7,6 +7,7 @@ typedef struct options {
     const char *output;
     double noise; /* per cent */
     double floor;
+    double outliers; /* per cent */
     long seed;
 } options;
 
@@ -33,7 +34,8 @@ static gonio_status look_up(tool *t, const options *o, gonio_readings *plan, con
 static gonio_status measure(tool *t, const options *o, const char *plan, const char *path)
 {
     gonio_readings_options how = {.values_needed = false, .negative_to_zero = true};
-    const gonio_instrument_options instrument = {o->noise / 100.0, o->floor, (uint64_t)o->seed};
+    const gonio_instrument_options instrument = {o->noise / 100.0, o->floor, (uint64_t)o->seed,
+                                                 o->outliers / 100.0};
     gonio_readings *readings = NULL;
     gonio_material *material = NULL;
     gonio_table *table = NULL;
@@ -75,6 +77,9 @@ static int run(tool *t, const options *o)
     if (!(o->noise >= 0.0) || !(o->floor >= 0.0)) {
         return tool_usage_error(t, "--noise and --floor cannot be negative");
     }
+    if (!(o->outliers >= 0.0 && o->outliers <= 100.0)) {
+        return tool_usage_error(t, "--outliers is a share in per cent, 0 to 100");
+    }
     const int code = tool_check_output(t, o->output, arguments, count);
     return code != 0 ? code : tool_exit_code(measure(t, o, arguments[0], arguments[1]));
 }
@@ -88,6 +93,8 @@ int cmd_measure(int argc, const char **argv)
          "Noise in per cent of each reading, standard deviation (default: 0)", "PERCENT"},
         {"floor", '\0', POPT_ARG_DOUBLE, &o.floor, 0,
          "Additive noise in 1/sr, standard deviation (default: 0)", "VALUE"},
+        {"outliers", '\0', POPT_ARG_DOUBLE, &o.outliers, 0,
+         "Share of directions read ten times too high or too low (default: 0)", "PERCENT"},
         {"seed", '\0', POPT_ARG_LONG, &o.seed, 0, "Same seed, same noise (default: 0)", "N"},
         TOOL_OPTIONS};
     tool t;

@@ -1,0 +1,244 @@
+/* How accurate plans and reconstructions are on materials that were left out: docs/accuracy.md.
+ *
+ *     gonio-accuracy FOLDER SPLITS.json FIRST LAST N[,N...] [noise|outliers|METHOD ...]
+ *
+ * For splits FIRST to LAST of a splits file (as `gonio reproduce --splits` takes it) learns a basis
+ * of the materials to learn from, plans, reads the test materials at single directions, reconstructs
+ * and compares. Prints a line of CSV for each material and number of readings. */
+#include <gonio/gonio.h>
+
+#include <jansson.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { MOST_SIZES = 32, MOST_MATERIALS = 4096 };
+
+typedef struct setting {
+    const char *folder;
+    size_t size[MOST_SIZES];
+    size_t sizes;
+    double noise;    /* relative */
+    double floor;    /* 1/sr */
+    double outliers; /* share of readings that are wrong */
+    const char *method;
+    gonio_metric metric;
+    bool deviation;
+} setting;
+
+static void on_message(void *user, gonio_message_level level, const char *text)
+{
+    (void)user;
+    (void)level;
+    fprintf(stderr, "%s\n", text);
+}
+
+static char *path_of(const char *folder, const char *name)
+{
+    static const char *const endings[] = {".h5", ".binary"};
+    char *path = NULL;
+    for (int k = 0; k < 2; k++) {
+        if (asprintf(&path, "%s/%s%s", folder, name, endings[k]) > 0 && access(path, R_OK) == 0) {
+            return path;
+        }
+        free(path);
+    }
+    fprintf(stderr, "%s: no such material in %s\n", name, folder);
+    exit(1);
+}
+
+static void check(gonio_status status)
+{
+    if (status != GONIO_OK) {
+        exit(1);
+    }
+}
+
+static gonio_basis *learn(gonio_context *context, const setting *s, const json_t *names)
+{
+    const gonio_database_options sectored = {.representation = GONIO_SECTORED,
+                                             .channels = GONIO_SEPARATE};
+    const gonio_database_options paper = {.representation = GONIO_BIVARIATE};
+    const bool posterior = strcmp(s->method, "expected-error") == 0;
+    const gonio_basis_options how = {.mixtures = posterior ? GONIO_DEFAULT_MIXTURES : 0,
+                                     .components = posterior ? 0 : 45};
+    gonio_database *database = NULL;
+    gonio_basis *basis = NULL;
+    char *path[MOST_MATERIALS];
+    const size_t count = json_array_size(names);
+    for (size_t k = 0; k < count; k++) {
+        path[k] = path_of(s->folder, json_string_value(json_array_get(names, k)));
+    }
+    check(gonio_database_create(context, (const char *const *)path, count,
+                                posterior ? &sectored : &paper, &database));
+    check(gonio_basis_learn(context, database, &how, &basis));
+    gonio_database_free(&database);
+    for (size_t k = 0; k < count; k++) {
+        free(path[k]);
+    }
+    return basis;
+}
+
+/* The first n directions of a plan as readings to be filled in. */
+static gonio_readings *first_of(gonio_context *context, const gonio_plan *plan, size_t n)
+{
+    static const gonio_readings_options any = {.average_repeats = true};
+    char path[] = "/tmp/gonio-accuracy-XXXXXX";
+    gonio_readings *readings = NULL;
+    gonio_plan part = *plan;
+    part.count = n;
+    close(mkstemp(path));
+    check(gonio_plan_write(context, &part, NULL, path));
+    check(gonio_readings_read(context, path, &any, &readings));
+    unlink(path);
+    return readings;
+}
+
+/* Share of the bins' values that lie within 1.96 deviations. */
+static double coverage(gonio_context *context, const gonio_material *original,
+                       const gonio_material *made, const gonio_material *deviation)
+{
+    double *rho = calloc(3 * GONIO_SLAB_VALUES, sizeof *rho);
+    size_t inside = 0;
+    size_t all = 0;
+    for (int slab = 0; slab < GONIO_THETA_H_BINS; slab++) {
+        double *other = rho + GONIO_SLAB_VALUES;
+        double *sigma = other + GONIO_SLAB_VALUES;
+        check(gonio_material_read_slab(original, context, slab, rho));
+        check(gonio_material_read_slab(made, context, slab, other));
+        check(gonio_material_read_slab(deviation, context, slab, sigma));
+        for (size_t k = 0; k < GONIO_SLAB_VALUES; k++) {
+            const int channel = (int)(k / GONIO_SLAB_BINS);
+            if (rho[k] >= 0.0 && other[k] >= 0.0) {
+                const double off = gonio_log_from_brdf(rho[k], channel) -
+                                   gonio_log_from_brdf(other[k], channel);
+                inside += fabs(off) <= 1.96 * sigma[k];
+                all++;
+            }
+        }
+    }
+    free(rho);
+    return (double)inside / (double)all;
+}
+
+static void run(gonio_context *context, const setting *s, const gonio_basis *basis,
+                const gonio_material *original, const gonio_table *table, const gonio_plan *plan,
+                size_t n, int split)
+{
+    gonio_readings *readings = first_of(context, plan, n);
+    const gonio_instrument_options instrument = {.noise = s->noise,
+                                                 .floor = s->floor,
+                                                 .seed = (uint64_t)split,
+                                                 .outliers = s->outliers};
+    gonio_reconstruct_options how;
+    gonio_reconstruction *made = NULL;
+    gonio_material *material = NULL;
+    gonio_material *deviation = NULL;
+    gonio_comparison comparison;
+    gonio_reconstruct_options_default(&how);
+    how.deviation = s->deviation;
+    how.believe = true;
+    how.all_channels = true;
+    how.noise = fmax(s->noise, how.noise);
+    how.floor = fmax(s->floor, how.floor);
+    check(gonio_measure(context, readings, table, &instrument));
+    check(gonio_reconstruct(context, basis, readings, &how, &made));
+    check(gonio_reconstruction_material(context, basis, made, "r", &material));
+    check(gonio_compare(context, original, material, &comparison));
+    double inside = NAN;
+    if (made->deviation != NULL) {
+        check(gonio_reconstruction_deviation_material(context, basis, made, &deviation));
+        inside = coverage(context, original, material, deviation);
+    }
+    printf("%s,%d,%s,%zu,%g,%g,%g,%.4f,%.4f,%.5f,%.4f,%.4f,%g,%zu,%.3f\n", s->method, split,
+           gonio_material_name(original), n, s->noise, s->floor, s->outliers, comparison.all.e6,
+           comparison.all.cube_root, comparison.all.log_relative, made->predicted_e6, inside,
+           made->smoothness, made->outlying, plan->expected != NULL ? plan->expected[n - 1] : NAN);
+    fflush(stdout);
+    gonio_material_free(&deviation);
+    gonio_material_free(&material);
+    gonio_reconstruction_free(&made);
+    gonio_readings_free(&readings);
+}
+
+static void run_split(gonio_context *context, const setting *s, const json_t *split, int number)
+{
+    const json_t *test = json_object_get(split, "test");
+    gonio_basis *basis = learn(context, s, json_object_get(split, "basis"));
+    gonio_plan_options options;
+    gonio_plan *plan = NULL;
+    gonio_plan_options_default(&options);
+    options.method = s->method;
+    options.metric = s->metric;
+    options.count = s->size[s->sizes - 1];
+    check(gonio_plan_create(context, basis, &options, &plan));
+    for (size_t k = 0; k < json_array_size(test); k++) {
+        char *path = path_of(s->folder, json_string_value(json_array_get(test, k)));
+        gonio_material *original = NULL;
+        gonio_table *table = NULL;
+        check(gonio_material_open(context, path, &original));
+        check(gonio_table_load(context, original, &table));
+        for (size_t i = 0; i < s->sizes; i++) {
+            run(context, s, basis, original, table, plan, s->size[i], number);
+        }
+        gonio_table_free(&table);
+        gonio_material_free(&original);
+        free(path);
+    }
+    gonio_plan_free(&plan);
+    gonio_basis_free(&basis);
+}
+
+static void read_sizes(char *list, setting *s)
+{
+    for (char *word = strtok(list, ","); word != NULL && s->sizes < MOST_SIZES;
+         word = strtok(NULL, ",")) {
+        s->size[s->sizes++] = strtoul(word, NULL, 10);
+    }
+}
+
+static void read_words(int count, char **words, setting *s)
+{
+    for (int k = 0; k < count; k++) {
+        if (strcmp(words[k], "noise") == 0) {
+            s->noise = 0.02;
+            s->floor = 1e-4;
+        } else if (strcmp(words[k], "outliers") == 0) {
+            s->outliers = 0.05;
+        } else if (strcmp(words[k], "deviation") == 0) {
+            s->deviation = true;
+        } else if (strcmp(words[k], "cube-root") == 0) {
+            s->metric = GONIO_CUBE_ROOT;
+        } else if (strcmp(words[k], "log-relative") == 0) {
+            s->metric = GONIO_LOG_RELATIVE_ERROR;
+        } else {
+            s->method = words[k];
+        }
+    }
+}
+
+int main(int argc, char **argv)
+{
+    if (argc < 6) {
+        fprintf(stderr, "usage: %s FOLDER SPLITS.json FIRST LAST N[,N...] [WORD...]\n", argv[0]);
+        return 2;
+    }
+    gonio_context *context = NULL;
+    const gonio_context_options options = {.message = on_message};
+    setting s = {.folder = argv[1], .method = "expected-error"};
+    json_t *file = json_load_file(argv[2], 0, NULL);
+    const json_t *splits = json_is_array(file) ? file : json_object_get(file, "splits");
+    read_sizes(argv[5], &s);
+    read_words(argc - 6, argv + 6, &s);
+    check(gonio_context_create(&context, &options));
+    puts("method,split,material,n,noise,floor,outliers,e6,cube_root,log_relative,predicted,inside,"
+         "smoothness,outlying,expected");
+    for (int k = atoi(argv[3]); k <= atoi(argv[4]); k++) {
+        run_split(context, &s, json_array_get(splits, (size_t)k), k);
+    }
+    gonio_context_free(&context);
+    json_decref(file);
+    return 0;
+}
