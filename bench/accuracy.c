@@ -114,7 +114,7 @@ static double coverage(gonio_context *context, const gonio_material *original,
             if (rho[k] >= 0.0 && other[k] >= 0.0) {
                 const double off = gonio_log_from_brdf(rho[k], channel) -
                                    gonio_log_from_brdf(other[k], channel);
-                inside += fabs(off) <= 1.96 * sigma[k];
+                inside += fabs(off) <= 1.96 * sigma[k] / gonio_log_scale(channel);
                 all++;
             }
         }
@@ -152,10 +152,10 @@ static void run(gonio_context *context, const setting *s, const gonio_basis *bas
         check(gonio_reconstruction_deviation_material(context, basis, made, &deviation));
         inside = coverage(context, original, material, deviation);
     }
-    printf("%s,%d,%s,%zu,%g,%g,%g,%.4f,%.4f,%.5f,%.4f,%.4f,%g,%zu,%.3f\n", s->method, split,
+    printf("%s,%d,%s,%zu,%g,%g,%g,%.4f,%.4f,%.5f,%.4f,%.4f,%g,%zu,%.3f,%.3f\n", s->method, split,
            gonio_material_name(original), n, s->noise, s->floor, s->outliers, comparison.all.e6,
            comparison.all.cube_root, comparison.all.log_relative, made->predicted_e6, inside,
-           made->smoothness, made->outlying, plan->expected != NULL ? plan->expected[n - 1] : NAN);
+           made->smoothness, made->outlying, plan->expected != NULL ? plan->expected[n - 1] : NAN, made->surprise);
     fflush(stdout);
     gonio_material_free(&deviation);
     gonio_material_free(&material);
@@ -234,7 +234,7 @@ int main(int argc, char **argv)
     read_words(argc - 6, argv + 6, &s);
     check(gonio_context_create(&context, &options));
     puts("method,split,material,n,noise,floor,outliers,e6,cube_root,log_relative,predicted,inside,"
-         "smoothness,outlying,expected");
+         "smoothness,outlying,expected,surprise");
     for (int k = atoi(argv[3]); k <= atoi(argv[4]); k++) {
         run_split(context, &s, json_array_get(splits, (size_t)k), k);
     }

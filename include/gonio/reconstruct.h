@@ -52,6 +52,8 @@ typedef struct gonio_reconstruction {
     double *deviation;      /* its standard deviation, [columns][rows], if asked for */
     double predicted_e6;    /* the E6 to expect, per cent */
     double smoothness;      /* alpha: how far the remainder goes from the database, log units */
+    double surprise;        /* root mean square of what the others say of each reading, in deviations:
+                             * 1 where the material is as the database expects */
     size_t outlying;        /* readings that the others contradict; they hardly count */
     size_t wavelengths;     /* 0 for R, G, B */
     double *wavelength;     /* [wavelengths], nm */
@@ -73,7 +75,8 @@ GONIO_API gonio_status gonio_reconstruction_predict_readings(
     gonio_context *context, const gonio_basis *basis, const gonio_reconstruction *reconstruction,
     gonio_readings *readings);
 
-/* The standard deviations of g as a material, in place of reflectances. The basis and the
+/* The standard deviations of g as a material, in place of rho/s: the numbers that a MERL table of it
+ * holds are the deviations. The basis and the
  * reconstruction must outlive it. Errors: _MEMORY; _ARGUMENT if they were not asked for. */
 GONIO_API gonio_status gonio_reconstruction_deviation_material(
     gonio_context *context, const gonio_basis *basis, const gonio_reconstruction *reconstruction,

@@ -6,8 +6,8 @@
 
 #include "../direction/grid.h"
 
-static const double PEAK = 8.0;
-static const double WIDTH = M_PI / 180.0;
+static const double PEAK = 4.0;
+static const double WIDTH = 0.7 * M_PI / 180.0;
 
 /* The weight that learning gave a column, on average 1 (basis.h, mixtures). */
 static double weight_of(const gonio_basis_view *view, size_t column)

@@ -327,3 +327,18 @@ gonio_status gonio_i_gaussian_settle(gonio_i_gaussian *e, size_t *outlying)
     free(j.outlying);
     return status;
 }
+
+gonio_status gonio_i_gaussian_surprise(const gonio_i_gaussian *e, double *sum)
+{
+    double *difference = gonio_i_allocate(e->context, 2 * e->n, sizeof *difference);
+    gonio_status status = difference == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    *sum = 0.0;
+    if (status == GONIO_OK) {
+        status = gonio_i_gaussian_leave_one_out(e, difference, difference + e->n);
+    }
+    for (size_t i = 0; i < e->n && status == GONIO_OK; i++) {
+        *sum += difference[i] * difference[i] / difference[e->n + i];
+    }
+    free(difference);
+    return status;
+}

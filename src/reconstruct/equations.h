@@ -49,4 +49,7 @@ gonio_status gonio_i_gaussian_leave_one_out(const gonio_i_gaussian *gaussian, do
  * match, until nothing changes. outlying: how many of the latter. */
 gonio_status gonio_i_gaussian_settle(gonio_i_gaussian *gaussian, size_t *outlying);
 
+/* Sum over the readings of (reading - what the others say)^2 / its variance. */
+gonio_status gonio_i_gaussian_surprise(const gonio_i_gaussian *gaussian, double *sum);
+
 #endif

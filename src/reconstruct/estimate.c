@@ -82,6 +82,7 @@ static gonio_status find(gonio_context *context, const gonio_i_prior *prior,
     r->smoothness = p.smoothness;
     r->predicted_e6 = p.predicted;
     r->outlying = p.outlying;
+    r->surprise = p.surprise;
     r->residual = p.residual;
     for (size_t k = 0; k < columns->count; k++) {
         r->readings = columns->column[k].count > r->readings ? columns->column[k].count

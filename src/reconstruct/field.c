@@ -106,7 +106,7 @@ gonio_status gonio_reconstruction_predict_readings(gonio_context *context,
 typedef struct spread_field {
     const gonio_basis *basis;
     gonio_basis_view view;
-    bool plain;  /* values as they are, not exponentials */
+    bool plain;  /* g itself in place of e^g - 1 */
     double *g;   /* [channel][position] */
 } spread_field;
 
@@ -141,9 +141,9 @@ static void finish_row(const spread_field *f, size_t channel, size_t count, doub
     }
     if (!f->plain) {
         gonio_i_expm1(count, row, row);
-        for (size_t k = 0; k < count; k++) {
-            row[k] *= gonio_log_scale((int)channel);
-        }
+    }
+    for (size_t k = 0; k < count; k++) {
+        row[k] *= gonio_log_scale((int)channel);
     }
 }
 

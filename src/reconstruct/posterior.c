@@ -199,6 +199,11 @@ static gonio_status find_column(gonio_context *context, const gonio_i_prior *pri
         p->outlying += outlying;
         p->residual += square_left(&e);
     }
+    if (status == GONIO_OK) {
+        double surprise = 0.0;
+        status = gonio_i_gaussian_surprise(&e, &surprise);
+        p->surprise += surprise;
+    }
     gonio_i_gaussian_end(&e);
     return status;
 }
@@ -215,6 +220,7 @@ gonio_status gonio_i_posterior_find(gonio_context *context, const gonio_i_prior 
     p->smoothness = options->smoothness;
     p->outlying = 0;
     p->residual = 0.0;
+    p->surprise = 0.0;
     if (status == GONIO_OK && !(options->smoothness >= 0.0)) {
         status = choose_smoothness(context, prior, columns, count, &p->smoothness);
     }
@@ -239,6 +245,7 @@ gonio_status gonio_i_posterior_find(gonio_context *context, const gonio_i_prior 
     if (status == GONIO_OK) {
         p->predicted = 100.0 * sqrt(sums.error / sums.square);
         p->residual = readings > 0 ? sqrt(p->residual / (double)readings) : 0.0;
+        p->surprise = readings > 0 ? sqrt(p->surprise / (double)readings) : 0.0;
     }
     return status;
 }

@@ -47,6 +47,7 @@ typedef struct gonio_i_posterior {
     double *deviation;    /* [columns][rows] of g, or NULL */
     double smoothness;    /* alpha */
     double predicted;     /* of E6, per cent */
+    double surprise;      /* root mean square of (reading - what the others say) / its deviation */
     size_t outlying;      /* readings that the others contradict, all columns */
     double residual;      /* root mean square of what the others leave, log units */
 } gonio_i_posterior;
