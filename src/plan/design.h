@@ -10,6 +10,20 @@
 gonio_status gonio_i_design_plan(gonio_context *context, const gonio_basis *basis,
                                  const gonio_plan_options *options, gonio_plan **plan);
 
+/* What is known of a material already, for the readings that come next. */
+typedef struct gonio_i_known {
+    const double *covariance; /* [K][K]: of z */
+    const gonio_half_difference *read; /* [count]: directions that are not to be read again */
+    size_t count;
+    double norm; /* root of the sum of g^2 over the bins of the grid: what the error is relative to */
+} gonio_i_known;
+
+/* The same for a material of which something is known; options->count readings of those that were
+ * not made. The plan's expected[] are per cent of the material itself. */
+gonio_status gonio_i_design_next(gonio_context *context, const gonio_basis *basis,
+                                 const gonio_plan_options *options, const gonio_i_known *known,
+                                 gonio_plan **plan);
+
 /* What plan.c and design.c share: a plan with room for its entries, NULL after a message; and where
  * to measure a cell. */
 gonio_plan *gonio_i_allocate_plan(gonio_context *context, size_t count);

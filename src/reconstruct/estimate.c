@@ -25,22 +25,37 @@ static gonio_status check(gonio_context *context, const gonio_basis_view *view,
     return GONIO_OK;
 }
 
-/* Every column has something to go by. */
-static gonio_status check_columns(gonio_context *context, const gonio_i_columns *columns,
-                                  const char *path)
+gonio_status gonio_i_estimate_check(gonio_context *context, const gonio_basis *basis,
+                                    const gonio_readings *readings,
+                                    const gonio_reconstruct_options *options)
 {
+    const gonio_basis_view view = gonio_basis_describe(basis);
+    const gonio_status status = check(context, &view, options);
+    if (status == GONIO_OK && view.channels == GONIO_JOINT &&
+        gonio_readings_channels(readings) != GONIO_CHANNELS) {
+        return gonio_i_fail(context, GONIO_ERROR_MISMATCH,
+                            "spectral readings need a basis of separate channels (gonio learn "
+                            "--channels separate)");
+    }
+    return status;
+}
+
+gonio_status gonio_i_columns_check(gonio_context *context, const gonio_i_columns *columns,
+                                   const char *path)
+{
+    const char *origin = path != NULL ? path : "readings";
     for (size_t k = 0; k < columns->count; k++) {
         const size_t count = columns->column[k].count;
         if (count == 0) {
             return gonio_i_fail(context, GONIO_ERROR_UNDETERMINED,
-                                "%sno reading in channel %zu: are the cells of its values empty?",
-                                path, k + 1);
+                                "%s: no reading in channel %zu: are the cells of its values empty?",
+                                origin, k + 1);
         }
         if (count > MOST_READINGS) {
             return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                                "%s%zu readings in a channel are more than posterior takes (%d); "
+                                "%s: %zu readings in a channel are more than posterior takes (%d); "
                                 "average neighbours, or use --method least-squares",
-                                path, count, MOST_READINGS);
+                                origin, count, MOST_READINGS);
         }
     }
     return GONIO_OK;
@@ -125,23 +140,17 @@ gonio_status gonio_i_estimate_readings(gonio_context *context, const gonio_basis
                                        gonio_reconstruction **reconstruction)
 {
     const gonio_basis_view view = gonio_basis_describe(basis);
-    gonio_status status = check(context, &view, options);
-    if (status == GONIO_OK && view.channels == GONIO_JOINT &&
-        gonio_readings_channels(readings) != GONIO_CHANNELS) {
-        status = gonio_i_fail(context, GONIO_ERROR_MISMATCH,
-                              "spectral readings need a basis of separate channels (gonio learn "
-                              "--channels separate)");
-    }
+    gonio_status status = gonio_i_estimate_check(context, basis, readings, options);
     if (status != GONIO_OK) {
         return status;
     }
     gonio_i_columns columns;
     gonio_i_prior *prior = NULL;
     gonio_reconstruction *made = NULL;
-    char *origin = gonio_i_format("%s: ", gonio_readings_describe(readings).path);
     status = gonio_i_columns_create(context, &view, readings, options, NULL, &columns);
     if (status == GONIO_OK) {
-        status = origin == NULL ? GONIO_ERROR_MEMORY : check_columns(context, &columns, origin);
+        status =
+            gonio_i_columns_check(context, &columns, gonio_readings_describe(readings).path);
     }
     if (status == GONIO_OK) {
         status = gonio_i_prior_create(context, basis, &prior);
@@ -154,7 +163,6 @@ gonio_status gonio_i_estimate_readings(gonio_context *context, const gonio_basis
     }
     gonio_i_columns_free(&columns);
     gonio_i_prior_free(&prior);
-    free(origin);
     if (status != GONIO_OK) {
         gonio_reconstruction_free(&made);
         return status;
@@ -202,7 +210,7 @@ gonio_status gonio_i_estimate_rows(gonio_context *context, const gonio_basis *ba
         status = observe_rows(context, &view, rows, count, b, &columns);
     }
     if (status == GONIO_OK) {
-        status = check_columns(context, &columns, "");
+        status = gonio_i_columns_check(context, &columns, NULL);
     }
     if (status == GONIO_OK) {
         status = gonio_i_prior_create(context, basis, &prior);

@@ -37,6 +37,14 @@ gonio_status gonio_i_columns_create(gonio_context *context, const gonio_basis_vi
                                     const gonio_i_transform *transform, gonio_i_columns *columns);
 void gonio_i_columns_free(gonio_i_columns *columns);
 
+/* What both need: a basis and options of the right kind; something in every column. `path`: of the
+ * readings, for messages, or NULL. */
+gonio_status gonio_i_estimate_check(gonio_context *context, const gonio_basis *basis,
+                                    const gonio_readings *readings,
+                                    const gonio_reconstruct_options *options);
+gonio_status gonio_i_columns_check(gonio_context *context, const gonio_i_columns *columns,
+                                   const char *path);
+
 /* Sets gonio_reconstruction.suspicion. */
 gonio_status gonio_i_suspect(gonio_context *context, const gonio_i_prior *prior,
                              const gonio_readings *readings,

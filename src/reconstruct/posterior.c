@@ -176,7 +176,8 @@ static gonio_status solve_column(gonio_i_gaussian *e, size_t column, gonio_i_pos
     find_coefficients(e, c);
     const gonio_status status = keep_column(e, column, p, kept);
     return status == GONIO_OK
-               ? gonio_i_spread_variance(e, c, deviation, &sums->error, &sums->square)
+               ? gonio_i_spread_variance(e, c, deviation, p->covariance, &sums->error,
+                                         &sums->square)
                : status;
 }
 
@@ -243,6 +244,11 @@ gonio_status gonio_i_posterior_find(gonio_context *context, const gonio_i_prior 
         p->coefficients[k] *= prior->deviation[k % prior->components];
     }
     if (status == GONIO_OK) {
+        const size_t values = prior->components * prior->components;
+        for (size_t k = 0; p->covariance != NULL && k < values; k++) {
+            p->covariance[k] /= (double)count;
+        }
+        p->norm = sqrt(sums.square / (double)count);
         p->predicted = 100.0 * sqrt(sums.error / sums.square);
         p->residual = readings > 0 ? sqrt(p->residual / (double)readings) : 0.0;
         p->surprise = readings > 0 ? sqrt(p->surprise / (double)readings) : 0.0;

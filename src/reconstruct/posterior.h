@@ -48,6 +48,8 @@ typedef struct gonio_i_posterior {
     double smoothness;    /* alpha */
     double predicted;     /* of E6, per cent */
     double surprise;      /* root mean square of (reading - what the others say) / its deviation */
+    double *covariance;   /* [K][K], of z, the mean over the columns; or NULL */
+    double norm;          /* root of the mean over the columns of the sum of g^2 over the grid */
     size_t outlying;      /* readings that the others contradict, all columns */
     double residual;      /* root mean square of what the others leave, log units */
 } gonio_i_posterior;

@@ -254,7 +254,8 @@ static gonio_status spread_blocks(const spreader *s, size_t step, size_t blocks,
 }
 
 gonio_status gonio_i_spread_variance(const gonio_i_gaussian *gaussian, const double *c,
-                                     double *deviation, double *error, double *square)
+                                     double *deviation, double *covariance, double *error,
+                                     double *square)
 {
     spreader s = {.e = gaussian, .c = c, .deviation = deviation};
     s.n = gaussian->alpha > 0.0 ? gaussian->n : 0;
@@ -267,9 +268,14 @@ gonio_status gonio_i_spread_variance(const gonio_i_gaussian *gaussian, const dou
     if (status == GONIO_OK) {
         status = spread_blocks(&s, step, blocks, sums);
     }
+    for (size_t k = 0; covariance != NULL && k < gaussian->components && status == GONIO_OK; k++) {
+        for (size_t j = 0; j < gaussian->components; j++) {
+            covariance[k * gaussian->components + j] += s.q[k * s.size + j];
+        }
+    }
     for (size_t k = 0; k < blocks && status == GONIO_OK; k++) {
-        *error += sums[k].error;
-        *square += sums[k].square;
+        *error += (double)step * sums[k].error;
+        *square += (double)step * sums[k].square;
     }
     free(s.q);
     free(sums);

@@ -1,5 +1,5 @@
 /* gonio plan: where to measure. */
-#include "tool.h"
+#include "aims.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -25,28 +25,6 @@ typedef struct options {
     int json;
 } options;
 
-static const char *const metrics[] = {"e6", "cube-root", "log-relative"};
-
-/* Its place in the list; -1 if it is not in it. */
-static int metric_of(const char *name)
-{
-    for (int k = 0; k < 3; k++) {
-        if (strcmp(name, metrics[k]) == 0) {
-            return k;
-        }
-    }
-    return -1;
-}
-
-/* "3" or "3%"; -1 if it is neither, or not above 0. */
-static double percent_of(const char *text)
-{
-    char *end = NULL;
-    const double percent = strtod(text, &end);
-    end += *end == '%';
-    return *end == '\0' && percent > 0.0 && isfinite(percent) ? percent : -1.0;
-}
-
 static int report(const tool *t, const gonio_plan *plan, const options *o)
 {
     if (o->json) {
@@ -68,25 +46,6 @@ static int report(const tool *t, const gonio_plan *plan, const options *o)
     return 0;
 }
 
-/* The directions of a readings file, with or without values. */
-static gonio_status read_candidates(tool *t, const char *path, gonio_pair **pairs, size_t *count)
-{
-    const gonio_readings_options how = {.average_repeats = true, .negative_to_zero = true};
-    gonio_readings *readings = NULL;
-    gonio_status status = gonio_readings_read(t->context, path, &how, &readings);
-    if (status != GONIO_OK) {
-        return status;
-    }
-    const gonio_readings_view view = gonio_readings_describe(readings);
-    *pairs = calloc(view.count, sizeof **pairs);
-    *count = view.count;
-    for (size_t k = 0; *pairs != NULL && k < view.count; k++) {
-        (*pairs)[k] = view.reading[k].pair;
-    }
-    gonio_readings_free(&readings);
-    return *pairs != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
-}
-
 static gonio_status make_plan(tool *t, const options *o, const char *basis_path, gonio_plan **plan)
 {
     gonio_basis *basis = NULL;
@@ -100,12 +59,12 @@ static gonio_status make_plan(tool *t, const options *o, const char *basis_path,
     how.seed = (uint64_t)o->seed;
     how.keep_history = o->history != NULL;
     how.phi_d = o->phi_d * M_PI / 180.0;
-    how.metric = (gonio_metric)metric_of(o->metric);
+    how.metric = (gonio_metric)tool_metric(o->metric);
     how.target = o->target_error;
     gonio_pair *candidates = NULL;
     gonio_status status = GONIO_OK;
     if (o->candidates != NULL) {
-        status = read_candidates(t, o->candidates, &candidates, &how.candidate_count);
+        status = tool_candidates(t, o->candidates, &candidates, &how.candidate_count);
         how.candidates = candidates;
     }
     if (status == GONIO_OK) {
@@ -137,7 +96,7 @@ static int check(const tool *t, const options *o, size_t count, const char **arg
     if (code == 0) {
         code = tool_check_count(t, "--restarts", o->restarts, 1);
     }
-    if (code == 0 && metric_of(o->metric) < 0) {
+    if (code == 0 && tool_metric(o->metric) < 0) {
         code = tool_usage_error(t, "--metric: '%s' is none of e6, cube-root, log-relative", o->metric);
     }
     if (code == 0 && o->target != NULL && o->target_error < 0.0) {
@@ -153,7 +112,7 @@ static int run(tool *t, options *o)
 {
     size_t count = 0;
     o->count = o->count != 0 ? o->count : o->target != NULL ? MOST_FOR_TARGET : 80;
-    o->target_error = o->target != NULL ? percent_of(o->target) : 0.0;
+    o->target_error = o->target != NULL ? tool_percent(o->target) : 0.0;
     const char **arguments = tool_arguments(t, &count);
     const int code = check(t, o, count, arguments);
     if (code != 0) {

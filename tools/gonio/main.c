@@ -13,6 +13,7 @@ static const tool_command commands[] = {
     {"plan", "where to measure", cmd_plan},
     {"measure", "a simulated instrument reads a known material", cmd_measure},
     {"reconstruct", "the whole BRDF from a few readings", cmd_reconstruct},
+    {"next", "where to measure next, given what was read", cmd_next},
     {"compare", "how far BRDFs are from a reference", cmd_compare},
     {"reproduce", "the paper's experiments on your materials", cmd_reproduce},
     {"demo", "the whole chain on a built-in material", cmd_demo},

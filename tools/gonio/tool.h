@@ -21,6 +21,7 @@ int cmd_info(int argc, const char **argv);
 int cmd_convert(int argc, const char **argv);
 int cmd_learn(int argc, const char **argv);
 int cmd_plan(int argc, const char **argv);
+int cmd_next(int argc, const char **argv);
 int cmd_measure(int argc, const char **argv);
 int cmd_reconstruct(int argc, const char **argv);
 int cmd_compare(int argc, const char **argv);

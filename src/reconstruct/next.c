@@ -1,0 +1,98 @@
+/* What to read next: see gonio_plan_next.
+ *
+ * A Gaussian's posterior covariance does not depend on what was read, so that a plan made before
+ * cannot be beaten by one made on the way. The mixture's does: what was read tells which of the
+ * database's columns the material is like, and the covariance left is theirs. */
+#include <stdlib.h>
+
+#include "../measurement/readings.h"
+#include "../plan/design.h"
+#include "estimate.h"
+
+typedef struct next {
+    gonio_context *context;
+    const gonio_basis *basis;
+    const gonio_readings *readings;
+    gonio_basis_view view;
+    gonio_i_prior *prior;
+    gonio_i_columns columns;
+    gonio_i_posterior posterior;
+    gonio_half_difference *read;
+} next;
+
+static gonio_status allocate(next *n)
+{
+    const size_t k = n->view.components;
+    const size_t columns = n->columns.count;
+    gonio_i_posterior *p = &n->posterior;
+    p->coefficients = gonio_i_allocate(n->context, columns * k, sizeof *p->coefficients);
+    p->field = gonio_i_allocate(n->context, columns * n->view.rows, sizeof *p->field);
+    p->covariance = gonio_i_allocate(n->context, k * k, sizeof *p->covariance);
+    n->read = gonio_i_allocate(n->context, n->readings->count, sizeof *n->read);
+    for (size_t i = 0; n->read != NULL && i < n->readings->count; i++) {
+        n->read[i] = gonio_half_difference_from_pair(n->readings->reading[i].pair);
+    }
+    const bool done = p->coefficients && p->field && p->covariance && n->read;
+    return done ? GONIO_OK : GONIO_ERROR_MEMORY;
+}
+
+static void release(next *n)
+{
+    gonio_i_prior_free(&n->prior);
+    gonio_i_columns_free(&n->columns);
+    free(n->posterior.coefficients);
+    free(n->posterior.field);
+    free(n->posterior.covariance);
+    free(n->read);
+}
+
+static gonio_status find_posterior(next *n, const gonio_reconstruct_options *options)
+{
+    const gonio_i_posterior_options how = {.smoothness = -1.0};
+    gonio_status status = gonio_i_estimate_check(n->context, n->basis, n->readings, options);
+    if (status == GONIO_OK) {
+        status = gonio_i_columns_create(n->context, &n->view, n->readings, options, NULL,
+                                        &n->columns);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_columns_check(n->context, &n->columns, n->readings->path);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_prior_create(n->context, n->basis, &n->prior);
+    }
+    if (status == GONIO_OK) {
+        status = allocate(n);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_posterior_find(n->context, n->prior, n->columns.column, n->columns.count,
+                                        &how, &n->posterior);
+    }
+    return status;
+}
+
+gonio_status gonio_plan_next(gonio_context *context, const gonio_basis *basis,
+                             const gonio_readings *readings,
+                             const gonio_reconstruct_options *options,
+                             const gonio_plan_options *plan_options, double *expected_now,
+                             gonio_plan **plan)
+{
+    next n = {.context = context,
+              .basis = basis,
+              .readings = readings,
+              .view = gonio_basis_describe(basis)};
+    gonio_status status = find_posterior(&n, options);
+    *plan = NULL;
+    if (status == GONIO_OK) {
+        *expected_now = n.posterior.predicted;
+    }
+    if (status == GONIO_OK &&
+        !(plan_options->target > 0.0 && *expected_now <= plan_options->target)) {
+        const gonio_i_known known = {n.posterior.covariance, n.read, readings->count,
+                                     n.posterior.norm};
+        gonio_plan_options all = *plan_options;
+        all.target = 0.0; /* what was read counts; the plan is as long as asked for */
+        status = gonio_i_design_next(context, basis, &all, &known, plan);
+    }
+    release(&n);
+    return status;
+}
