@@ -13,6 +13,9 @@ static const double OUTLYING = 5.0;
 
 enum { MOST_ROUNDS = 20 };
 
+/* Readings that speak for the prior in the misfit. */
+static const double PRIOR_READINGS = 5.0;
+
 /* A variance that leaves a reading no say. */
 static const double NO_SAY = 1e6;
 
@@ -83,6 +86,7 @@ gonio_status gonio_i_gaussian_begin(gonio_context *context, const gonio_i_prior 
                             .prior = prior,
                             .n = column->count,
                             .components = prior->components,
+                            .misfit = 1.0,
                             .h = prior->samples > 0 ? GONIO_I_KERNEL_WIDTH : 1.0};
     const gonio_status status = allocate(e);
     if (status != GONIO_OK) {
@@ -328,7 +332,7 @@ gonio_status gonio_i_gaussian_settle(gonio_i_gaussian *e, size_t *outlying)
     return status;
 }
 
-gonio_status gonio_i_gaussian_surprise(const gonio_i_gaussian *e, double *sum)
+gonio_status gonio_i_gaussian_surprise(gonio_i_gaussian *e, double *sum)
 {
     double *difference = gonio_i_allocate(e->context, 2 * e->n, sizeof *difference);
     gonio_status status = difference == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
@@ -339,6 +343,7 @@ gonio_status gonio_i_gaussian_surprise(const gonio_i_gaussian *e, double *sum)
     for (size_t i = 0; i < e->n && status == GONIO_OK; i++) {
         *sum += difference[i] * difference[i] / difference[e->n + i];
     }
+    e->misfit = (*sum + PRIOR_READINGS) / ((double)e->n + PRIOR_READINGS);
     free(difference);
     return status;
 }

@@ -30,6 +30,7 @@ typedef struct gonio_i_gaussian {
     double *rest;          /* [n]: y - F z */
     double *solved;        /* [n]: S^-1 rest */
     double evidence;       /* ln p(y) */
+    double misfit;         /* what the variances are multiplied by, see below */
 } gonio_i_gaussian;
 
 /* Fills in everything up to `smooth`. To be freed in any case. Errors: _MEMORY. */
@@ -49,7 +50,9 @@ gonio_status gonio_i_gaussian_leave_one_out(const gonio_i_gaussian *gaussian, do
  * match, until nothing changes. outlying: how many of the latter. */
 gonio_status gonio_i_gaussian_settle(gonio_i_gaussian *gaussian, size_t *outlying);
 
-/* Sum over the readings of (reading - what the others say)^2 / its variance. */
-gonio_status gonio_i_gaussian_surprise(const gonio_i_gaussian *gaussian, double *sum);
+/* Sum over the readings of (reading - what the others say)^2 / its variance; and sets misfit to its
+ * mean, held towards 1 by `PRIOR_READINGS` readings that are as expected: a material that surprises
+ * where it was read will elsewhere. */
+gonio_status gonio_i_gaussian_surprise(gonio_i_gaussian *gaussian, double *sum);
 
 #endif

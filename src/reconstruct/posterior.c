@@ -188,6 +188,7 @@ static gonio_status find_column(gonio_context *context, const gonio_i_prior *pri
 {
     gonio_i_gaussian e;
     size_t outlying = 0;
+    double surprise = 0.0;
     gonio_status status = gonio_i_gaussian_begin(context, prior, &columns[column], &e);
     if (status == GONIO_OK) {
         status = gonio_i_gaussian_solve(&e, p->smoothness);
@@ -196,13 +197,12 @@ static gonio_status find_column(gonio_context *context, const gonio_i_prior *pri
         status = gonio_i_gaussian_settle(&e, &outlying);
     }
     if (status == GONIO_OK) {
+        status = gonio_i_gaussian_surprise(&e, &surprise);
+    }
+    if (status == GONIO_OK) {
         status = solve_column(&e, column, p, sums, kept);
         p->outlying += outlying;
         p->residual += square_left(&e);
-    }
-    if (status == GONIO_OK) {
-        double surprise = 0.0;
-        status = gonio_i_gaussian_surprise(&e, &surprise);
         p->surprise += surprise;
     }
     gonio_i_gaussian_end(&e);

@@ -200,7 +200,7 @@ static void spread_row(const spreader *s, size_t row, const double *t, const dou
     const size_t each = view->channels == GONIO_JOINT ? GONIO_CHANNELS : 1;
     const double prior = s->n > 0 ? s->e->alpha * s->e->alpha * remainder_at(s, row) : 0.0;
     const double g = fmax(value_of(s, row, t), 0.0);
-    const double variance = calibrated(fmax(prior + dot(t, product, s->size), 0.0));
+    const double variance = calibrated(s->e->misfit * fmax(prior + dot(t, product, s->size), 0.0));
     const double bins = gonio_i_cell_bins(view->representation, view->cell[row / each]);
     if (s->deviation != NULL) {
         s->deviation[row] = sqrt(variance);
