@@ -82,7 +82,11 @@ function periodic(position: number, bins: number): [number, number, number] {
 
 /** A BRDF (or its deviations) on the grid. rgba[bin][4], phi_d fastest; the fourth is 1 with data. */
 export class Table {
-    constructor(readonly rgba: Float32Array) {}
+    /** `halves` are the same as half floats, which every WebGL 2 can interpolate. */
+    constructor(
+        readonly rgba: Float32Array,
+        readonly halves: Uint16Array,
+    ) {}
 
     /** What bin centres hold; null without data. */
     atBin(thetaH: number, thetaD: number, phiD: number): Triple | null {

@@ -7,6 +7,8 @@ import { onTheme } from './theme';
 
 export interface Axis {
     label: string;
+    /** In the legend, if shorter. */
+    name?: string;
     logarithmic?: boolean;
     range?: [number, number];
     /** Of the values in the legend and the table. */
@@ -23,6 +25,8 @@ export interface Series {
     dash?: number[];
     width?: number;
     points?: boolean;
+    /** In legend and table only. */
+    hidden?: boolean;
     /** Points without a line. */
     scattered?: boolean;
     /** Not in the legend, and no number of its own: one of many. */
@@ -36,6 +40,8 @@ export interface ChartContent {
     series: Series[];
     /** Between the series with these numbers. */
     band?: { upper: number; lower: number; colour: string };
+    /** Bars between the series with these numbers, which are not drawn themselves. */
+    whiskers?: { upper: number; lower: number; colour: string };
 }
 
 const faded = (colour: string, alpha: number) =>
@@ -129,10 +135,13 @@ export class Chart {
         return {
             width,
             height: this.height,
-            scales: { x: this.scaleOf(content.x, false), y: this.scaleOf(content.y, true) },
+            scales: { x: this.scaleOf(content.x), y: this.scaleOf(content.y) },
             axes: [this.axisOf(content.x), { ...this.axisOf(content.y), size: 64 }],
             series: [
-                { label: content.x.label, value: (_, v) => (v === null ? '–' : this.textOfX(v)) },
+                {
+                    label: content.x.name ?? content.x.label,
+                    value: (_, v) => (v === null ? '–' : this.textOfX(v)),
+                },
                 ...content.series.map((s) => this.seriesOf(s, content.y)),
             ],
             bands: content.band
@@ -146,7 +155,28 @@ export class Chart {
             cursor: { focus: { prox: 24 }, drag: { x: true, y: false } },
             focus: { alpha: 0.35 },
             legend: { live: true },
+            hooks: { draw: [(plot) => this.drawWhiskers(plot)] },
         };
+    }
+
+    private drawWhiskers(plot: uPlot) {
+        const { at, series, whiskers } = this.content!;
+        if (!whiskers) {
+            return;
+        }
+        const { ctx } = plot;
+        ctx.strokeStyle = themeColour(whiskers.colour);
+        ctx.lineWidth = 2 * devicePixelRatio;
+        at.forEach((value, k) => {
+            const x = plot.valToPos(value, 'x', true);
+            const ends = [whiskers.lower, whiskers.upper].map((which) => series[which].values[k]);
+            if (ends[0] !== null && ends[1] !== null) {
+                ctx.beginPath();
+                ctx.moveTo(x, plot.valToPos(ends[0], 'y', true));
+                ctx.lineTo(x, plot.valToPos(ends[1], 'y', true));
+                ctx.stroke();
+            }
+        });
     }
 
     private textOfX(value: number): string {
@@ -154,12 +184,16 @@ export class Chart {
         return x.names ? (x.names[value] ?? '') : (x.text ?? short)(value);
     }
 
-    private scaleOf(axis: Axis, padded: boolean): uPlot.Scale {
+    private scaleOf(axis: Axis): uPlot.Scale {
         const scale: uPlot.Scale = { time: false, distr: axis.logarithmic ? 3 : 1 };
-        if (axis.range) {
-            const [low, high] = axis.range;
+        const { names, range } = axis;
+        if (range) {
+            scale.range = () => range;
+        } else if (names) {
+            // Room at both ends, unless a part is enlarged.
+            const last = names.length - 1;
             scale.range = (_, from, to) =>
-                padded ? [low, high] : [Math.max(from, low), Math.min(to, high)];
+                from <= 0 && to >= last ? [-0.5, last + 0.5] : [from, to];
         }
         return scale;
     }
@@ -188,15 +222,15 @@ export class Chart {
         return {
             label: s.label,
             stroke: s.faint ? solid(faded(colour, 0.5)) : colour,
-            width: s.scattered ? 0 : (s.width ?? 2),
+            width: s.scattered || s.hidden ? 0 : (s.width ?? 2),
             dash: s.dash,
             points: {
-                show: s.points || s.scattered ? true : undefined,
+                show: s.hidden ? false : s.points || s.scattered ? true : undefined,
                 size: 6,
                 fill: colour,
                 stroke: colour,
             },
-            paths: s.scattered ? () => null : undefined,
+            paths: s.scattered || s.hidden ? () => null : undefined,
             value: (_, v) => (v === null || v === undefined ? '–' : (y.text ?? short)(v)),
             class: s.faint ? 'faint' : undefined,
             spanGaps: true,

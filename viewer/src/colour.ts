@@ -9,8 +9,8 @@ export type ColourMap = (share: number) => string;
 export const valueColours: ColourMap = interpolateViridis;
 /** Of uncertainties. */
 export const deviationColours: ColourMap = interpolateCividis;
-/** Of differences: purple is less, orange is more than the original. */
-export const differenceColours: ColourMap = (share) => interpolatePuOr(1 - share);
+/** Of differences: purple is less, orange more than the original. */
+export const differenceColours: ColourMap = interpolatePuOr;
 
 export function bytesOf(colour: string): Triple {
     if (colour.startsWith('#')) {

@@ -165,9 +165,11 @@ export function short(value: number, digits = 3): string {
         ? Number(value.toPrecision(digits)).toString()
         : value
               .toExponential(digits - 1)
-              .replace('e', ' × 10^')
-              .replace('^+', '^');
+              .replace(/e\+?(-?\d+)/, (_, power: string) => `·10${raised(power)}`);
 }
+
+const raised = (power: string) =>
+    power.replace(/[-\d]/g, (c) => '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'['-0123456789'.indexOf(c)]);
 
 export const signed = (value: number, digits: number) =>
     `${value < 0 ? '−' : '+'}${Math.abs(value).toFixed(digits)}`;

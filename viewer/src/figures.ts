@@ -147,7 +147,7 @@ function showGrid(table: FigureTable) {
         );
         chart.show({
             x: { label: 'samples' },
-            y: { label: METRIC_LABELS[metric], logarithmic: true },
+            y: { label: METRIC_LABELS[metric] },
             at,
             series,
         });
@@ -185,7 +185,6 @@ function showMethods(table: FigureTable) {
             x: {
                 label: 'method, samples',
                 names: rows.map((r) => r.name),
-                range: [-0.5, rows.length - 0.5],
             },
             y: { label: METRIC_LABELS[metric] },
             at: rows.map((_, k) => k),
@@ -197,20 +196,19 @@ function showMethods(table: FigureTable) {
                     scattered: true,
                 },
                 {
-                    label: '90th percentile',
-                    values: rows.map((r) => r.high),
-                    colour: 'series-2',
-                    width: 1,
-                    dash: [3, 3],
+                    label: 'lower tenth',
+                    values: rows.map((r) => r.low),
+                    colour: 'series-1',
+                    hidden: true,
                 },
                 {
-                    label: '10th percentile',
-                    values: rows.map((r) => r.low),
-                    colour: 'series-3',
-                    width: 1,
-                    dash: [3, 3],
+                    label: 'upper tenth',
+                    values: rows.map((r) => r.high),
+                    colour: 'series-1',
+                    hidden: true,
                 },
             ],
+            whiskers: { lower: 1, upper: 2, colour: 'series-1' },
         });
     };
     withMetrics(box, 'fig3b', draw);

@@ -37,7 +37,7 @@ interface Place {
     position: Vector3;
 }
 
-const HOME = new Vector3(1.15, -1.9, 1.35);
+const HOME = new Vector3(1.75, -2.9, 2.0);
 const NEAR = 16; // pixels from a mark that still count as on it
 const CHANNELS = ['R', 'G', 'B'];
 
@@ -280,7 +280,7 @@ export class HemisphereSection {
         this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
         this.renderer.setSize(width, height, false);
         this.camera.aspect = width / height;
-        this.camera.fov = width < height * 1.25 ? 40 : 32;
+        this.camera.fov = width < height * 1.15 ? 40 : 34;
         this.camera.updateProjectionMatrix();
         this.draw();
     }

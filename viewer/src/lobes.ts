@@ -115,6 +115,7 @@ export class LobeSection {
         this.chart.show({
             x: {
                 label: 'view angle θo, degrees (+ towards the mirror direction)',
+                name: 'view angle',
                 text: (v) => `${v}°`,
             },
             y: {

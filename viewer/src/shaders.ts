@@ -17,43 +17,59 @@ precision highp sampler3D;
 const float PI = 3.14159265358979;
 `;
 
-/** Radiance from a direction of the world, for each built-in environment. */
+/** Radiance from a direction of the world: the environments built into gonio (src/render). */
 const environments = /* glsl */ `
 uniform int lighting; // 0 lamp, 1 studio, 2 sky, 3 furnace
-uniform float turn;
+uniform float turn;   // to the right, about y
+const float DEGREE = PI / 180.0;
 
-// 1 within a rectangle of half-angles about a direction, with soft edges.
-float softbox(vec3 d, float longitude, float latitude, vec2 halfSize)
+// A rectangle at an azimuth and height, soft over a twentieth of its size; degrees.
+float softBox(vec3 d, float azimuth, float elevation, vec2 halfSize)
 {
-    float across = abs(mod(atan(d.x, -d.z) - longitude + PI, 2.0 * PI) - PI) * cos(latitude);
-    float up = abs(asin(clamp(d.y, -1.0, 1.0)) - latitude);
-    vec2 edge = smoothstep(halfSize + 0.03, halfSize - 0.03, vec2(across, up));
+    float across = mod(atan(d.x, d.z) / DEGREE - azimuth + 540.0, 360.0) - 180.0;
+    float up = asin(clamp(d.y, -1.0, 1.0)) / DEGREE - elevation;
+    vec2 edge = 1.0 - smoothstep(vec2(0.9), vec2(1.0), abs(vec2(across, up)) / halfSize);
     return edge.x * edge.y;
 }
 
 vec3 studio(vec3 d)
 {
-    vec3 room = mix(vec3(0.10, 0.10, 0.11), vec3(0.28, 0.28, 0.30), smoothstep(-0.6, 0.9, d.y));
-    return room + vec3(9.0, 8.8, 8.4) * softbox(d, -2.2, 0.75, vec2(0.42, 0.30))
-                + vec3(2.6, 2.8, 3.2) * softbox(d, 2.0, 0.25, vec2(0.16, 0.60))
-                + vec3(1.6) * softbox(d, 0.3, 1.25, vec2(0.35, 0.20));
+    float room = 0.12 + 0.10 * smoothstep(-0.6, 1.0, d.y);
+    float key = 9.0 * softBox(d, -42.0, 38.0, vec2(24.0, 20.0));
+    float fill = 3.0 * softBox(d, 62.0, 8.0, vec2(12.0, 34.0));
+    float rim = 5.0 * softBox(d, 165.0, 30.0, vec2(40.0, 8.0));
+    float ground = 0.08 * (1.0 - smoothstep(-0.5, 0.0, d.y));
+    return room + vec3(1.00, 0.97, 0.92) * key + vec3(0.92, 0.98, 1.08) * fill +
+           vec3(1.00, 0.98, 0.96) * rim + vec3(1.05, 1.00, 0.92) * ground;
 }
 
 vec3 sky(vec3 d)
 {
-    vec3 above = mix(vec3(0.75, 0.85, 1.0), vec3(0.16, 0.34, 0.80), pow(max(d.y, 0.0), 0.45));
-    vec3 below = mix(vec3(0.42, 0.38, 0.33), vec3(0.16, 0.14, 0.12), pow(max(-d.y, 0.0), 0.5));
-    vec3 sun = normalize(vec3(-0.6, 0.65, 0.5));
-    float angle = acos(clamp(dot(d, sun), -1.0, 1.0));
-    vec3 glow = vec3(1.0, 0.9, 0.7) * (120.0 * smoothstep(0.075, 0.055, angle) + 0.8 * exp(-angle * 5.0));
-    return mix(below, above, smoothstep(-0.02, 0.02, d.y)) + glow;
+    float cosine = min(dot(d, vec3(-0.5, 0.6, 0.6244997998)), 1.0);
+    float above = smoothstep(-0.02, 0.02, d.y);
+    float disc = 260.0 * (1.0 - smoothstep(2.6, 3.4, acos(cosine) / DEGREE));
+    float glow = 1.2 * pow(max(cosine, 0.0), 48.0);
+    vec3 air = mix(vec3(0.18, 0.38, 0.85), vec3(0.85, 0.90, 1.00), exp(-4.0 * max(d.y, 0.0)));
+    return mix(vec3(0.20, 0.16, 0.12), air + vec3(1.0, 0.92, 0.78) * (disc + glow), above);
+}
+
+vec3 turned(vec3 d, float sense)
+{
+    float c = cos(turn), s = sense * sin(turn);
+    return vec3(c * d.x + s * d.z, d.y, -s * d.x + c * d.z);
 }
 
 vec3 environment(vec3 d)
 {
-    float c = cos(turn), s = sin(turn);
-    vec3 e = vec3(c * d.x + s * d.z, d.y, -s * d.x + c * d.z);
-    return lighting == 1 ? studio(e) : lighting == 2 ? sky(e) : vec3(1.0);
+    vec3 own = turned(d, 1.0);
+    return lighting == 1 ? studio(own) : lighting == 2 ? sky(own) : vec3(1.0);
+}
+
+// What is brightest: a rectangle, azimuths and sines of heights from .xz to .yw.
+vec4 brightest()
+{
+    return lighting == 1 ? vec4(-66.0 * DEGREE, -18.0 * DEGREE, sin(18.0 * DEGREE), sin(58.0 * DEGREE))
+                         : vec4(-0.749, -0.601, 0.552, 0.647); // about the sun
 }
 `;
 
@@ -113,13 +129,31 @@ vec3 random()
 int binOf(float thetaH) { return clamp(int(90.0 * sqrt(thetaH * 2.0 / PI)), 0, 89); }
 float lowerEdge(int bin) { float t = float(bin) / 90.0; return t * t * PI / 2.0; }
 
-// Densities of the two ways to choose a direction i of the light: by the cosine, and by h.
+// Densities of the ways to choose a direction i of the light: by the cosine, by h, in the brightest
+// part of the environment (world).
 float cosineDensity(vec3 i) { return max(i.z, 0.0) / PI; }
 float highlightDensity(vec3 i, vec3 o)
 {
     vec3 h = normalize(i + o);
     float density = texelFetch(highlight, ivec2(binOf(atan(length(h.xy), h.z)), 0), 0).g;
     return density / (4.0 * max(dot(i, h), 1e-6));
+}
+
+float brightestDensity(vec3 world)
+{
+    if (lighting == 3) { return 0.0; }
+    vec4 box = brightest();
+    vec3 own = turned(world, 1.0);
+    float azimuth = atan(own.x, own.z);
+    bool inside = azimuth > box.x && azimuth < box.y && own.y > box.z && own.y < box.w;
+    return inside ? 1.0 / ((box.y - box.x) * (box.w - box.z)) : 0.0;
+}
+
+vec3 byBrightest(vec2 u)
+{
+    vec4 box = brightest();
+    float azimuth = mix(box.x, box.y, u.x), y = mix(box.z, box.w, u.y), r = sqrt(1.0 - y * y);
+    return turned(vec3(r * sin(azimuth), y, r * cos(azimuth)), -1.0);
 }
 
 vec3 byCosine(vec2 u)
@@ -160,8 +194,9 @@ void shadeFrom(vec3 i, vec3 o, mat3 frame_, inout vec3 a, inout vec3 b)
 {
     if (i.z <= 0.0) { return; }
     // Balance heuristic of one sample each (Veach and Guibas 1995).
-    float density = cosineDensity(i) + highlightDensity(i, o);
-    shade(i, o, environment(frame_ * i) * i.z / density, a, b);
+    vec3 world = frame_ * i;
+    float density = cosineDensity(i) + highlightDensity(i, o) + brightestDensity(world);
+    shade(i, o, environment(world) * i.z / density, a, b);
 }
 
 void sampleOnce(inout vec4 a, inout vec4 b)
@@ -183,6 +218,7 @@ void sampleOnce(inout vec4 a, inout vec4 b)
         vec3 u = random();
         shadeFrom(byCosine(u.xy), o, local, x, y);
         shadeFrom(byHighlight(random(), o), o, local, x, y);
+        if (lighting != 3) { shadeFrom(byBrightest(random().xy) * local, o, local, x, y); }
     }
     a += vec4(x, 1.0);
     b += vec4(y, 1.0);
@@ -268,7 +304,8 @@ void main()
         float from = dot(a.rgb, grey), to = dot(b.rgb, grey);
         float stops = a.a <= 0.5 || max(from, to) <= 1e-6 ? 0.0 : log2(max(to, 1e-6) / max(from, 1e-6));
         vec3 c = texture(colours, vec2(clamp(0.5 + 0.5 * stops / range, 0.002, 0.998), 0.5)).rgb;
-        shown = vec4(mix(encoded(backdrop), c, a.a), 1.0);
+        float lit = max(from, to) > 1e-6 ? a.a : 0.25 * a.a; // unlit: hardly there
+        shown = vec4(mix(encoded(backdrop), c, lit), 1.0);
         return;
     }
     vec4 c = mode == 0 ? a : b;

@@ -80,10 +80,9 @@ function cameraOf(state: SphereState): [Triple, Triple, Triple] {
 }
 
 function textureOf(table: Table): Data3DTexture {
-    const texture = new Data3DTexture(table.rgba, PHI_D_BINS, THETA_D_BINS, THETA_H_BINS);
+    const texture = new Data3DTexture(table.halves, PHI_D_BINS, THETA_D_BINS, THETA_H_BINS);
     texture.format = RGBAFormat;
-    texture.type = FloatType;
-    texture.internalFormat = 'RGBA16F'; // which every WebGL 2 can interpolate
+    texture.type = HalfFloatType;
     texture.minFilter = texture.magFilter = LinearFilter;
     texture.wrapS = RepeatWrapping; // phi_d: reciprocity
     texture.wrapT = texture.wrapR = ClampToEdgeWrapping;
@@ -238,7 +237,7 @@ export class SphereRenderer {
         const u = material.uniforms;
         const [right, up, back] = cameraOf(state);
         u.lighting.value = LIGHTINGS.indexOf(state.lighting);
-        u.turn.value = radians(state.lightAzimuth);
+        u.turn.value = radians(state.lightAzimuth - DEFAULT_STATE.lightAzimuth);
         u.size.value.set(this.size, this.size);
         u.camera.value.set(
             right[0],
@@ -362,7 +361,7 @@ interface Panel {
 export const DEFAULT_STATE: SphereState = {
     lighting: 'lamp',
     lightAzimuth: -45,
-    lightElevation: 35,
+    lightElevation: 45,
     viewAzimuth: 0,
     viewElevation: 0,
     exposure: 0,
@@ -691,8 +690,8 @@ const LIGHTING_NAMES = [
 
 const LIGHTING_NOTES: Record<Lighting, string> = {
     lamp: 'A distant lamp: facing it, the surface gets an irradiance of π, so that a white Lambertian has radiance 1.',
-    studio: 'A room with three soft boxes. The light’s azimuth turns the room.',
-    sky: 'A blue sky with a sun. The light’s azimuth turns it.',
+    studio: 'A dim room with two soft lamps and a strip from behind, as in gonio render. The light’s azimuth turns it.',
+    sky: 'A clear sky with the sun, as in gonio render. The light’s azimuth turns it.',
     furnace: 'White from everywhere: what shows is the share of light that the surface reflects.',
 };
 

@@ -1,5 +1,15 @@
 // Unpacks a table: the counterpart of src/report/web_table.c.
-import { BINS, CELLS, CHANNELS, LOG_SCALE, PHI_D_BINS, Table } from './brdf';
+import { DataUtils } from 'three';
+import {
+    BINS,
+    CELLS,
+    CHANNELS,
+    LOG_SCALE,
+    PHI_D_BINS,
+    Table,
+    THETA_D_BINS,
+    THETA_H_BINS,
+} from './brdf';
 
 const ROWS = CHANNELS * CELLS;
 const VALUES = ROWS * PHI_D_BINS;
@@ -19,35 +29,48 @@ async function inflate(bytes: Uint8Array<ArrayBuffer>): Promise<Uint8Array> {
     return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-/** One row of codes from its differences and the row before, by the predictor that was chosen. */
+const BEFORE = 0;
+const ABOVE = 1;
+
+/** One row of codes from its differences and the row above, by the predictor that was chosen. */
 function unpackRow(
     codes: Uint16Array,
     at: number,
-    above: number,
-    low: Uint8Array,
-    high: Uint8Array,
+    above: Uint16Array,
+    differences: Uint16Array,
     kind: number,
 ) {
+    let left = above[0];
+    let corner = above[0];
     for (let k = 0; k < PHI_D_BINS; k++) {
-        const up = above < 0 ? 0 : codes[above + k];
-        const first = above < 0 ? 0 : codes[above];
-        const left = k > 0 ? codes[at + k - 1] : first;
-        const corner = k === 0 || above < 0 ? first : codes[above + k - 1];
-        const guess = kind === 0 ? left : kind === 1 ? up : left + up - corner;
-        const folded = low[at + k] | (high[at + k] << 8);
-        const difference = folded & 1 ? ~(folded >> 1) : folded >> 1;
-        codes[at + k] = guess + difference; // modulo 2^16
+        const up = above[k];
+        const guess = kind === BEFORE ? left : kind === ABOVE ? up : left + up - corner;
+        left = (guess + differences[k]) & 0xffff;
+        corner = up;
+        codes[at + k] = left;
     }
+}
+
+/** From bytes with the sign in the lowest bit. */
+function differencesOf(low: Uint8Array, high: Uint8Array): Uint16Array {
+    const differences = new Uint16Array(VALUES);
+    for (let k = 0; k < VALUES; k++) {
+        const folded = low[k] | (high[k] << 8);
+        differences[k] = (folded >> 1) ^ -(folded & 1);
+    }
+    return differences;
 }
 
 function unpackCodes(stream: Uint8Array): Uint16Array {
     const kinds = stream.subarray(MASK, MASK + ROWS);
     const low = stream.subarray(MASK + ROWS, MASK + ROWS + VALUES);
-    const high = stream.subarray(MASK + ROWS + VALUES);
+    const differences = differencesOf(low, stream.subarray(MASK + ROWS + VALUES));
     const codes = new Uint16Array(VALUES);
+    const nothing = new Uint16Array(PHI_D_BINS);
     for (let row = 0; row < ROWS; row++) {
         const at = row * PHI_D_BINS;
-        unpackRow(codes, at, row % CELLS > 0 ? at - PHI_D_BINS : -1, low, high, kinds[row]);
+        const above = row % CELLS > 0 ? codes.subarray(at - PHI_D_BINS, at) : nothing;
+        unpackRow(codes, at, above, differences.subarray(at, at + PHI_D_BINS), kinds[row]);
     }
     return codes;
 }
@@ -62,6 +85,10 @@ function valuesOfCodes(step: number, channel: number, logarithmic: boolean): Flo
     return values;
 }
 
+/** The same as half floats, which end at 65504. */
+const halvesOf = (values: Float32Array) =>
+    Uint16Array.from(values, (value) => DataUtils.toHalfFloat(Math.min(value, 65504)));
+
 export async function unpack(base64: string, step: number, logarithmic: boolean): Promise<Table> {
     const stream = await inflate(bytesOf(base64));
     if (stream.length !== MASK + ROWS + 2 * VALUES) {
@@ -69,13 +96,46 @@ export async function unpack(base64: string, step: number, logarithmic: boolean)
     }
     const codes = unpackCodes(stream);
     const rgba = new Float32Array(4 * BINS);
+    const halves = new Uint16Array(4 * BINS);
     for (let channel = 0; channel < CHANNELS; channel++) {
         const values = valuesOfCodes(step, channel, logarithmic);
+        const asHalves = halvesOf(values);
         for (let bin = 0; bin < BINS; bin++) {
-            const present = (stream[bin >> 3] >> (bin & 7)) & 1;
-            rgba[4 * bin + channel] = present ? values[codes[channel * BINS + bin]] : 0;
-            rgba[4 * bin + 3] = present;
+            if ((stream[bin >> 3] >> (bin & 7)) & 1) {
+                const code = codes[channel * BINS + bin];
+                rgba[4 * bin + channel] = values[code];
+                halves[4 * bin + channel] = asHalves[code];
+                rgba[4 * bin + 3] = 1;
+                halves[4 * bin + 3] = 0x3c00;
+            }
         }
     }
-    return new Table(rgba);
+    fillHoles(halves);
+    return new Table(rgba, halves);
+}
+
+/** What a bin without data weighs beside one with: hardly anything, unless there is no other. */
+const HOLE = 1e-3;
+
+/** For the spheres, bins without data get the values of the nearest along theta_d. */
+function fillHoles(halves: Uint16Array) {
+    const step = 4 * PHI_D_BINS;
+    const weight = DataUtils.toHalfFloat(HOLE);
+    for (let line = 0; line < THETA_H_BINS * PHI_D_BINS; line++) {
+        const first =
+            4 * (Math.floor(line / PHI_D_BINS) * THETA_D_BINS * PHI_D_BINS + (line % PHI_D_BINS));
+        let last = -1; // the last bin with data
+        for (let d = 0; d < THETA_D_BINS; d++) {
+            const at = first + d * step;
+            if (halves[at + 3] !== 0) {
+                last = at;
+            } else if (last >= 0) {
+                for (let channel = 0; channel < CHANNELS; channel++) {
+                    const value = DataUtils.fromHalfFloat(halves[last + channel]);
+                    halves[at + channel] = DataUtils.toHalfFloat(HOLE * value);
+                }
+                halves[at + 3] = weight;
+            }
+        }
+    }
 }
