@@ -3,7 +3,6 @@ import {
     BufferGeometry,
     CanvasTexture,
     Color,
-    ConeGeometry,
     Float32BufferAttribute,
     Group,
     InstancedMesh,
@@ -12,6 +11,7 @@ import {
     LineLoop,
     Matrix4,
     MeshBasicMaterial,
+    OctahedronGeometry,
     PerspectiveCamera,
     Scene,
     SphereGeometry,
@@ -222,11 +222,7 @@ export class HemisphereSection {
         const light = new MeshBasicMaterial({ color: themeColour('light-mark') });
         const view = new MeshBasicMaterial({ color: themeColour('view-mark') });
         const size = shown.length > 300 ? 0.013 : 0.022;
-        const lights = new InstancedMesh(
-            new ConeGeometry(size * 1.25, size * 2.4, 4),
-            light,
-            shown.length,
-        );
+        const lights = new InstancedMesh(new OctahedronGeometry(size * 1.35), light, shown.length);
         const views = new InstancedMesh(new SphereGeometry(size, 12, 8), view, shown.length);
         this.places = [];
         shown.forEach((reading, k) => {

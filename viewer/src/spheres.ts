@@ -58,6 +58,8 @@ export interface SphereState {
 const FIELD_OF_VIEW = radians(30);
 const KEY = 0.18;
 const BLOCKS = 32;
+const SMALLEST = 128;
+const SLOW = 100; // milliseconds
 const ENOUGH = { lamp: 16, environment: 512 };
 
 export function directionOf(azimuth: number, elevation: number): Triple {
@@ -376,6 +378,9 @@ export class SphereSection {
     private readonly controls: Partial<Record<keyof SphereState, Choice<never>>> = {};
     private dragging: 'light' | 'view' = 'light';
     private waiting = false;
+    /** Pixels on a side, fewer on slow machines. */
+    private most = 640;
+    private slowSteps = 0;
 
     constructor(
         private readonly original: Table,
@@ -624,7 +629,7 @@ export class SphereSection {
 
     private fitSize() {
         const wide = this.panels[0].canvas.clientWidth * Math.min(devicePixelRatio, 2);
-        const size = Math.min(Math.max(Math.round(wide / 32) * 32, 128), 640);
+        const size = Math.min(Math.max(Math.round(wide / 32) * 32, SMALLEST), this.most);
         for (const { canvas } of this.panels) {
             canvas.width = canvas.height = size;
         }
@@ -634,6 +639,7 @@ export class SphereSection {
 
     /** The light or the view has changed. */
     restart() {
+        document.documentElement.dataset.spheres = 'working';
         this.renderer.restart();
         this.next();
     }
@@ -661,12 +667,24 @@ export class SphereSection {
         const lamp = this.state.lighting === 'lamp';
         const enough = lamp ? ENOUGH.lamp : ENOUGH.environment;
         if (this.renderer.samplesDone < enough) {
+            const start = performance.now();
             this.renderer.add(this.state, lamp ? 1 : 4);
-            this.present();
+            this.present(); // which waits for the GPU
+            this.watch(performance.now() - start);
             this.next();
         }
         document.documentElement.dataset.spheres =
             this.renderer.samplesDone < enough ? 'working' : 'finished';
+    }
+
+    /** Where steps take long, as without a GPU, pictures get smaller. */
+    private watch(milliseconds: number) {
+        this.slowSteps = milliseconds > SLOW ? this.slowSteps + 1 : 0;
+        if (this.slowSteps >= 3 && this.most > SMALLEST) {
+            this.slowSteps = 0;
+            this.most = Math.max(SMALLEST, Math.min(this.most, this.panels[0].canvas.width) / 2);
+            this.fitSize();
+        }
     }
 
     private present() {

@@ -73,6 +73,6 @@ test('without WebGL the other sections still work and the page says why', async 
     await page.goto(`file://${process.env.PAGES}/page.html`);
     await page.waitForSelector('html[data-ready=yes]', { timeout: 120000 });
     assert.match(await page.locator('#spheres .problem').innerText(), /no WebGL 2/);
-    assert.ok(await page.locator('#lobe-polar path').first().isVisible());
+    assert.ok(await page.locator('#lobe-polar .lobe-original').isVisible());
     await page.close();
 });

@@ -231,9 +231,11 @@ test('the hemisphere tells of readings', async () => {
     // Hovering: somewhere over the picture there is a mark.
     const box = await canvas.boundingBox();
     const told = new Set();
-    for (let x = 0.3; x < 0.72; x += 0.04) {
-        await page.mouse.move(box.x + x * box.width, box.y + 0.45 * box.height);
-        told.add(await readout.innerText());
+    for (let x = 0.25; x < 0.76; x += 0.05) {
+        for (const y of [0.25, 0.4, 0.55]) {
+            await page.mouse.move(box.x + x * box.width, box.y + y * box.height);
+            told.add(await readout.innerText());
+        }
     }
     assert.ok(told.size > 2, 'hovering finds several readings');
     assert.match([...told].join(), /read\s+[\d.]+/);
@@ -293,7 +295,7 @@ test('the errors are those of gonio compare', async () => {
 
 test('every control can be reached by keyboard, and has a name', async () => {
     const nameless = await page.evaluate(() =>
-        [...document.querySelectorAll('input, button, canvas, .chart')]
+        [...document.querySelectorAll('input, button, canvas[role], .chart')]
             .filter(
                 (node) =>
                     node.tabIndex < 0 ||
