@@ -68,6 +68,9 @@ typedef struct gonio_report_content {
     const char *folder;             /* of gonio_reproduce: its tables become charts */
 } gonio_report_content;
 
+/* Whether the library was built with the page, which needs Node.js. */
+GONIO_API bool gonio_report_is_built(void);
+
 /* Writes a page for a browser: one file of less than 6 MB that needs nothing else and no network.
  * Tables are stored in steps of 1/2048 of g, or coarser where noise makes them too large; the page
  * says which. The file appears whole or not at all.

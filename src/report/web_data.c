@@ -96,8 +96,7 @@ static json_t *direction(gonio_angles angles)
 static json_t *values_at(const gonio_table *table, gonio_pair pair)
 {
     double rho[GONIO_CHANNELS];
-    return table != NULL &&
-                   gonio_table_value(table, gonio_half_difference_from_pair(pair), rho)
+    return table != NULL && gonio_table_value(table, gonio_half_difference_from_pair(pair), rho)
                ? numbers(rho, GONIO_CHANNELS)
                : json_null();
 }
@@ -105,12 +104,11 @@ static json_t *values_at(const gonio_table *table, gonio_pair pair)
 static json_t *reading_json(const gonio_reading *reading, const gonio_table *reference,
                             const gonio_table *reconstruction)
 {
-    return json_pack("{s:o, s:o, s:i, s:o, s:o, s:o}", "incident",
-                     direction(reading->pair.incident), "outgoing",
-                     direction(reading->pair.outgoing), "channel", reading->channel, "value",
-                     numbers(reading->value, GONIO_CHANNELS), "reference",
-                     values_at(reference, reading->pair), "reconstruction",
-                     values_at(reconstruction, reading->pair));
+    return json_pack(
+        "{s:o, s:o, s:i, s:o, s:o, s:o}", "incident", direction(reading->pair.incident), "outgoing",
+        direction(reading->pair.outgoing), "channel", reading->channel, "value",
+        numbers(reading->value, GONIO_CHANNELS), "reference", values_at(reference, reading->pair),
+        "reconstruction", values_at(reconstruction, reading->pair));
 }
 
 json_t *gonio_i_web_readings(const gonio_readings *readings, const gonio_table *reference,

@@ -22,8 +22,7 @@ static const struct {
     {"fig3b",
      {"method", "components", "samples", "e6_percent", "cube_root_percent", "log_relative"}},
     {"fig4",
-     {"components", "samples", "channel", "theta_i_deg", "phi_i_deg", "theta_o_deg",
-      "phi_o_deg"}},
+     {"components", "samples", "channel", "theta_i_deg", "phi_i_deg", "theta_o_deg", "phi_o_deg"}},
     {"fig5", {"material", "reconstructed_from", "e6_percent", "cube_root_percent", "log_relative"}},
 };
 
@@ -51,8 +50,8 @@ static gonio_status convert(gonio_context *context, const gonio_i_csv *csv, cons
     for (int c = 0; columns[c] != NULL && status == GONIO_OK; c++) {
         const int at = gonio_i_csv_column(csv, columns[c]);
         if (at < 0) {
-            status = gonio_i_fail(context, GONIO_ERROR_DATA, "%s: has no column %s", path,
-                                  columns[c]);
+            status =
+                gonio_i_fail(context, GONIO_ERROR_DATA, "%s: has no column %s", path, columns[c]);
         }
         json_array_append_new(names, json_string(columns[c]));
         for (size_t k = 0; k < csv->rows && status == GONIO_OK; k++) {
@@ -66,8 +65,8 @@ static gonio_status convert(gonio_context *context, const gonio_i_csv *csv, cons
     return status;
 }
 
-static gonio_status read_table(gonio_context *context, const char *path,
-                               const char *const *columns, json_t **table)
+static gonio_status read_table(gonio_context *context, const char *path, const char *const *columns,
+                               json_t **table)
 {
     gonio_i_csv *csv = NULL;
     gonio_status status = gonio_i_csv_read(context, path, &csv);

@@ -9,11 +9,7 @@
 
 /* Bytes before base64: with the template under 6 MB. Reconstructions are smoother than measured
  * tables, deviations smoother still. */
-enum {
-    REFERENCE_BUDGET = 2100000,
-    RECONSTRUCTION_BUDGET = 1100000,
-    DEVIATION_BUDGET = 400000
-};
+enum { REFERENCE_BUDGET = 2100000, RECONSTRUCTION_BUDGET = 1100000, DEVIATION_BUDGET = 400000 };
 
 typedef struct page {
     gonio_context *context;
@@ -44,8 +40,8 @@ static gonio_status add_material(page *p, int which, const gonio_material *mater
     return status;
 }
 
-/* A MERL table whose numbers, as they are in the file, are standard deviations of g: what the reader
- * has made 1/sr of is undone. */
+/* A MERL table whose numbers, as they are in the file, are standard deviations of g: what the
+ * reader has made 1/sr of is undone. */
 static gonio_status add_deviation(page *p)
 {
     gonio_table *table = NULL;
@@ -74,8 +70,8 @@ static gonio_status add_deviation(page *p)
 static gonio_status add_comparison(page *p)
 {
     gonio_comparison comparison;
-    const gonio_status status = gonio_compare(p->context, p->content->reference,
-                                              p->content->reconstruction, &comparison);
+    const gonio_status status =
+        gonio_compare(p->context, p->content->reference, p->content->reconstruction, &comparison);
     if (status == GONIO_OK) {
         json_object_set_new(p->data, "comparison", gonio_i_web_comparison(&comparison));
     }
@@ -149,9 +145,9 @@ static gonio_status put_element(page *p, gonio_i_output *output, const char *typ
                                 const char *text)
 {
     char *start = gonio_i_format("<script type=\"%s\" id=\"gonio-%s\">", type, id);
-    gonio_status status =
-        start == NULL ? gonio_i_fail(p->context, GONIO_ERROR_MEMORY, "out of memory")
-                      : put(p, output, start);
+    gonio_status status = start == NULL
+                              ? gonio_i_fail(p->context, GONIO_ERROR_MEMORY, "out of memory")
+                              : put(p, output, start);
     free(start);
     if (status == GONIO_OK) {
         status = put(p, output, text);
@@ -198,9 +194,14 @@ static gonio_status write_page(page *p, const char *path)
     return gonio_i_output_close(p->context, &output, status);
 }
 
+bool gonio_report_is_built(void)
+{
+    return place_in_template() != NULL;
+}
+
 static gonio_status check(gonio_context *context, const gonio_report_content *content)
 {
-    if (place_in_template() == NULL) {
+    if (!gonio_report_is_built()) {
         return gonio_i_fail(context, GONIO_ERROR_IO,
                             "the page is not in this gonio, which was built without Node.js: "
                             "install nodejs (18.19 or newer) and npm, and run make again");
@@ -227,8 +228,8 @@ gonio_status gonio_report_write(gonio_context *context, const gonio_report_conte
     }
     page p = {.context = context, .content = content};
     p.data = json_pack("{s:s}", "version", gonio_version());
-    status = p.data == NULL ? gonio_i_fail(context, GONIO_ERROR_MEMORY, "out of memory")
-                            : collect(&p);
+    status =
+        p.data == NULL ? gonio_i_fail(context, GONIO_ERROR_MEMORY, "out of memory") : collect(&p);
     if (status == GONIO_OK) {
         status = write_page(&p, path);
     }

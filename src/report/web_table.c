@@ -1,8 +1,8 @@
 /* Tables for the page, small: logarithms in steps, predicted from their neighbours, deflated.
  *
  * A code is 1 + round(g/step) in 16 bits. Each row of 180 phi_d bins is predicted in one of three
- * ways, whichever leaves least (as PNG does): the bin before; the same bin of the row before; left +
- * above - above left. The differences are small or zero and deflate well; noise does not, and is
+ * ways, whichever leaves least (as PNG does): the bin before; the same bin of the row before; left
+ * + above - above left. The differences are small or zero and deflate well; noise does not, and is
  * given coarser steps until the table fits. docs/report-page.md has the layout. */
 #include "web.h"
 
@@ -82,9 +82,7 @@ static uint16_t prediction(int predictor, const uint16_t *row, const uint16_t *a
 {
     const uint16_t left = k > 0 ? row[k - 1] : above[0];
     const uint16_t corner = k > 0 ? above[k - 1] : above[0];
-    return predictor == 0   ? left
-           : predictor == 1 ? above[k]
-                            : (uint16_t)(left + above[k] - corner);
+    return predictor == 0 ? left : predictor == 1 ? above[k] : (uint16_t)(left + above[k] - corner);
 }
 
 /* Sign in the lowest bit, so that small differences of either sign have no high byte. */
@@ -140,10 +138,9 @@ static void write_codes(const packing *p)
         const double *values = row_values(p, at % GONIO_CELLS, channel);
         uint16_t wanted[ROW];
         for (int k = 0; k < ROW; k++) {
-            wanted[k] =
-                values[k] >= 0.0
-                    ? (uint16_t)(1 + lround(coordinate(p, channel, values[k]) / p->step))
-                    : 0;
+            wanted[k] = values[k] >= 0.0
+                            ? (uint16_t)(1 + lround(coordinate(p, channel, values[k]) / p->step))
+                            : 0;
         }
         write_row(p, at, wanted);
     }

@@ -38,9 +38,9 @@ static json_t *values(const gonio_table *table)
         const gonio_pair pair = {random_angles(&random), random_angles(&random)};
         double rho[GONIO_CHANNELS];
         const bool found = gonio_table_value(table, gonio_half_difference_from_pair(pair), rho);
-        json_array_append_new(
-            list, json_pack("[f,f,f,f,f,f,f,b]", pair.incident.theta, pair.incident.phi,
-                            pair.outgoing.theta, pair.outgoing.phi, rho[0], rho[1], rho[2], found));
+        json_array_append_new(list, json_pack("[f,f,f,f,f,f,f,b]", pair.incident.theta,
+                                              pair.incident.phi, pair.outgoing.theta,
+                                              pair.outgoing.phi, rho[0], rho[1], rho[2], found));
     }
     return list;
 }

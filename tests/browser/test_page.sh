@@ -51,10 +51,10 @@ printf 'start,swap,condition_number\n1,0,90\n1,1,12\n1,2,4\n2,0,70\n2,1,5\n' >ou
 "$GONIO" report out -o figures.html
 
 if "$GONIO" render --help >/dev/null 2>&1; then
-    "$GONIO" render "$original" --light directional --light-at=-45,45 --size 128 --samples 64 -o lamp.png
+    "$GONIO" render "$original" --light directional --light-at=-45,45 --size 96 --samples 64 -o lamp.png
     for environment in studio sky; do
-        "$GONIO" render "$original" --environment $environment --size 128 --samples 256 -o $environment.png
+        "$GONIO" render "$original" --environment $environment --size 96 --samples 256 -o $environment.png
     done
 fi
 
-PAGES=$folder CHROMIUM=$chromium node --test "$VIEWER/test/"
+PAGES=$folder CHROMIUM=$chromium node --test "$VIEWER"/test/*.test.mjs

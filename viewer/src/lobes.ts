@@ -8,7 +8,6 @@ import type { Angles, Triple } from './data';
 const ANGLES = Array.from({ length: 359 }, (_, k) => (k - 179) / 2);
 /** 95 % of a normal distribution. */
 const WITHIN = 1.96;
-const DECADES = 4;
 
 type Values = (number | null)[];
 
@@ -135,9 +134,10 @@ export class LobeSection {
         const all = [...lobes.original, ...(lobes.reconstruction ?? []), ...(lobes.high ?? [])];
         const greatest = Math.max(...all.map((v) => v ?? 0), 1e-9);
         const top = this.logarithmic ? 10 ** Math.ceil(Math.log10(greatest)) : niceAbove(greatest);
+        const decades = decadesBelow(top, lobes.original);
         const radius = (value: number) =>
             this.logarithmic
-                ? Math.max(Math.log10(Math.max(value, 1e-12) / top) / DECADES + 1, 0)
+                ? Math.max(Math.log10(Math.max(value, 1e-12) / top) / decades + 1, 0)
                 : value / top;
         const point = (angle: number, r: number) =>
             `${(200 + 180 * r * Math.sin(radians(angle))).toFixed(1)},${(200 - 180 * r * Math.cos(radians(angle))).toFixed(1)}`;
@@ -152,7 +152,7 @@ export class LobeSection {
             const back = low.flatMap((v, k) => (v === null ? [] : [point(ANGLES[k], radius(v))]));
             return `M${[...forth, ...back.reverse()].join('L')}Z`;
         };
-        const parts = [this.polarGrid(top)];
+        const parts = [this.polarGrid(top, decades)];
         if (lobes.low && lobes.high) {
             parts.push(`<path class="lobe-area" d="${band(lobes.low, lobes.high)}"/>`);
         }
@@ -172,11 +172,11 @@ export class LobeSection {
     }
 
     /** Half circles with their values, and spokes with their angles. */
-    private polarGrid(top: number): string {
+    private polarGrid(top: number, decades: number): string {
         const rings = this.logarithmic
-            ? Array.from({ length: DECADES }, (_, k) => [
-                  (k + 1) / DECADES,
-                  top * 10 ** (k + 1 - DECADES),
+            ? Array.from({ length: decades }, (_, k) => [
+                  (k + 1) / decades,
+                  top * 10 ** (k + 1 - decades),
               ])
             : [0.25, 0.5, 0.75, 1].map((share) => [share, share * top]);
         const parts = rings.map(([share, value]) => {
@@ -195,6 +195,13 @@ export class LobeSection {
         }
         return parts.join('');
     }
+}
+
+/** As many decades as it takes to see most of the lobe, one more so that it has a size. */
+function decadesBelow(top: number, values: Values): number {
+    const sorted = values.filter((v) => v !== null && v > 0).sort((a, b) => a! - b!);
+    const low = sorted[Math.floor(sorted.length / 4)] ?? top;
+    return Math.min(Math.max(Math.ceil(Math.log10(top / low)) + 1, 2), 7);
 }
 
 /** 1, 2 or 5 times a power of ten, at least the value. */
