@@ -113,7 +113,7 @@ export class LobeSection {
         }
         this.chart.show({
             x: {
-                label: 'view angle θo, degrees (+ towards the mirror direction)',
+                label: 'view angle θo, degrees (+ on the mirror’s side)',
                 name: 'view angle',
                 text: (v) => `${v}°`,
             },

@@ -304,8 +304,8 @@ void main()
         float from = dot(a.rgb, grey), to = dot(b.rgb, grey);
         float stops = a.a <= 0.5 || max(from, to) <= 1e-6 ? 0.0 : log2(max(to, 1e-6) / max(from, 1e-6));
         vec3 c = texture(colours, vec2(clamp(0.5 + 0.5 * stops / range, 0.002, 0.998), 0.5)).rgb;
-        float lit = max(from, to) > 1e-6 ? a.a : 0.25 * a.a; // unlit: hardly there
-        shown = vec4(mix(encoded(backdrop), c, lit), 1.0);
+        bool lit = max(from, to) > 1e-6;
+        shown = vec4(mix(encoded(backdrop), lit ? c : vec3(0.5), lit ? a.a : 0.25 * a.a), 1.0);
         return;
     }
     vec4 c = mode == 0 ? a : b;

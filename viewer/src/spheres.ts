@@ -58,9 +58,10 @@ export interface SphereState {
 const FIELD_OF_VIEW = radians(30);
 const KEY = 0.18;
 const BLOCKS = 32;
-const SMALLEST = 128;
+const SMALLEST = 128; // pixels on a side
+const LARGEST = 640;
 const SLOW = 100; // milliseconds
-const ENOUGH = { lamp: 16, environment: 512 };
+const ENOUGH = { lamp: 16, environment: 512, still: 96 }; // samples
 
 export function directionOf(azimuth: number, elevation: number): Triple {
     const [a, e] = [radians(azimuth), radians(elevation)];
@@ -378,8 +379,10 @@ export class SphereSection {
     private readonly controls: Partial<Record<keyof SphereState, Choice<never>>> = {};
     private dragging: 'light' | 'view' = 'light';
     private waiting = false;
-    /** Pixels on a side, fewer on slow machines. */
-    private most = 640;
+    /** Pixels on a side while something moves, fewer on slow machines. */
+    private most = LARGEST;
+    /** Nothing moves, and there is time for a large picture. */
+    private still = false;
     private slowSteps = 0;
 
     constructor(
@@ -629,17 +632,22 @@ export class SphereSection {
 
     private fitSize() {
         const wide = this.panels[0].canvas.clientWidth * Math.min(devicePixelRatio, 2);
-        const size = Math.min(Math.max(Math.round(wide / 32) * 32, SMALLEST), this.most);
+        const most = this.still ? LARGEST : this.most;
+        const size = Math.min(Math.max(Math.round(wide / 32) * 32, SMALLEST), most);
         for (const { canvas } of this.panels) {
             canvas.width = canvas.height = size;
         }
         this.renderer.resize(size);
-        this.restart();
+        this.next();
     }
 
     /** The light or the view has changed. */
     restart() {
         document.documentElement.dataset.spheres = 'working';
+        if (this.still) {
+            this.still = false;
+            this.fitSize();
+        }
         this.renderer.restart();
         this.next();
     }
@@ -665,21 +673,24 @@ export class SphereSection {
 
     private step() {
         const lamp = this.state.lighting === 'lamp';
-        const enough = lamp ? ENOUGH.lamp : ENOUGH.environment;
+        const enough = lamp ? ENOUGH.lamp : this.still ? ENOUGH.still : ENOUGH.environment;
         if (this.renderer.samplesDone < enough) {
             const start = performance.now();
             this.renderer.add(this.state, lamp ? 1 : 4);
             this.present(); // which waits for the GPU
             this.watch(performance.now() - start);
             this.next();
+        } else if (!this.still && this.most < LARGEST) {
+            this.still = true;
+            this.fitSize();
+        } else {
+            document.documentElement.dataset.spheres = 'finished';
         }
-        document.documentElement.dataset.spheres =
-            this.renderer.samplesDone < enough ? 'working' : 'finished';
     }
 
-    /** Where steps take long, as without a GPU, pictures get smaller. */
+    /** Where steps take long, as without a GPU, pictures are smaller until nothing moves. */
     private watch(milliseconds: number) {
-        this.slowSteps = milliseconds > SLOW ? this.slowSteps + 1 : 0;
+        this.slowSteps = milliseconds > SLOW && !this.still ? this.slowSteps + 1 : 0;
         if (this.slowSteps >= 3 && this.most > SMALLEST) {
             this.slowSteps = 0;
             this.most = Math.max(SMALLEST, Math.min(this.most, this.panels[0].canvas.width) / 2);

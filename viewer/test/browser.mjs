@@ -29,7 +29,7 @@ export function launch() {
 /** Opens a report from disk; what the console complains of and what is asked of the network is kept. */
 export async function open(browser, name, options = {}) {
     const page = await browser.newPage({
-        viewport: { width: 1100, height: 900 },
+        viewport: { width: 900, height: 800 },
         reducedMotion: 'reduce',
         ...options,
     });

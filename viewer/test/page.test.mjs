@@ -124,9 +124,9 @@ test('pixels of the sphere are those of the C library', async () => {
 });
 
 for (const [lighting, samples, tolerance] of [
-    ['lamp', 16, 0.004],
-    ['studio', 96, 0.012],
-    ['sky', 96, 0.02],
+    ['lamp', 16, 0.003],
+    ['studio', 96, 0.01],
+    ['sky', 96, 0.012],
 ]) {
     test(`the picture of the sphere (${lighting}) is that of gonio render`, async (t) => {
         if (!hasFile(`${lighting}.png`)) {
@@ -152,7 +152,7 @@ for (const [lighting, samples, tolerance] of [
             [lighting, samples],
         );
         const theirs = readFileSync(fileOf(`${lighting}.png`));
-        const found = await difference(page, Buffer.from(mine, 'base64'), theirs, 96);
+        const found = await difference(page, Buffer.from(mine, 'base64'), theirs, 48); // noise evens out
         t.diagnostic(`mean difference ${found.mean.toFixed(4)}`);
         assert.ok(found.mean < tolerance, `differs by ${found.mean.toFixed(4)} on average`);
     });
@@ -224,6 +224,7 @@ test('the hemisphere tells of readings', async () => {
     await changes(page, '#hemisphere-canvas', () =>
         page.locator('[data-control=hemisphere-reset]').click(),
     );
+    await slide(page, 'shown', 20);
     await page.locator('[data-control=play]').click();
     await page.waitForFunction(() =>
         /Reading 24/.test(document.querySelector('#hemisphere-readout').textContent),
@@ -232,7 +233,7 @@ test('the hemisphere tells of readings', async () => {
     // Hovering: somewhere over the picture there is a mark.
     const box = await canvas.boundingBox();
     const told = new Set();
-    for (let x = 0.25; x < 0.76; x += 0.05) {
+    for (let x = 0.25; x < 0.76; x += 0.1) {
         for (const y of [0.25, 0.4, 0.55]) {
             await page.mouse.move(box.x + x * box.width, box.y + y * box.height);
             told.add(await readout.innerText());
