@@ -212,13 +212,13 @@ gonio_status gonio_i_web_pack(gonio_context *context, const double *values, goni
         status = fit(context, &p, budget, &size);
     }
     char *text = status == GONIO_OK ? base64(p.packed, size) : NULL;
-    if (status == GONIO_OK && text == NULL) {
-        status = gonio_i_fail(context, GONIO_ERROR_MEMORY, "out of memory for the page's tables");
-    }
     free(p.codes);
     free(p.stream);
     free(p.packed);
-    if (status == GONIO_OK) {
+    if (status == GONIO_OK && text == NULL) {
+        status = gonio_i_fail(context, GONIO_ERROR_MEMORY, "out of memory for the page's tables");
+    }
+    if (text != NULL) {
         *packed = (gonio_i_web_table){text, strlen(text), p.step};
     }
     return status;

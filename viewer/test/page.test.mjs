@@ -181,9 +181,9 @@ test('controls of the spheres', async () => {
 test('dragging and keys move light and view', async () => {
     const sphere = page.locator('[data-sphere=original]');
     const value = (name) => page.locator(`input[data-control=${name}]`).inputValue().then(Number);
-    await sphere.scrollIntoViewIfNeeded();
-    const box = await sphere.boundingBox();
     const drag = async () => {
+        await sphere.scrollIntoViewIfNeeded();
+        const box = await sphere.boundingBox();
         await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
         await page.mouse.down();
         await page.mouse.move(box.x + box.width / 2 + 40, box.y + box.height / 2 - 20, {
@@ -204,7 +204,7 @@ test('dragging and keys move light and view', async () => {
     await page.keyboard.press('Shift+ArrowUp');
     assert.equal(await value('viewElevation'), 5);
     await page.locator('[data-control=reset]').click();
-    await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+    await sphere.hover();
     assert.match(await page.locator('#sphere-readout').innerText(), /θi .* original .* 1\/sr/);
 });
 
