@@ -32,6 +32,7 @@ sanitize: check-tools
 
 style: check-tools
 	cmake --preset release -DGONIO_WERROR=$(WERROR) -DBUILD_TESTING=ON >/dev/null
+	cmake --build --preset release --target gonio-viewer
 	scripts/check-style.sh build/release
 
 .PHONY: check-tools

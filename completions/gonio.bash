@@ -17,6 +17,7 @@ _gonio_options()
                           "--other-basis --json -o -K $common" ;;
         compare)     echo "--verbose --json -v $common" ;;
         reproduce)   echo "--output --quick --only --splits --seed --skip-bad -o $common" ;;
+        report)      echo "--output --readings --deviation -o $common" ;;
         demo)        echo "--output -o $common" ;;
     esac
 }
@@ -50,7 +51,7 @@ _gonio()
 
     if [[ $COMP_CWORD -eq 1 ]]; then
         mapfile -t COMPREPLY < <(compgen -W "info convert learn plan measure reconstruct compare \
-                                             reproduce demo help --help --version" -- "$current")
+                                             report reproduce demo help --help --version" -- "$current")
         return
     fi
 

@@ -21,5 +21,12 @@ else
     echo "clang-tidy: skipped, version 14 is needed"
 fi
 
+if [ -d viewer/node_modules/typescript ]; then
+    (cd viewer && node_modules/.bin/tsc --noEmit && node_modules/.bin/prettier --check --log-level warn .)
+    echo "viewer: fine"
+else
+    echo "viewer: skipped, its packages are not there (make with Node.js fetches them)"
+fi
+
 mandoc -Tlint -Wwarning docs/man/*.1
 echo "mandoc: fine"

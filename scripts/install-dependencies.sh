@@ -1,10 +1,11 @@
 #!/bin/sh
 # Installs the Debian or Ubuntu packages that are missing: install-dependencies.sh yes|no build|check
-# "no" only looks. sudo is asked for only if needed and not root.
+# "no" only looks. sudo is asked for only if needed and not root. Node.js, with which the page of gonio
+# report is built, may also come from elsewhere than Debian; without it all else is built.
 set -eu
 
 packages="gcc libc6-dev make cmake ninja-build pkg-config libopenblas-dev liblapacke-dev libhdf5-dev
-libxxhash-dev libcsv-dev libjansson-dev libpopt-dev"
+libxxhash-dev libcsv-dev libjansson-dev libpopt-dev zlib1g-dev"
 if [ "$2" = check ]; then
     packages="$packages libcmocka-dev clang-format clang-tidy libomp-dev mandoc gnuplot-nox
 libopenmpi-dev openmpi-bin"
@@ -21,6 +22,17 @@ for package in $packages; do
         missing="$missing $package"
     fi
 done
+wanted=""
+command -v node >/dev/null 2>&1 || wanted="nodejs"
+command -v npm >/dev/null 2>&1 || wanted="$wanted npm"
+if [ "$2" = check ] && ! command -v chromium >/dev/null 2>&1; then
+    wanted="$wanted chromium"
+fi
+if [ "$1" = yes ]; then
+    missing="$missing${wanted:+ $wanted}"
+elif [ -n "$wanted" ]; then
+    echo "Without these there is no page to report with, or it is not tested: $wanted"
+fi
 [ -n "$missing" ] || exit 0
 echo "Missing packages:$missing"
 [ "$1" = yes ] || exit 1

@@ -11,6 +11,8 @@
 
 enum { MOST_WORDS = 12 };
 
+static const char page[] = "report.html";
+
 typedef struct step {
     const char *explanation;
     int (*run)(int argc, const char **argv);
@@ -42,6 +44,10 @@ static const step steps[] = {
     {"",
      cmd_compare,
      {"compare", "atlas:red-glossy-plastic", "reconstructed.binary", "reconstructed-all.binary"}},
+    {"7. See it: a page for a browser.",
+     cmd_report,
+     {"report", "atlas:red-glossy-plastic", "reconstructed-all.binary", "--readings",
+      "readings.csv", "-o", page}},
 };
 
 enum { STEPS = sizeof steps / sizeof *steps };
@@ -71,6 +77,17 @@ static int run_step(const step *s)
     return s->run(count, words);
 }
 
+static void say_where_the_page_is(const char *folder)
+{
+    if (gonio_report_is_built()) {
+        printf("Open %s/%s in a browser to see original and reconstruction.\n", folder, page);
+    } else {
+        printf(
+            "There is no page to see it on: this gonio was built without Node.js. Install nodejs "
+            "(18.19 or\nnewer) and npm and run make again.\n");
+    }
+}
+
 static int run(const tool *t, const char *folder)
 {
     size_t count = 0;
@@ -86,13 +103,15 @@ static int run(const tool *t, const char *folder)
     printf("Measuring '%s' with 80 readings. Files go to %s; type along in there.\n", material,
            folder);
     int code = 0;
-    for (int k = 0; k < STEPS && code == 0; k++) {
+    const int steps_to_do = gonio_report_is_built() ? STEPS : STEPS - 1;
+    for (int k = 0; k < steps_to_do && code == 0; k++) {
         code = run_step(&steps[k]);
     }
     if (code == 0) {
         printf("\nDone in %.0f s. %s holds basis.gonio, plan.csv, readings.csv and the two "
                "reconstructions,\nMERL tables that renderers and BRDF viewers read.\n",
                now() - start, folder);
+        say_where_the_page_is(folder);
     }
     return code;
 }
@@ -104,8 +123,10 @@ int cmd_demo(int argc, const char **argv)
                                         "The folder for the files (default: gonio-demo)", "DIR"},
                                        TOOL_OPTIONS};
     tool t;
-    int code = tool_begin(&t, argc, argv, table, "[OPTION...]",
-                          "Learns, plans, measures, reconstructs and compares, in under a minute.");
+    int code =
+        tool_begin(&t, argc, argv, table, "[OPTION...]",
+                   "Learns, plans, measures, reconstructs and compares, in under a minute, and\n"
+                   "writes a page to see it on.");
     if (code < 0) {
         code = run(&t, folder);
     }

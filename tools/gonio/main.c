@@ -15,6 +15,7 @@ static const tool_command commands[] = {
     {"reconstruct", "the whole BRDF from a few readings", cmd_reconstruct},
     {"next", "where to measure next, given what was read", cmd_next},
     {"compare", "how far BRDFs are from a reference", cmd_compare},
+    {"report", "a page for a browser: spheres, directions, lobes, errors", cmd_report},
     {"reproduce", "the paper's experiments on your materials", cmd_reproduce},
     {"demo", "the whole chain on a built-in material", cmd_demo},
 };

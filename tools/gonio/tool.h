@@ -25,6 +25,7 @@ int cmd_next(int argc, const char **argv);
 int cmd_measure(int argc, const char **argv);
 int cmd_reconstruct(int argc, const char **argv);
 int cmd_compare(int argc, const char **argv);
+int cmd_report(int argc, const char **argv);
 int cmd_reproduce(int argc, const char **argv);
 int cmd_demo(int argc, const char **argv);
 
