@@ -14,6 +14,7 @@ static const tool_command commands[] = {
     {"measure", "a simulated instrument reads a known material", cmd_measure},
     {"reconstruct", "the whole BRDF from a few readings", cmd_reconstruct},
     {"compare", "how far BRDFs are from a reference", cmd_compare},
+    {"render", "a material on a sphere or a mesh, comparison pictures", cmd_render},
     {"reproduce", "the paper's experiments on your materials", cmd_reproduce},
     {"demo", "the whole chain on a built-in material", cmd_demo},
 };

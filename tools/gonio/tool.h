@@ -24,6 +24,7 @@ int cmd_plan(int argc, const char **argv);
 int cmd_measure(int argc, const char **argv);
 int cmd_reconstruct(int argc, const char **argv);
 int cmd_compare(int argc, const char **argv);
+int cmd_render(int argc, const char **argv);
 int cmd_reproduce(int argc, const char **argv);
 int cmd_demo(int argc, const char **argv);
 
