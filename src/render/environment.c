@@ -9,8 +9,11 @@
 
 struct gonio_environment {
     gonio_image *image;
-    double *row_sum;    /* [height + 1]: of power, rows before; ends with all */
-    double *column_sum; /* [height][width + 1]: within a row */
+    double *row_sum;        /* [height + 1]: of power, rows before; ends with all */
+    double *column_sum;     /* [height][width + 1]: within a row */
+    double *row_cosine;     /* [height + 1]: of the polar angle of the rows' edges */
+    uint32_t *row_guide;    /* [height]: see guide_to */
+    uint32_t *column_guide; /* [height][width] */
 };
 
 void gonio_environment_free(gonio_environment **environment)
@@ -21,6 +24,9 @@ void gonio_environment_free(gonio_environment **environment)
     gonio_image_free(&(*environment)->image);
     free((*environment)->row_sum);
     free((*environment)->column_sum);
+    free((*environment)->row_cosine);
+    free((*environment)->row_guide);
+    free((*environment)->column_guide);
     free(*environment);
     *environment = NULL;
 }
@@ -49,8 +55,7 @@ static int clamp(int value, int count)
 /* Of each pixel of a row: a band of the sphere cut into equal parts. */
 static double solid_angle(const gonio_environment *e, int row)
 {
-    const double step = M_PI / e->image->height;
-    return 2.0 * M_PI / e->image->width * (cos(row * step) - cos((row + 1) * step));
+    return 2.0 * M_PI / e->image->width * (e->row_cosine[row] - e->row_cosine[row + 1]);
 }
 
 static double luminance_of(const float *pixel)
@@ -59,8 +64,8 @@ static double luminance_of(const float *pixel)
     return gonio_i_luminance(rgb);
 }
 
-void gonio_i_environment_radiance(const gonio_environment *environment, const double direction[3],
-                                  double radiance[3])
+void gonio_i_environment_look(const gonio_environment *environment, const double direction[3],
+                              double radiance[3], double *density)
 {
     double x;
     double y;
@@ -70,6 +75,7 @@ void gonio_i_environment_radiance(const gonio_environment *environment, const do
     for (int k = 0; k < 3; k++) {
         radiance[k] = (double)pixel[k];
     }
+    *density = luminance_of(pixel) / environment->row_sum[environment->image->height];
 }
 
 void gonio_i_environment_shown(const gonio_environment *environment, const double direction[3],
@@ -96,27 +102,29 @@ void gonio_i_environment_shown(const gonio_environment *environment, const doubl
 
 /* ---- sampling ---- */
 
-/* The interval of an ascending list sum[count + 1] that holds a value below its last. */
-static int interval_of(const double *sum, int count, double value)
+/* For each of `count` equal parts of an ascending list sum[count + 1], from 0 on, the interval that
+ * holds its beginning: from there the one that holds a value is a step or two away (Chen and Asau
+ * 1974). */
+static void guide_to(const double *sum, int count, uint32_t *guide)
 {
-    int low = 0;
-    int high = count;
-    while (high - low > 1) {
-        const int middle = (low + high) / 2;
-        if (sum[middle] <= value) {
-            low = middle;
-        } else {
-            high = middle;
+    uint32_t at = 0;
+    for (int k = 0; k < count; k++) {
+        while ((int)at + 1 < count && sum[at + 1] <= sum[count] * k / count) {
+            at++;
         }
+        guide[k] = at;
     }
-    return low;
 }
 
 /* Chooses the interval in proportion to its length, and where in it, 0 .. 1. */
-static int choose(const double *sum, int count, double uniform, double *within)
+static int choose(const double *sum, const uint32_t *guide, int count, double uniform,
+                  double *within)
 {
     const double value = uniform * sum[count];
-    const int at = interval_of(sum, count, value);
+    int at = (int)guide[clamp((int)(uniform * count), count)];
+    while (at + 1 < count && sum[at + 1] <= value) {
+        at++;
+    }
     const double length = sum[at + 1] - sum[at];
     *within = length > 0.0 ? fmin((value - sum[at]) / length, 1.0) : 0.5;
     return at;
@@ -127,14 +135,13 @@ void gonio_i_environment_sample(const gonio_environment *environment, const doub
 {
     const gonio_environment *e = environment;
     const size_t width = (size_t)e->image->width;
-    const double step = M_PI / e->image->height;
     double down;
     double across;
-    const int row = choose(e->row_sum, e->image->height, uniform[0], &down);
+    const int row = choose(e->row_sum, e->row_guide, e->image->height, uniform[0], &down);
     const int column =
-        choose(e->column_sum + (size_t)row * (width + 1), e->image->width, uniform[1], &across);
-    const double top = cos(row * step);
-    const double cosine = top + down * (cos((row + 1) * step) - top);
+        choose(e->column_sum + (size_t)row * (width + 1), e->column_guide + (size_t)row * width,
+               e->image->width, uniform[1], &across);
+    const double cosine = e->row_cosine[row] + down * (e->row_cosine[row + 1] - e->row_cosine[row]);
     const double sine = sqrt(fmax(0.0, 1.0 - cosine * cosine));
     const double angle = 2.0 * M_PI * ((column + across) / (double)width - 0.5);
     direction[0] = sine * sin(angle);
@@ -142,37 +149,52 @@ void gonio_i_environment_sample(const gonio_environment *environment, const doub
     direction[2] = -sine * cos(angle);
 }
 
-double gonio_i_environment_density(const gonio_environment *environment, const double direction[3])
+static gonio_status allocate(gonio_context *context, size_t width, size_t height,
+                             gonio_environment *e)
 {
-    double x;
-    double y;
-    place_of(environment, direction, &x, &y);
-    const float *pixel = pixel_at(environment, clamp((int)x, environment->image->width),
-                                  clamp((int)y, environment->image->height));
-    return luminance_of(pixel) / environment->row_sum[environment->image->height];
-}
-
-static gonio_status prepare(gonio_context *context, const char *name, gonio_environment *e)
-{
-    const size_t width = (size_t)e->image->width;
-    const size_t height = (size_t)e->image->height;
     e->row_sum = gonio_i_allocate(context, height + 1, sizeof *e->row_sum);
     e->column_sum = gonio_i_allocate(context, height * (width + 1), sizeof *e->column_sum);
-    if (e->row_sum == NULL || e->column_sum == NULL) {
-        return GONIO_ERROR_MEMORY;
+    e->row_cosine = gonio_i_allocate(context, height + 1, sizeof *e->row_cosine);
+    e->row_guide = gonio_i_allocate(context, height, sizeof *e->row_guide);
+    e->column_guide = gonio_i_allocate(context, height * width, sizeof *e->column_guide);
+    return e->row_sum != NULL && e->column_sum != NULL && e->row_cosine != NULL &&
+                   e->row_guide != NULL && e->column_guide != NULL
+               ? GONIO_OK
+               : GONIO_ERROR_MEMORY;
+}
+
+static void sum_power(gonio_environment *e)
+{
+    const size_t width = (size_t)e->image->width;
+    const int height = e->image->height;
+    for (int row = 0; row <= height; row++) {
+        e->row_cosine[row] = cos(row * M_PI / height);
     }
-    for (int row = 0; row < e->image->height; row++) {
+    for (int row = 0; row < height; row++) {
         double *sum = e->column_sum + (size_t)row * (width + 1);
         const double angle = solid_angle(e, row);
         for (int column = 0; column < e->image->width; column++) {
             sum[column + 1] = sum[column] + angle * luminance_of(pixel_at(e, column, row));
         }
+        guide_to(sum, e->image->width, e->column_guide + (size_t)row * width);
         e->row_sum[row + 1] = e->row_sum[row] + sum[width];
     }
-    if (!(e->row_sum[height] > 0.0)) {
+    guide_to(e->row_sum, height, e->row_guide);
+}
+
+static gonio_status prepare(gonio_context *context, const char *name, gonio_environment *e)
+{
+    const gonio_status status =
+        allocate(context, (size_t)e->image->width, (size_t)e->image->height, e);
+    if (status != GONIO_OK) {
+        return status;
+    }
+    sum_power(e);
+    const double all = e->row_sum[e->image->height];
+    if (!(all > 0.0)) {
         return gonio_i_fail(context, GONIO_ERROR_DATA, "%s: the environment is all black", name);
     }
-    return isfinite(e->row_sum[height])
+    return isfinite(all)
                ? GONIO_OK
                : gonio_i_fail(context, GONIO_ERROR_DATA, "%s: the environment is too bright", name);
 }

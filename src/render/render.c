@@ -73,14 +73,15 @@ typedef struct view {
     const gonio_i_scene *scene;
     const gonio_i_surface *surface, *sampler;
     camera camera;
+    double turn_cosine, turn_sine; /* of the environment */
 } view;
 
-/* Between the world and the environment's own frame: a turn about y. */
-static void turn(double angle, const double from[3], double to[3])
+/* Between the world and the environment's own frame: a turn about y, forth (1) or back (-1). */
+static void turn(const view *v, double sign, const double from[3], double to[3])
 {
-    const double c = cos(angle);
-    const double s = sin(angle);
-    const double turned[3] = {c * from[0] - s * from[2], from[1], s * from[0] + c * from[2]};
+    const double sine = sign * v->turn_sine;
+    const double turned[3] = {v->turn_cosine * from[0] - sine * from[2], from[1],
+                              sine * from[0] + v->turn_cosine * from[2]};
     memcpy(to, turned, sizeof turned);
 }
 
@@ -91,20 +92,21 @@ typedef struct place {
     double outgoing[3];  /* in the frame */
 } place;
 
-/* Adds what a direction (of the world) contributes: the BRDF times cosine times light. */
-static void add_light(const view *v, const place *p, const double world[3], double distance,
-                      const double light[3], double factor, double sum[3])
+/* Whether light from a direction (of the world) arrives, after so long a way. */
+static bool arrives(const view *v, const place *p, const double world[3], double distance)
 {
-    double incident[3];
+    return gonio_i_dot(p->frame.z, world) > 0.0 && gonio_i_dot(p->hit->face, world) > 0.0 &&
+           gonio_i_scene_is_free(v->scene, p->hit, world, distance);
+}
+
+/* Adds what it contributes: the BRDF times cosine times light. */
+static void add_light(const view *v, const gonio_i_meeting *meeting, const double light[3],
+                      double factor, double sum[3])
+{
     double rho[GONIO_CHANNELS];
-    gonio_i_to_local(&p->frame, world, incident);
-    if (incident[2] <= 0.0 || gonio_i_dot(p->hit->face, world) <= 0.0 ||
-        !gonio_i_scene_is_free(v->scene, p->hit, world, distance)) {
-        return;
-    }
-    gonio_i_surface_value(v->surface, incident, p->outgoing, rho);
+    gonio_i_surface_value(v->surface, meeting, rho);
     for (int k = 0; k < 3; k++) {
-        sum[k] += rho[k] * incident[2] * light[k] * factor;
+        sum[k] += rho[k] * meeting->incident * light[k] * factor;
     }
 }
 
@@ -122,21 +124,28 @@ static void add_lamp(const view *v, const place *p, double sum[3])
         strength *= gonio_i_dot(o->lamp_position, o->lamp_position) / (distance * distance);
     }
     gonio_i_normalise(direction);
-    const double light[3] = {strength, strength, strength};
-    add_light(v, p, direction, distance, light, 1.0, sum);
+    if (arrives(v, p, direction, distance)) {
+        const double light[3] = {strength, strength, strength};
+        double incident[3];
+        gonio_i_to_local(&p->frame, direction, incident);
+        const gonio_i_meeting meeting = gonio_i_meet(incident, p->outgoing);
+        add_light(v, &meeting, light, 1.0, sum);
+    }
 }
 
-/* The balance heuristic: one direction of either kind, each divided by the sum of the densities. */
+/* The balance heuristic: one direction of either kind, each divided by the sum of the densities.
+ * `own` is in the environment's frame. */
 static void add_from_environment(const view *v, const place *p, const double own[3],
-                                 double surface_density, double sum[3])
+                                 const double world[3], const double incident[3], double sum[3])
 {
-    const gonio_environment *e = v->options->environment;
-    double world[3];
     double light[3];
-    turn(v->options->environment_turn, own, world);
-    gonio_i_environment_radiance(e, own, light);
-    add_light(v, p, world, INFINITY, light,
-              1.0 / (gonio_i_environment_density(e, own) + surface_density), sum);
+    double density;
+    if (arrives(v, p, world, INFINITY)) {
+        const gonio_i_meeting meeting = gonio_i_meet(incident, p->outgoing);
+        gonio_i_environment_look(v->options->environment, own, light, &density);
+        density += gonio_i_surface_density(v->sampler, &meeting);
+        add_light(v, &meeting, light, 1.0 / density, sum);
+    }
 }
 
 static void add_environment(const view *v, const place *p, const double uniform[5], double sum[3])
@@ -145,17 +154,15 @@ static void add_environment(const view *v, const place *p, const double uniform[
     double world[3];
     double local[3];
     gonio_i_environment_sample(v->options->environment, uniform, own);
-    turn(v->options->environment_turn, own, world);
+    turn(v, 1.0, own, world);
     gonio_i_to_local(&p->frame, world, local);
     if (local[2] > 0.0) {
-        add_from_environment(v, p, own, gonio_i_surface_density(v->sampler, local, p->outgoing),
-                             sum);
+        add_from_environment(v, p, own, world, local, sum);
     }
     if (gonio_i_surface_sample(v->sampler, p->outgoing, uniform + 2, local)) {
         gonio_i_to_world(&p->frame, local, world);
-        turn(-v->options->environment_turn, world, own);
-        add_from_environment(v, p, own, gonio_i_surface_density(v->sampler, local, p->outgoing),
-                             sum);
+        turn(v, -1.0, world, own);
+        add_from_environment(v, p, own, world, local, sum);
     }
 }
 
@@ -185,29 +192,54 @@ static void show_environment(const view *v, const double direction[3], double su
 {
     double own[3];
     double light[3];
-    turn(-v->options->environment_turn, direction, own);
+    turn(v, -1.0, direction, own);
     gonio_i_environment_shown(v->options->environment, own, light);
     gonio_i_along(sum, 1.0, light, sum);
 }
 
-/* Every sample draws the same count of numbers, whatever the ray meets, so that materials rendered
- * with the same sampling share their noise. */
+/* The samples of a pixel are spread evenly: a lattice of points, shifted at random for each pixel.
+ * frac(shift + n g^-k) with g^8 = g + 1 (Roberts 2018; the shift by Cranley and Patterson 1976).
+ * They do not depend on what the rays meet, so that materials rendered with the same sampling share
+ * their noise. */
+typedef struct lattice {
+    double number[NUMBERS], step[NUMBERS];
+} lattice;
+
+static lattice begin_lattice(uint64_t seed, int x, int y)
+{
+    const double g = 1.0969815577985598;
+    lattice l;
+    gonio_i_random random;
+    gonio_i_random_seed(&random, seed, (uint64_t)y * GONIO_MOST_PIXELS + (uint64_t)x);
+    double step = 1.0;
+    for (int k = 0; k < NUMBERS; k++) {
+        step /= g;
+        l.step[k] = step;
+        l.number[k] = gonio_i_random_uniform(&random);
+    }
+    return l;
+}
+
+static void next_point(lattice *l)
+{
+    for (int k = 0; k < NUMBERS; k++) {
+        l->number[k] += l->step[k];
+        l->number[k] -= l->number[k] >= 1.0 ? 1.0 : 0.0;
+    }
+}
+
 static void render_pixel(const view *v, int x, int y, float rgba[GONIO_IMAGE_CHANNELS])
 {
-    gonio_i_random random;
+    lattice points = begin_lattice(v->options->seed, x, y);
+    const double *uniform = points.number;
     const int samples = v->options->samples;
     const bool background = v->options->environment != NULL && v->options->show_environment;
     double sum[3] = {0.0, 0.0, 0.0};
     int covered = 0;
-    gonio_i_random_seed(&random, v->options->seed, (uint64_t)y * GONIO_MOST_PIXELS + (uint64_t)x);
-    for (int s = 0; s < samples; s++) {
-        double uniform[NUMBERS];
+    for (int s = 0; s < samples; s++, next_point(&points)) {
         double origin[3];
         double direction[3];
         gonio_i_hit hit;
-        for (int k = 0; k < NUMBERS; k++) {
-            uniform[k] = gonio_i_random_uniform(&random);
-        }
         camera_ray(&v->camera, x + uniform[0], y + uniform[1], origin, direction);
         if (gonio_i_scene_trace(v->scene, origin, direction, &hit)) {
             shade(v, &hit, direction, uniform + 2, sum);
@@ -289,7 +321,13 @@ gonio_status gonio_i_render_surface(gonio_context *context, const gonio_i_surfac
         status = gonio_i_scene_create(context, options->mesh, &scene);
     }
     if (status == GONIO_OK) {
-        const view v = {options, scene, surface, sampler, place_camera(options)};
+        const view v = {.options = options,
+                        .scene = scene,
+                        .surface = surface,
+                        .sampler = sampler,
+                        .camera = place_camera(options),
+                        .turn_cosine = cos(options->environment_turn),
+                        .turn_sine = sin(options->environment_turn)};
         status = render_rows(context, &v, made);
     }
     gonio_i_scene_free(&scene);

@@ -18,6 +18,7 @@ struct gonio_i_surface {
     float (*bin)[VALUES];                      /* [GONIO_BINS]: R, G, B, and the bin's weight */
     double cumulative[GONIO_THETA_H_BINS + 1]; /* of half vectors, by theta_h */
     double density[GONIO_THETA_H_BINS];        /* of them, 1/sr */
+    double highlight;                          /* the share of samples that go by them */
 };
 
 void gonio_i_surface_free(gonio_i_surface **surface)
@@ -85,18 +86,36 @@ static double mean_luminance(float (*slab)[VALUES])
     return count > 0 ? sum / count : 0.0;
 }
 
+/* The share of light that the highlight reflects: what stands out above the least luminance, which
+ * is that of a diffuse surface. d omega_o = 4 (i.h) d omega_h, here for incidence near the normal.
+ * Some of either is always sampled. */
+static double share_of_highlight(const double *luminance, const double *angle)
+{
+    double least = luminance[0];
+    double above = 0.0;
+    for (int i = 0; i < GONIO_THETA_H_BINS / 2; i++) { /* below 22.5 degrees */
+        least = fmin(least, luminance[i]);
+    }
+    for (int i = 0; i < GONIO_THETA_H_BINS / 2; i++) {
+        above += 4.0 * (luminance[i] - least) * angle[i];
+    }
+    const double all = above + M_PI * least;
+    return all > 0.0 ? fmin(fmax(above / all, 0.15), 0.85) : 0.5;
+}
+
 /* Half vectors in proportion to the luminance and their cosine. */
 static void find_highlight(gonio_i_surface *s)
 {
     double angle[GONIO_THETA_H_BINS];
+    double luminance[GONIO_THETA_H_BINS];
     for (int i = 0; i < GONIO_THETA_H_BINS; i++) {
         const double low = (double)i / GONIO_THETA_H_BINS;
         const double high = (i + 1.0) / GONIO_THETA_H_BINS;
         const double c_low = cos(low * low * M_PI_2);
         const double c_high = cos(high * high * M_PI_2);
         angle[i] = 2.0 * M_PI * (c_low - c_high);
-        s->density[i] =
-            (1e-6 + mean_luminance(s->bin + (size_t)i * GONIO_SLAB_BINS)) * 0.5 * (c_low + c_high);
+        luminance[i] = mean_luminance(s->bin + (size_t)i * GONIO_SLAB_BINS);
+        s->density[i] = (1e-6 + luminance[i]) * 0.5 * (c_low + c_high);
         s->cumulative[i + 1] = s->cumulative[i] + s->density[i] * angle[i];
     }
     const double all = s->cumulative[GONIO_THETA_H_BINS];
@@ -104,6 +123,7 @@ static void find_highlight(gonio_i_surface *s)
         s->density[i] /= all;
         s->cumulative[i + 1] /= all;
     }
+    s->highlight = share_of_highlight(luminance, angle);
 }
 
 /* ---- making one ---- */
@@ -183,29 +203,30 @@ gonio_status gonio_i_surface_create(gonio_context *context, const gonio_material
 
 /* theta_d is half the angle between the directions; phi_d the azimuth of the incident one about the
  * half vector, seen from the plane of normal and half vector. */
-static gonio_half_difference coordinates_of(const double i[3], const double o[3])
+gonio_i_meeting gonio_i_meet(const double i[3], const double o[3])
 {
     const double sum[3] = {i[0] + o[0], i[1] + o[1], i[2] + o[2]};
     const double difference[3] = {i[0] - o[0], i[1] - o[1], i[2] - o[2]};
-    const double radius = hypot(sum[0], sum[1]);
-    const double theta_h = atan2(radius, sum[2]);
-    const double theta_d = atan2(gonio_i_length(difference), gonio_i_length(sum));
-    const double cos_h = cos(theta_h);
+    const double radius = sqrt(sum[0] * sum[0] + sum[1] * sum[1]);
+    const double length = gonio_i_length(sum);
     const double x = radius > 0.0 ? sum[0] / radius : 1.0;
     const double y = radius > 0.0 ? sum[1] / radius : 0.0;
-    const double d_x =
-        cos_h * (x * difference[0] + y * difference[1]) - sin(theta_h) * difference[2];
-    const double d_y = x * difference[1] - y * difference[0];
+    const double d_x = sum[2] * (x * difference[0] + y * difference[1]) - radius * difference[2];
+    const double d_y = length * (x * difference[1] - y * difference[0]);
     double phi_d = atan2(d_y, d_x);
     phi_d = phi_d < 0.0 ? phi_d + M_PI : phi_d;
-    return (gonio_half_difference){theta_h, theta_d, phi_d < M_PI ? phi_d : 0.0};
+    return (gonio_i_meeting){.at = {.theta_h = atan2(radius, sum[2]),
+                                    .theta_d = atan2(gonio_i_length(difference), length),
+                                    .phi_d = phi_d < M_PI ? phi_d : 0.0},
+                             .incident = i[2],
+                             .half = 0.5 * length};
 }
 
-void gonio_i_surface_value(const gonio_i_surface *surface, const double incident[3],
-                           const double outgoing[3], double rho[GONIO_CHANNELS])
+void gonio_i_surface_value(const gonio_i_surface *surface, const gonio_i_meeting *meeting,
+                           double rho[GONIO_CHANNELS])
 {
     gonio_i_stencil stencil[GONIO_I_TRILINEAR];
-    gonio_i_trilinear(coordinates_of(incident, outgoing), stencil);
+    gonio_i_trilinear(meeting->at, stencil);
     double total = 0.0;
     rho[0] = rho[1] = rho[2] = 0.0;
     for (int k = 0; k < GONIO_I_TRILINEAR; k++) {
@@ -258,7 +279,7 @@ static void sample_cosine(const double uniform[2], double direction[3])
 bool gonio_i_surface_sample(const gonio_i_surface *surface, const double outgoing[3],
                             const double uniform[3], double incident[3])
 {
-    if (uniform[2] < 0.5) {
+    if (uniform[2] >= surface->highlight) {
         sample_cosine(uniform, incident);
         return incident[2] > 0.0;
     }
@@ -272,15 +293,10 @@ bool gonio_i_surface_sample(const gonio_i_surface *surface, const double outgoin
 }
 
 /* d omega_i = 4 (o.h) d omega_h. */
-double gonio_i_surface_density(const gonio_i_surface *surface, const double incident[3],
-                               const double outgoing[3])
+double gonio_i_surface_density(const gonio_i_surface *surface, const gonio_i_meeting *meeting)
 {
-    double half[3];
-    gonio_i_along(incident, 1.0, outgoing, half);
-    const double length = gonio_i_length(half);
-    const double theta_h = atan2(hypot(half[0], half[1]), half[2]);
-    const int at = (int)(GONIO_THETA_H_BINS * sqrt(theta_h / M_PI_2));
+    const int at = (int)(GONIO_THETA_H_BINS * sqrt(meeting->at.theta_h / M_PI_2));
     const double density = surface->density[at < GONIO_THETA_H_BINS ? at : GONIO_THETA_H_BINS - 1];
-    const double cosine = 0.5 * length; /* o.h, as |i + o| = 2 o.h */
-    return 0.5 * incident[2] / M_PI + 0.5 * density / (4.0 * cosine);
+    return (1.0 - surface->highlight) * meeting->incident / M_PI +
+           surface->highlight * density / (4.0 * meeting->half);
 }
