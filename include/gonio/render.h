@@ -148,9 +148,6 @@ typedef struct gonio_render_options {
     double azimuth, elevation; /* the viewer's, about the object: 0, 0 is on +z; radians */
     double field_of_view;      /* vertical, radians, 0 .. 2; 0 for parallel rays. The viewer is so
                                 * far away that the unit sphere fills 0.95 of the shorter side. */
-    const gonio_material *sample_like; /* whose highlight guides the sampling; NULL for the
-                                        * material's own. Materials that are to be compared are
-                                        * rendered with the same, so that they share their noise. */
 } gonio_render_options;
 
 /* 512 x 512, 64 samples from seed 0, a sphere, no environment, a directional lamp up to the left in
@@ -163,19 +160,40 @@ GONIO_API void gonio_render_options_default(gonio_render_options *options);
  * heuristic (Veach and Guibas 1995). The error falls as 1/sqrt(samples). The same seed gives the
  * same image on any number of threads.
  * Memory: 60 MB, and 16 bytes a pixel.
- * Errors: _ARGUMENT (sizes, samples < 1, a view that is none); _DATA for a material without data;
- * _MEMORY; _CANCELLED; those of the material. */
+ * Errors: _ARGUMENT (sizes, samples < 1, a view or a lamp that is none); _DATA for a material
+ * without data; _MEMORY; _CANCELLED; those of the material. */
 GONIO_API gonio_status gonio_render(gonio_context *context, const gonio_material *material,
                                     const gonio_render_options *options, gonio_image **image);
 
 /* ---- comparison pictures ---- */
 
-/* The error that the two renderings of gonio_compare's materials have: 256 x 256 pixels, 64
- * samples, a sphere in the built-in studio. */
-GONIO_API gonio_status gonio_compare_rendered(gonio_context *context,
-                                              const gonio_material *reference,
-                                              const gonio_material *other,
-                                              gonio_image_error *error);
+/* A material rendered for others to be compared with. They are sampled in the directions that suit
+ * this one, and so share its noise, which hardly counts in what tells them apart. */
+typedef struct gonio_reference gonio_reference;
+
+/* Renders a material. options NULL is the yardstick of `gonio compare --render`: 256 x 256 pixels,
+ * 64 samples, a sphere in the built-in studio. What options points to must last as long. Errors:
+ * those of gonio_render. */
+GONIO_API gonio_status gonio_reference_create(gonio_context *context,
+                                              const gonio_material *material,
+                                              const gonio_render_options *options,
+                                              gonio_reference **reference);
+GONIO_API void gonio_reference_free(gonio_reference **reference);
+
+/* Its rendering, which belongs to it, and the tone mapping of that with key 0.18. */
+GONIO_API const gonio_image *gonio_reference_image(const gonio_reference *reference);
+GONIO_API gonio_tone gonio_reference_tone(const gonio_reference *reference);
+
+/* Renders another material the same way. Errors: those of gonio_render. */
+GONIO_API gonio_status gonio_reference_render(gonio_context *context,
+                                              const gonio_reference *reference,
+                                              const gonio_material *other, gonio_image **image);
+
+/* The same, and how far it is from the reference. */
+GONIO_API gonio_status gonio_reference_compare(gonio_context *context,
+                                               const gonio_reference *reference,
+                                               const gonio_material *other,
+                                               gonio_image_error *error);
 
 /* One rendering of a comparison picture. */
 typedef struct gonio_sheet_cell {
@@ -193,7 +211,7 @@ typedef struct gonio_sheet {
     const gonio_sheet_cell *cells;   /* [rows][columns] */
     double key;                      /* of the tone mapping */
     bool differences;                /* below each row Delta E_ITP as a picture */
-    double largest_difference;       /* Delta E_ITP of the brightest colour in it; 10 if 0 */
+    double largest_difference;       /* Delta E_ITP of the brightest colour in it; 20 if 0 */
 } gonio_sheet;
 
 /* Draws it as PNG. The file appears whole or not at all. Errors: _ARGUMENT for a sheet without

@@ -189,16 +189,6 @@ static void fit(gonio_mesh *mesh)
 
 /* ---- reading ---- */
 
-static bool lacks_normals(const struct aiScene *scene)
-{
-    for (unsigned m = 0; m < scene->mNumMeshes; m++) {
-        if (scene->mMeshes[m]->mNormals == NULL) {
-            return true;
-        }
-    }
-    return false;
-}
-
 /* Words that begin the lines of an OBJ file. */
 static bool looks_like_obj(const gonio_i_bytes *bytes)
 {
@@ -227,6 +217,12 @@ static const char *importer_of(const gonio_i_bytes *bytes)
     return looks_like_obj(bytes) ? "obj" : NULL;
 }
 
+static bool states_normals(const gonio_i_bytes *bytes, const char *importer)
+{
+    const char *sign = strcmp(importer, "ply") == 0 ? " nx" : "\nvn";
+    return memmem(bytes->data, bytes->size, sign, 3) != NULL;
+}
+
 static gonio_status make_mesh(loading *l, gonio_mesh **mesh)
 {
     gonio_mesh *made = gonio_i_allocate(l->context, 1, sizeof *made);
@@ -247,27 +243,32 @@ static gonio_status make_mesh(loading *l, gonio_mesh **mesh)
     return GONIO_OK;
 }
 
+/* Faces that meet at more than this angle do not share a normal where a file has none. */
+static const float crease = 50.0F; /* degrees */
+
 /* From memory, so that a file can name no other files. */
 static gonio_status import(loading *l, const gonio_i_bytes *bytes, const char *importer,
                            gonio_mesh **mesh)
 {
-    const unsigned flags =
-        aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_ValidateDataStructure;
-    l->scene =
-        aiImportFileFromMemory((const char *)bytes->data, (unsigned)bytes->size, flags, importer);
+    const unsigned flags = aiProcess_Triangulate | aiProcess_GenSmoothNormals |
+                           aiProcess_JoinIdenticalVertices | aiProcess_ValidateDataStructure;
+    struct aiPropertyStore *how = aiCreatePropertyStore();
+    if (how == NULL) {
+        return gonio_i_fail(l->context, GONIO_ERROR_MEMORY, "%s: out of memory", l->path);
+    }
+    aiSetImportPropertyFloat(how, AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, crease);
+    l->scene = aiImportFileFromMemoryWithProperties((const char *)bytes->data,
+                                                    (unsigned)bytes->size, flags, importer, how);
+    aiReleasePropertyStore(how);
     if (l->scene == NULL) {
         return gonio_i_fail(l->context, GONIO_ERROR_FORMAT, "%s: cannot be read as %s: %s", l->path,
                             importer, aiGetErrorString());
     }
-    if (l->scene->mNumMeshes > 0 && lacks_normals(l->scene)) {
-        gonio_i_note(l->context, "%s: has no normals; they are made from its faces", l->path);
-        l->scene = aiApplyPostProcessing(l->scene, aiProcess_GenSmoothNormals);
-    }
-    const gonio_status status =
-        l->scene != NULL
-            ? make_mesh(l, mesh)
-            : gonio_i_fail(l->context, GONIO_ERROR_DATA, "%s: no normals can be made", l->path);
+    const gonio_status status = make_mesh(l, mesh);
     aiReleaseImport(l->scene);
+    if (status == GONIO_OK && !states_normals(bytes, importer)) {
+        gonio_i_note(l->context, "%s: has no normals; they are made from its faces", l->path);
+    }
     return status;
 }
 

@@ -1,23 +1,14 @@
 /* Rendering: light that comes straight from a lamp or an environment to every pixel. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "../core/core.h"
 #include "../core/random.h"
 #include "environment.h"
 #include "geometry.h"
-#include "render.h"
 #include "scene.h"
-
-void gonio_render_options_default(gonio_render_options *options)
-{
-    *options = (gonio_render_options){.width = 512,
-                                      .height = 512,
-                                      .samples = 64,
-                                      .lamp = GONIO_LAMP_DIRECTIONAL,
-                                      .lamp_position = {-0.5, 0.7071067811865476, 0.5},
-                                      .field_of_view = M_PI / 6.0};
-}
+#include "surface.h"
 
 /* ---- the camera ---- */
 
@@ -307,9 +298,9 @@ static gonio_status check(gonio_context *context, const gonio_render_options *o)
     return GONIO_OK;
 }
 
-gonio_status gonio_i_render_surface(gonio_context *context, const gonio_i_surface *surface,
-                                    const gonio_i_surface *sampler,
-                                    const gonio_render_options *options, gonio_image **image)
+static gonio_status render_surface(gonio_context *context, const gonio_i_surface *surface,
+                                   const gonio_i_surface *sampler,
+                                   const gonio_render_options *options, gonio_image **image)
 {
     gonio_i_scene *scene = NULL;
     gonio_image *made = NULL;
@@ -346,49 +337,113 @@ gonio_status gonio_render(gonio_context *context, const gonio_material *material
     gonio_render_options_default(&defaults);
     options = options != NULL ? options : &defaults;
     gonio_i_surface *surface = NULL;
-    gonio_i_surface *sampler = NULL;
     gonio_status status = check(context, options);
     if (status == GONIO_OK) {
         status = gonio_i_surface_create(context, material, &surface);
     }
-    if (status == GONIO_OK && options->sample_like != NULL && options->environment != NULL) {
-        status = gonio_i_surface_create(context, options->sample_like, &sampler);
-    }
     if (status == GONIO_OK) {
-        status = gonio_i_render_surface(context, surface, sampler != NULL ? sampler : surface,
-                                        options, image);
+        status = render_surface(context, surface, surface, options, image);
     }
-    gonio_i_surface_free(&sampler);
     gonio_i_surface_free(&surface);
     return status;
 }
 
-/* ---- two materials ---- */
+/* ---- a material and others ---- */
 
-gonio_status gonio_compare_rendered(gonio_context *context, const gonio_material *reference,
-                                    const gonio_material *other, gonio_image_error *error)
-{
+struct gonio_reference {
     gonio_render_options options;
-    gonio_render_options_default(&options);
-    options.width = options.height = 256;
-    options.sample_like = reference;
-    gonio_environment *studio = NULL;
-    gonio_image *first = NULL;
-    gonio_image *second = NULL;
-    gonio_status status = gonio_environment_open(context, "studio", false, &studio);
-    options.environment = studio;
-    if (status == GONIO_OK) {
-        status = gonio_render(context, reference, &options, &first);
+    gonio_environment *environment; /* of its own; NULL if the options are the caller's */
+    gonio_i_surface *surface;
+    gonio_image *image;
+    gonio_tone tone;
+};
+
+void gonio_reference_free(gonio_reference **reference)
+{
+    if (reference == NULL || *reference == NULL) {
+        return;
+    }
+    gonio_environment_free(&(*reference)->environment);
+    gonio_i_surface_free(&(*reference)->surface);
+    gonio_image_free(&(*reference)->image);
+    free(*reference);
+    *reference = NULL;
+}
+
+static gonio_status set_yardstick(gonio_context *context, gonio_reference *reference)
+{
+    gonio_render_options_default(&reference->options);
+    reference->options.width = reference->options.height = 256;
+    const gonio_status status =
+        gonio_environment_open(context, "studio", false, &reference->environment);
+    reference->options.environment = reference->environment;
+    return status;
+}
+
+gonio_status gonio_reference_create(gonio_context *context, const gonio_material *material,
+                                    const gonio_render_options *options,
+                                    gonio_reference **reference)
+{
+    gonio_reference *made = gonio_i_allocate(context, 1, sizeof *made);
+    if (made == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    gonio_status status = GONIO_OK;
+    if (options != NULL) {
+        made->options = *options;
+    } else {
+        status = set_yardstick(context, made);
     }
     if (status == GONIO_OK) {
-        status = gonio_render(context, other, &options, &second);
+        status = check(context, &made->options);
     }
     if (status == GONIO_OK) {
-        const gonio_tone tone = gonio_tone_measure(first, 0.18);
-        status = gonio_image_compare(context, first, second, &tone, error, NULL);
+        status = gonio_i_surface_create(context, material, &made->surface);
     }
-    gonio_image_free(&first);
-    gonio_image_free(&second);
-    gonio_environment_free(&studio);
+    if (status == GONIO_OK) {
+        status =
+            render_surface(context, made->surface, made->surface, &made->options, &made->image);
+    }
+    if (status != GONIO_OK) {
+        gonio_reference_free(&made);
+        return status;
+    }
+    made->tone = gonio_tone_measure(made->image, 0.18);
+    *reference = made;
+    return GONIO_OK;
+}
+
+const gonio_image *gonio_reference_image(const gonio_reference *reference)
+{
+    return reference->image;
+}
+
+gonio_tone gonio_reference_tone(const gonio_reference *reference)
+{
+    return reference->tone;
+}
+
+gonio_status gonio_reference_render(gonio_context *context, const gonio_reference *reference,
+                                    const gonio_material *other, gonio_image **image)
+{
+    gonio_i_surface *surface = NULL;
+    gonio_status status = gonio_i_surface_create(context, other, &surface);
+    if (status == GONIO_OK) {
+        status = render_surface(context, surface, reference->surface, &reference->options, image);
+    }
+    gonio_i_surface_free(&surface);
+    return status;
+}
+
+gonio_status gonio_reference_compare(gonio_context *context, const gonio_reference *reference,
+                                     const gonio_material *other, gonio_image_error *error)
+{
+    gonio_image *image = NULL;
+    gonio_status status = gonio_reference_render(context, reference, other, &image);
+    if (status == GONIO_OK) {
+        status =
+            gonio_image_compare(context, reference->image, image, &reference->tone, error, NULL);
+    }
+    gonio_image_free(&image);
     return status;
 }

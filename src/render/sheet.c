@@ -199,7 +199,7 @@ static void put_errors(const drawing *d, const gonio_sheet_cell *cell,
     }
     if (isfinite(error->psnr)) {
         snprintf(rendered, sizeof rendered,
-                 "%.1f dB, \xce\x94"
+                 "PSNR %.1f dB, \xce\x94"
                  "E %.2f",
                  error->psnr, error->delta_e_itp);
     } else {
@@ -345,7 +345,7 @@ gonio_status gonio_sheet_write_png(gonio_context *context, const gonio_sheet *sh
                                    const char *path)
 {
     drawing d = {.context = context, .sheet = sheet};
-    d.largest = sheet->largest_difference > 0.0 ? sheet->largest_difference : 10.0;
+    d.largest = sheet->largest_difference > 0.0 ? sheet->largest_difference : 20.0;
     gonio_status status = check(context, sheet);
     if (status == GONIO_OK) {
         status = lay_out(context, sheet, &d.at);

@@ -65,8 +65,44 @@ gonio_status gonio_render(gonio_context *context, const gonio_material *material
     return not_built(context);
 }
 
-gonio_status gonio_compare_rendered(gonio_context *context, const gonio_material *reference,
-                                    const gonio_material *other, gonio_image_error *error)
+gonio_status gonio_reference_create(gonio_context *context, const gonio_material *material,
+                                    const gonio_render_options *options,
+                                    gonio_reference **reference)
+{
+    (void)material;
+    (void)options;
+    (void)reference;
+    return not_built(context);
+}
+
+void gonio_reference_free(gonio_reference **reference)
+{
+    (void)reference;
+}
+
+const gonio_image *gonio_reference_image(const gonio_reference *reference)
+{
+    (void)reference;
+    return NULL;
+}
+
+gonio_tone gonio_reference_tone(const gonio_reference *reference)
+{
+    (void)reference;
+    return (gonio_tone){1.0, 1.0, 1.0};
+}
+
+gonio_status gonio_reference_render(gonio_context *context, const gonio_reference *reference,
+                                    const gonio_material *other, gonio_image **image)
+{
+    (void)reference;
+    (void)other;
+    (void)image;
+    return not_built(context);
+}
+
+gonio_status gonio_reference_compare(gonio_context *context, const gonio_reference *reference,
+                                     const gonio_material *other, gonio_image_error *error)
 {
     (void)reference;
     (void)other;

@@ -261,19 +261,18 @@ static gonio_status make_picture(const tool *t, size_t rows, size_t columns, pic
     return GONIO_OK;
 }
 
-static gonio_status compare_cell(const tool *t, const scene *s, const gonio_material *reference,
-                                 const char *path, picture *p, size_t at)
+static gonio_status compare_cell(const tool *t, const gonio_reference *reference,
+                                 const gonio_material *original, const char *path, picture *p,
+                                 size_t at)
 {
     gonio_material *material = NULL;
     gonio_comparison comparison;
-    gonio_render_options how = s->how;
-    how.sample_like = reference;
     gonio_status status = gonio_material_open(t->context, path, &material);
     if (status == GONIO_OK) {
-        status = gonio_render(t->context, material, &how, &p->image[at]);
+        status = gonio_reference_render(t->context, reference, material, &p->image[at]);
     }
     if (status == GONIO_OK) {
-        status = gonio_compare(t->context, reference, material, &comparison);
+        status = gonio_compare(t->context, original, material, &comparison);
     }
     if (status == GONIO_OK) {
         p->cells[at] = (gonio_sheet_cell){p->image[at], comparison.all.e6};
@@ -285,23 +284,39 @@ static gonio_status compare_cell(const tool *t, const scene *s, const gonio_mate
     return status;
 }
 
+static gonio_status copy_image(const tool *t, const gonio_image *from, gonio_image **to)
+{
+    const gonio_status status = gonio_image_create(t->context, from->width, from->height, to);
+    if (status == GONIO_OK) {
+        memcpy((*to)->rgba, from->rgba,
+               (size_t)from->width * (size_t)from->height * GONIO_IMAGE_CHANNELS *
+                   sizeof *from->rgba);
+    }
+    return status;
+}
+
 static gonio_status compare_row(const tool *t, const scene *s, const char *const *paths, picture *p,
                                 size_t row)
 {
-    gonio_material *reference = NULL;
     const size_t first = row * p->columns;
-    gonio_status status = gonio_material_open(t->context, paths[0], &reference);
+    gonio_material *original = NULL;
+    gonio_reference *reference = NULL;
+    gonio_status status = gonio_material_open(t->context, paths[0], &original);
     if (status == GONIO_OK) {
-        p->row_name[row] = strdup(gonio_material_name(reference));
-        status = gonio_render(t->context, reference, &s->how, &p->image[first]);
+        p->row_name[row] = strdup(gonio_material_name(original));
+        status = gonio_reference_create(t->context, original, &s->how, &reference);
+    }
+    if (status == GONIO_OK) {
+        status = copy_image(t, gonio_reference_image(reference), &p->image[first]);
     }
     if (status == GONIO_OK) {
         p->cells[first] = (gonio_sheet_cell){p->image[first], NAN};
     }
     for (size_t k = 1; k < p->columns && status == GONIO_OK; k++) {
-        status = compare_cell(t, s, reference, paths[k], p, first + k);
+        status = compare_cell(t, reference, original, paths[k], p, first + k);
     }
-    gonio_material_free(&reference);
+    gonio_reference_free(&reference);
+    gonio_material_free(&original);
     return status;
 }
 
