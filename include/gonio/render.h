@@ -106,7 +106,7 @@ typedef struct gonio_mesh gonio_mesh;
 GONIO_API gonio_status gonio_mesh_read(gonio_context *context, const char *path, gonio_mesh **mesh);
 GONIO_API void gonio_mesh_free(gonio_mesh **mesh);
 
-/* How many triangles and corners it has. */
+/* How many triangles and corners it has; corners are shared where the file has normals. */
 GONIO_API size_t gonio_mesh_triangles(const gonio_mesh *mesh);
 GONIO_API size_t gonio_mesh_corners(const gonio_mesh *mesh);
 

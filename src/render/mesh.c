@@ -1,25 +1,13 @@
-/* Triangle meshes from OBJ and PLY files, by assimp; checked, centred and scaled. */
+/* Triangle meshes: built corner by corner, checked, centred and scaled; which reader a file needs.
+ */
 #include "mesh.h"
 
-#include <assimp/cimport.h>
-#include <assimp/config.h>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "geometry.h"
-#include "image.h"
-
-/* What is counted while a mesh is made. */
-typedef struct loading {
-    gonio_context *context;
-    const char *path;
-    const struct aiScene *scene;
-    size_t flat; /* triangles without area */
-} loading;
 
 void gonio_mesh_free(gonio_mesh **mesh)
 {
@@ -43,7 +31,7 @@ size_t gonio_mesh_corners(const gonio_mesh *mesh)
     return mesh->corners;
 }
 
-/* ---- what assimp has read ---- */
+/* ---- building ---- */
 
 static bool is_finite_vector(const float v[3])
 {
@@ -65,81 +53,71 @@ static bool has_area(const float *a, const float *b, const float *c)
     return gonio_i_length(cross) > 1e-12 * side * side && side > 0.0;
 }
 
-static void add_triangle(loading *l, gonio_mesh *mesh, const unsigned *index, size_t first)
+/* Room for one more of what is `size` bytes each; doubled when it runs out. */
+static gonio_status make_room(const gonio_i_mesh_making *m, size_t count, size_t size, size_t *room,
+                              void **array)
 {
-    uint32_t *corner = mesh->corner + 3 * mesh->triangles;
-    for (int k = 0; k < 3; k++) {
-        corner[k] = (uint32_t)(first + index[k]);
+    if (count < *room) {
+        return GONIO_OK;
     }
-    if (has_area(mesh->position + 3 * (size_t)corner[0], mesh->position + 3 * (size_t)corner[1],
-                 mesh->position + 3 * (size_t)corner[2])) {
-        mesh->triangles++;
-    } else {
-        l->flat++;
+    const size_t wanted = *room > 0 ? 2 * *room : 1024;
+    void *larger = wanted <= UINT32_MAX / 4 ? reallocarray(*array, wanted, size) : NULL;
+    if (larger == NULL) {
+        return gonio_i_fail(m->context, GONIO_ERROR_MEMORY, "%s: too large: out of memory",
+                            m->path);
     }
-}
-
-static gonio_status add_part(loading *l, const struct aiMesh *part, gonio_mesh *mesh)
-{
-    const size_t first = mesh->corners;
-    for (unsigned v = 0; v < part->mNumVertices; v++) {
-        float *position = mesh->position + 3 * mesh->corners;
-        float *normal = mesh->normal + 3 * mesh->corners;
-        memcpy(position, &part->mVertices[v], 3 * sizeof *position);
-        if (!is_finite_vector(position)) {
-            return gonio_i_fail(
-                l->context, GONIO_ERROR_DATA, "%s: corner %zu is not finite (%g, %g, %g)", l->path,
-                mesh->corners + 1, (double)position[0], (double)position[1], (double)position[2]);
-        }
-        if (part->mNormals != NULL) {
-            const struct aiVector3D *n = &part->mNormals[v];
-            const float given[3] = {n->x, n->y, n->z};
-            memcpy(normal, given, is_finite_vector(given) ? sizeof given : 0);
-        }
-        mesh->corners++;
-    }
-    for (unsigned f = 0; f < part->mNumFaces; f++) {
-        const struct aiFace *face = &part->mFaces[f];
-        if (face->mNumIndices != 3) { /* points and lines */
-            continue;
-        }
-        for (int k = 0; k < 3; k++) {
-            if (face->mIndices[k] >= part->mNumVertices) {
-                return gonio_i_fail(l->context, GONIO_ERROR_FORMAT,
-                                    "%s: face %u names a corner that is not there", l->path, f + 1);
-            }
-        }
-        add_triangle(l, mesh, face->mIndices, first);
-    }
+    *array = larger;
+    *room = wanted;
     return GONIO_OK;
 }
 
-static gonio_status add_parts(loading *l, gonio_mesh *mesh)
+gonio_status gonio_i_mesh_add_corner(gonio_i_mesh_making *making, const float position[3],
+                                     const float *normal)
 {
-    size_t corners = 0;
-    size_t faces = 0;
-    for (unsigned m = 0; m < l->scene->mNumMeshes; m++) {
-        corners += l->scene->mMeshes[m]->mNumVertices;
-        faces += l->scene->mMeshes[m]->mNumFaces;
+    static const float none[3] = {0.0F, 0.0F, 0.0F};
+    gonio_mesh *mesh = making->mesh;
+    if (!is_finite_vector(position)) {
+        return gonio_i_fail(making->context, GONIO_ERROR_DATA,
+                            "%s: corner %zu is not finite (%g, %g, %g)", making->path,
+                            mesh->corners + 1, (double)position[0], (double)position[1],
+                            (double)position[2]);
     }
-    if (corners > UINT32_MAX) {
-        return gonio_i_fail(l->context, GONIO_ERROR_DATA, "%s: too many corners", l->path);
+    size_t room = making->corner_room;
+    gonio_status status =
+        make_room(making, mesh->corners, 3 * sizeof(float), &room, (void **)&mesh->position);
+    if (status == GONIO_OK) {
+        status = make_room(making, mesh->corners, 3 * sizeof(float), &making->corner_room,
+                           (void **)&mesh->normal);
     }
-    mesh->position = gonio_i_allocate(l->context, corners + 1, 3 * sizeof *mesh->position);
-    mesh->normal = gonio_i_allocate(l->context, corners + 1, 3 * sizeof *mesh->normal);
-    mesh->corner = gonio_i_allocate(l->context, faces + 1, 3 * sizeof *mesh->corner);
-    if (mesh->position == NULL || mesh->normal == NULL || mesh->corner == NULL) {
-        return GONIO_ERROR_MEMORY;
+    if (status == GONIO_OK) {
+        const bool given = normal != NULL && is_finite_vector(normal);
+        memcpy(mesh->position + 3 * mesh->corners, position, 3 * sizeof *position);
+        memcpy(mesh->normal + 3 * mesh->corners, given ? normal : none, 3 * sizeof *none);
+        making->with_normals = making->with_normals && given;
+        mesh->corners++;
     }
-    gonio_status status = GONIO_OK;
-    for (unsigned m = 0; m < l->scene->mNumMeshes && status == GONIO_OK; m++) {
-        status = add_part(l, l->scene->mMeshes[m], mesh);
+    return status;
+}
+
+gonio_status gonio_i_mesh_add_triangle(gonio_i_mesh_making *making, const uint32_t corner[3])
+{
+    gonio_mesh *mesh = making->mesh;
+    for (int k = 0; k < 3; k++) {
+        if (corner[k] >= mesh->corners) {
+            return gonio_i_fail(making->context, GONIO_ERROR_FORMAT,
+                                "%s: a face names a corner that is not there", making->path);
+        }
     }
-    if (status == GONIO_OK && mesh->triangles == 0) {
-        status = gonio_i_fail(l->context, GONIO_ERROR_DATA,
-                              l->flat > 0 ? "%s: none of its triangles has an area"
-                                          : "%s: the mesh has no faces",
-                              l->path);
+    if (!has_area(mesh->position + 3 * (size_t)corner[0], mesh->position + 3 * (size_t)corner[1],
+                  mesh->position + 3 * (size_t)corner[2])) {
+        making->flat++;
+        return GONIO_OK;
+    }
+    const gonio_status status = make_room(making, mesh->triangles, 3 * sizeof(uint32_t),
+                                          &making->triangle_room, (void **)&mesh->corner);
+    if (status == GONIO_OK) {
+        memcpy(mesh->corner + 3 * mesh->triangles, corner, 3 * sizeof *corner);
+        mesh->triangles++;
     }
     return status;
 }
@@ -208,66 +186,50 @@ static bool looks_like_obj(const gonio_i_bytes *bytes)
     return false;
 }
 
-/* assimp's importer for what the content is; NULL for anything else. */
-static const char *importer_of(const gonio_i_bytes *bytes)
+/* The reader for what the content is; NULL for anything else. */
+static gonio_status (*reader_of(const gonio_i_bytes *bytes))(gonio_i_mesh_making *,
+                                                             const gonio_i_bytes *)
 {
     if (gonio_i_begins_with(bytes, "ply\n", 4) || gonio_i_begins_with(bytes, "ply\r", 4)) {
-        return "ply";
+        return gonio_i_read_ply;
     }
-    return looks_like_obj(bytes) ? "obj" : NULL;
+    return looks_like_obj(bytes) ? gonio_i_read_obj : NULL;
 }
 
-static bool states_normals(const gonio_i_bytes *bytes, const char *importer)
+static gonio_status read_bytes(gonio_i_mesh_making *making, const gonio_i_bytes *bytes)
 {
-    const char *sign = strcmp(importer, "ply") == 0 ? " nx" : "\nvn";
-    return memmem(bytes->data, bytes->size, sign, 3) != NULL;
+    gonio_status (*reader)(gonio_i_mesh_making *, const gonio_i_bytes *) = reader_of(bytes);
+    if (reader == NULL || bytes->size > INT_MAX) {
+        return gonio_i_fail(making->context, GONIO_ERROR_FORMAT,
+                            "%s: not a mesh that gonio reads (OBJ, PLY, below 2 GiB), judged by "
+                            "its content",
+                            making->path);
+    }
+    const gonio_status status = reader(making, bytes);
+    if (status == GONIO_OK && making->mesh->triangles == 0) {
+        return gonio_i_fail(making->context, GONIO_ERROR_DATA,
+                            making->flat > 0 ? "%s: none of its triangles has an area"
+                                             : "%s: the mesh has no faces",
+                            making->path);
+    }
+    return status;
 }
 
-static gonio_status make_mesh(loading *l, gonio_mesh **mesh)
+/* What is said of a mesh that is used all the same. */
+static gonio_status finish(const gonio_i_mesh_making *making)
 {
-    gonio_mesh *made = gonio_i_allocate(l->context, 1, sizeof *made);
-    if (made == NULL) {
-        return GONIO_ERROR_MEMORY;
+    gonio_status status = GONIO_OK;
+    if (making->flat > 0) {
+        gonio_i_warn(making->context, "%s: %zu of %zu triangles have no area and are left out",
+                     making->path, making->flat, making->flat + making->mesh->triangles);
     }
-    const gonio_status status = add_parts(l, made);
-    if (status != GONIO_OK) {
-        gonio_mesh_free(&made);
-        return status;
+    if (!making->with_normals) {
+        gonio_i_note(making->context, "%s: lacks normals; they are made from its faces",
+                     making->path);
+        status = gonio_i_mesh_make_normals(making->context, making->mesh);
     }
-    if (l->flat > 0) {
-        gonio_i_warn(l->context, "%s: %zu of %zu triangles have no area and are left out", l->path,
-                     l->flat, l->flat + made->triangles);
-    }
-    fit(made);
-    *mesh = made;
-    return GONIO_OK;
-}
-
-/* Faces that meet at more than this angle do not share a normal where a file has none. */
-static const float crease = 50.0F; /* degrees */
-
-/* From memory, so that a file can name no other files. */
-static gonio_status import(loading *l, const gonio_i_bytes *bytes, const char *importer,
-                           gonio_mesh **mesh)
-{
-    const unsigned flags = aiProcess_Triangulate | aiProcess_GenSmoothNormals |
-                           aiProcess_JoinIdenticalVertices | aiProcess_ValidateDataStructure;
-    struct aiPropertyStore *how = aiCreatePropertyStore();
-    if (how == NULL) {
-        return gonio_i_fail(l->context, GONIO_ERROR_MEMORY, "%s: out of memory", l->path);
-    }
-    aiSetImportPropertyFloat(how, AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, crease);
-    l->scene = aiImportFileFromMemoryWithProperties((const char *)bytes->data,
-                                                    (unsigned)bytes->size, flags, importer, how);
-    aiReleasePropertyStore(how);
-    if (l->scene == NULL) {
-        return gonio_i_fail(l->context, GONIO_ERROR_FORMAT, "%s: cannot be read as %s: %s", l->path,
-                            importer, aiGetErrorString());
-    }
-    const gonio_status status = make_mesh(l, mesh);
-    aiReleaseImport(l->scene);
-    if (status == GONIO_OK && !states_normals(bytes, importer)) {
-        gonio_i_note(l->context, "%s: has no normals; they are made from its faces", l->path);
+    if (status == GONIO_OK) {
+        fit(making->mesh);
     }
     return status;
 }
@@ -279,16 +241,17 @@ gonio_status gonio_mesh_read(gonio_context *context, const char *path, gonio_mes
     if (status != GONIO_OK) {
         return status;
     }
-    loading l = {.context = context, .path = path};
-    const char *importer = importer_of(&bytes);
-    if (importer == NULL || bytes.size > INT_MAX) {
-        status = gonio_i_fail(context, GONIO_ERROR_FORMAT,
-                              "%s: not a mesh that gonio reads (OBJ, PLY, below 2 GiB), judged by "
-                              "its content",
-                              path);
-    } else {
-        status = import(&l, &bytes, importer, mesh);
-    }
+    gonio_i_mesh_making making = {.context = context, .path = path, .with_normals = true};
+    making.mesh = gonio_i_allocate(context, 1, sizeof *making.mesh);
+    status = making.mesh == NULL ? GONIO_ERROR_MEMORY : read_bytes(&making, &bytes);
     gonio_i_free_bytes(&bytes);
-    return status;
+    if (status == GONIO_OK) {
+        status = finish(&making);
+    }
+    if (status != GONIO_OK) {
+        gonio_mesh_free(&making.mesh);
+        return status;
+    }
+    *mesh = making.mesh;
+    return GONIO_OK;
 }
