@@ -9,7 +9,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { MOST_WORDS = 12 };
+enum { MOST_WORDS = 16 };
 
 typedef struct step {
     const char *explanation;
@@ -42,6 +42,11 @@ static const step steps[] = {
     {"",
      cmd_compare,
      {"compare", "atlas:red-glossy-plastic", "reconstructed.binary", "reconstructed-all.binary"}},
+    {"7. See it: spheres in a studio, and where they differ.",
+     cmd_render,
+     {"render", "--compare", "atlas:red-glossy-plastic", "reconstructed.binary",
+      "reconstructed-all.binary", "--labels", "original,80 readings,all channels", "--differences",
+      "-o", "comparison.png"}},
 };
 
 enum { STEPS = sizeof steps / sizeof *steps };
@@ -90,8 +95,9 @@ static int run(const tool *t, const char *folder)
         code = run_step(&steps[k]);
     }
     if (code == 0) {
-        printf("\nDone in %.0f s. %s holds basis.gonio, plan.csv, readings.csv and the two "
-               "reconstructions,\nMERL tables that renderers and BRDF viewers read.\n",
+        printf("\nDone in %.0f s. %s holds basis.gonio, plan.csv, readings.csv, the two "
+               "reconstructions,\nMERL tables that renderers and BRDF viewers read, and the picture "
+               "comparison.png.\n",
                now() - start, folder);
     }
     return code;
@@ -105,7 +111,7 @@ int cmd_demo(int argc, const char **argv)
                                        TOOL_OPTIONS};
     tool t;
     int code = tool_begin(&t, argc, argv, table, "[OPTION...]",
-                          "Learns, plans, measures, reconstructs and compares, in under a minute.");
+                          "Learns, plans, measures, reconstructs, compares and renders, in about a minute.");
     if (code < 0) {
         code = run(&t, folder);
     }
