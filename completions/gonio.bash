@@ -30,7 +30,7 @@ _gonio_values()
     case $1 in
         --grid)     echo "bivariate full" ;;
         --channels) echo "joint separate" ;;
-        --only)     echo "fig2a fig2b fig3a fig3b fig4 fig5" ;;
+        --only)     echo "fig2a fig2b fig3a fig3b fig4 fig5 fig6 fig7" ;;
         --mapping)  echo "log relative" ;;
         --method)   [[ $2 == reconstruct ]] && echo "least-squares ridge" ||
                         echo "condition random matusik nielsen frost" ;;

@@ -4,10 +4,11 @@
 
 void gonio_render_options_default(gonio_render_options *options)
 {
-    *options = (gonio_render_options){.width = 512,
-                                      .height = 512,
-                                      .samples = 64,
-                                      .lamp = GONIO_LAMP_DIRECTIONAL,
-                                      .lamp_position = {-0.5, 0.7071067811865476, 0.5},
-                                      .field_of_view = M_PI / 6.0};
+    *options = (gonio_render_options){
+        .width = 512,
+        .height = 512,
+        .samples = 64,
+        .lamp = GONIO_LAMP_DIRECTIONAL,
+        .lamp_position = {-0.4095760221444959, 0.5735764363510461, 0.7094064799162224},
+        .field_of_view = M_PI / 6.0};
 }

@@ -60,13 +60,24 @@ static gonio_status check(gonio_context *context, const gonio_sheet *sheet)
     return GONIO_OK;
 }
 
+/* What the longest takes, roughly, within reason: text that is wider becomes smaller. */
+static int width_of_names(const gonio_sheet *sheet, int font)
+{
+    size_t longest = 6;
+    for (size_t row = 0; row < sheet->rows; row++) {
+        const size_t length = strlen(sheet->row_names[row]);
+        longest = length > longest ? length : longest;
+    }
+    return (int)(0.7 * font * (double)(longest < 28 ? longest : 28)) + GAP;
+}
+
 static gonio_status lay_out(gonio_context *context, const gonio_sheet *sheet, layout *at)
 {
     const gonio_image *first = sheet->cells[0].image;
     const int shorter = first->width < first->height ? first->width : first->height;
     const int font = shorter / 14 < 10 ? 10 : shorter / 14 > 20 ? 20 : shorter / 14;
     *at = (layout){.cell_width = first->width, .cell_height = first->height, .font = font};
-    at->names = 9 * font;
+    at->names = width_of_names(sheet, font);
     at->head = MARGIN + 2 * font;
     at->text = 3 * font + GAP;
     at->row = at->cell_height * (sheet->differences ? 2 : 1) + at->text + GAP +

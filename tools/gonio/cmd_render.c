@@ -430,7 +430,7 @@ static int run(const tool *t, const options *o)
 int cmd_render(int argc, const char **argv)
 {
     options o = {
-        .light_at = "-45,45", .view = "0,0", .field_of_view = 30.0, .key = 0.18, .samples = 64};
+        .light_at = "-30,35", .view = "0,0", .field_of_view = 30.0, .key = 0.18, .samples = 64};
     const struct poptOption table[] = {
         {"output", 'o', POPT_ARG_STRING, &o.output, 0,
          "The picture: .png, tone-mapped, or .exr, linear", "OUT"},
@@ -445,7 +445,7 @@ int cmd_render(int argc, const char **argv)
         {"light", '\0', POPT_ARG_STRING, &o.light, 0,
          "Light it by a lamp instead: directional or point", "KIND"},
         {"light-at", '\0', POPT_ARG_STRING, &o.light_at, 0,
-         "Where the lamp is (default: -45,45; distance 4)", "AZ,EL[,DIST]"},
+         "Where the lamp is (default: -30,35; distance 4)", "AZ,EL[,DIST]"},
         {"view", '\0', POPT_ARG_STRING, &o.view, 0, "From where to look, degrees (default: 0,0)",
          "AZ,EL"},
         {"fov", '\0', POPT_ARG_DOUBLE, &o.field_of_view, 0,
