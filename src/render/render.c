@@ -246,11 +246,11 @@ static void render_pixel(const view *v, int x, int y, float rgba[GONIO_IMAGE_CHA
     rgba[3] = (float)covered / (float)samples;
 }
 
-static gonio_status render_rows(gonio_context *context, const view *v, gonio_image *image)
+static gonio_status render_rows(gonio_context *context, int threads, const view *v,
+                                gonio_image *image)
 {
     gonio_status status = GONIO_OK;
     int finished = 0;
-    const int threads = gonio_context_threads(context);
 #pragma omp parallel for schedule(dynamic) num_threads(threads)
     for (int y = 0; y < image->height; y++) {
         gonio_status mine;
@@ -319,7 +319,7 @@ static gonio_status render_surface(gonio_context *context, const gonio_i_surface
                         .camera = place_camera(options),
                         .turn_cosine = cos(options->environment_turn),
                         .turn_sine = sin(options->environment_turn)};
-        status = render_rows(context, &v, made);
+        status = render_rows(context, gonio_context_threads(context), &v, made);
     }
     gonio_i_scene_free(&scene);
     if (status != GONIO_OK) {

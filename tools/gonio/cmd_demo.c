@@ -95,10 +95,11 @@ static int run(const tool *t, const char *folder)
         code = run_step(&steps[k]);
     }
     if (code == 0) {
-        printf("\nDone in %.0f s. %s holds basis.gonio, plan.csv, readings.csv, the two "
-               "reconstructions,\nMERL tables that renderers and BRDF viewers read, and the picture "
-               "comparison.png.\n",
-               now() - start, folder);
+        printf(
+            "\nDone in %.0f s. %s holds basis.gonio, plan.csv, readings.csv, the two "
+            "reconstructions,\nMERL tables that renderers and BRDF viewers read, and the picture "
+            "comparison.png.\n",
+            now() - start, folder);
     }
     return code;
 }
@@ -110,8 +111,9 @@ int cmd_demo(int argc, const char **argv)
                                         "The folder for the files (default: gonio-demo)", "DIR"},
                                        TOOL_OPTIONS};
     tool t;
-    int code = tool_begin(&t, argc, argv, table, "[OPTION...]",
-                          "Learns, plans, measures, reconstructs, compares and renders, in about a minute.");
+    int code = tool_begin(
+        &t, argc, argv, table, "[OPTION...]",
+        "Learns, plans, measures, reconstructs, compares and renders, in about a minute.");
     if (code < 0) {
         code = run(&t, folder);
     }
