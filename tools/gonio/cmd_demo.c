@@ -42,11 +42,13 @@ static const step steps[] = {
     {"",
      cmd_compare,
      {"compare", "atlas:red-glossy-plastic", "reconstructed.binary", "reconstructed-all.binary"}},
+#ifndef GONIO_WITHOUT_RENDER
     {"7. See it: spheres in a studio, and where they differ.",
      cmd_render,
      {"render", "--compare", "atlas:red-glossy-plastic", "reconstructed.binary",
       "reconstructed-all.binary", "--labels", "original,80 readings,all channels", "--differences",
       "-o", "comparison.png"}},
+#endif
 };
 
 enum { STEPS = sizeof steps / sizeof *steps };
@@ -95,11 +97,10 @@ static int run(const tool *t, const char *folder)
         code = run_step(&steps[k]);
     }
     if (code == 0) {
-        printf(
-            "\nDone in %.0f s. %s holds basis.gonio, plan.csv, readings.csv, the two "
-            "reconstructions,\nMERL tables that renderers and BRDF viewers read, and the picture "
-            "comparison.png.\n",
-            now() - start, folder);
+        printf("\nDone in %.0f s. %s holds basis.gonio, plan.csv, readings.csv, the two "
+               "reconstructions,\nMERL tables that renderers and BRDF viewers read, and what was "
+               "drawn.\n",
+               now() - start, folder);
     }
     return code;
 }
