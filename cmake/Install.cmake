@@ -10,6 +10,11 @@ configure_package_config_file(cmake/gonioConfig.cmake.in gonioConfig.cmake INSTA
 write_basic_package_version_file(gonioConfigVersion.cmake COMPATIBILITY SameMajorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/gonioConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/gonioConfigVersion.cmake
         DESTINATION ${package_dir})
+if(GONIO_RENDER)
+  set(gonio_render_requires " assimp libpng cairo stb")
+  # OpenEXR's own file asks for its C++ libraries too; Embree has none.
+  set(gonio_render_libraries " -lembree3 -lOpenEXRCore")
+endif()
 configure_file(cmake/gonio.pc.in gonio.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/gonio.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 install(DIRECTORY docs/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 FILES_MATCHING PATTERN "*.1")

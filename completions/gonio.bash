@@ -15,7 +15,10 @@ _gonio_options()
         measure)     echo "--output --noise --floor --seed -o $common" ;;
         reconstruct) echo "--output --basis --method --eta --all-channels --average-repeats --negative-to-zero" \
                           "--other-basis --json -o -K $common" ;;
-        compare)     echo "--verbose --json -v $common" ;;
+        render)      echo "--output --mesh --environment --turn --show-environment --repair --light --light-at" \
+                          "--view --fov --size --samples --seed --key --compare --columns --labels" \
+                          "--differences -o -m -e $common" ;;
+        compare)     echo "--verbose --render --json -v $common" ;;
         reproduce)   echo "--output --quick --only --splits --seed --skip-bad -o $common" ;;
         report)      echo "--output --readings --deviation -o $common" ;;
         demo)        echo "--output -o $common" ;;
@@ -28,12 +31,15 @@ _gonio_values()
     case $1 in
         --grid)     echo "bivariate full" ;;
         --channels) echo "joint separate" ;;
-        --only)     echo "fig2a fig2b fig3a fig3b fig4 fig5" ;;
+        --only)     echo "fig2a fig2b fig3a fig3b fig4 fig5 fig6 fig7" ;;
         --mapping)  echo "log relative" ;;
         --method)   [[ $2 == reconstruct ]] && echo "least-squares ridge" ||
                         echo "condition random matusik nielsen frost" ;;
+        --environment|-e) echo "studio sky furnace" ;;
+        --light)    echo "directional point" ;;
         --start)    echo "random qr volume" ;;
-        --basis|--number|--restarts|--seed|--phi-d|--eta|--noise|--floor|--threads|--without|-K|-n) echo "" ;;
+        --basis|--number|--restarts|--seed|--phi-d|--eta|--noise|--floor|--threads|--without|-K|-n|\
+        --turn|--light-at|--view|--fov|--size|--samples|--key|--columns|--labels) echo "" ;;
         *)          return 1 ;;
     esac
 }
@@ -51,7 +57,7 @@ _gonio()
 
     if [[ $COMP_CWORD -eq 1 ]]; then
         mapfile -t COMPREPLY < <(compgen -W "info convert learn plan measure reconstruct compare \
-                                             report reproduce demo help --help --version" -- "$current")
+                                             report render reproduce demo help --help --version" -- "$current")
         return
     fi
 

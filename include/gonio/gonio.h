@@ -13,6 +13,7 @@
 #include <gonio/measurement.h>
 #include <gonio/reconstruct.h>
 #include <gonio/evaluate.h>
+#include <gonio/render.h>
 #include <gonio/report.h>
 
 #endif

@@ -3,7 +3,7 @@
 #ifndef GONIO_REPORT_H
 #define GONIO_REPORT_H
 
-#include <gonio/evaluate.h>
+#include <gonio/render.h>
 
 #ifdef __cplusplus
 extern "C" {

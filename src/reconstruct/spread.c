@@ -19,14 +19,17 @@ enum { BLOCK = 128, SAMPLE = 4096 /* rows that the predicted error is taken from
 /* Weights below this do not count among the samples. */
 static const double NEGLIGIBLE = 1e-7;
 
-/* The variance of a value, from the model's: what the model leaves open beside what it knows of.
- * Chosen so that of the true values of materials that were left out 95 % lie within 1.96
- * deviations, at 10 to 170 readings: docs/accuracy.md. */
-static double calibrated(double variance)
+/* From the model's variances to those of materials that were left out (docs/accuracy.md): beside
+ * what the model knows of, it leaves something open everywhere. Deviations are widened so that 95 %
+ * of the true values lie within 1.96 of them, which takes more than a Gaussian's, as errors come in
+ * all sizes; the expected square of the error takes less. */
+static const double LEFT_OPEN = 0.05; /* deviation, log units */
+static const double FOR_BANDS = 1.96;
+static const double FOR_SQUARES = 1.44;
+
+static double calibrated(double variance, double factor)
 {
-    static const double factor = 1.21;
-    static const double floor = 0.06;
-    return factor * variance + floor * floor;
+    return factor * variance + LEFT_OPEN * LEFT_OPEN;
 }
 
 typedef struct spreader {
@@ -200,13 +203,14 @@ static void spread_row(const spreader *s, size_t row, const double *t, const dou
     const size_t each = view->channels == GONIO_JOINT ? GONIO_CHANNELS : 1;
     const double prior = s->n > 0 ? s->e->alpha * s->e->alpha * remainder_at(s, row) : 0.0;
     const double g = fmax(value_of(s, row, t), 0.0);
-    const double variance = calibrated(s->e->misfit * fmax(prior + dot(t, product, s->size), 0.0));
+    const double model = s->e->misfit * fmax(prior + dot(t, product, s->size), 0.0);
+    const double square = calibrated(model, FOR_SQUARES);
     const double bins = gonio_i_cell_bins(view->representation, view->cell[row / each]);
     if (s->deviation != NULL) {
-        s->deviation[row] = sqrt(variance);
+        s->deviation[row] = sqrt(calibrated(model, FOR_BANDS));
     }
-    sums->error += bins * variance;
-    sums->square += bins * (g * g + variance);
+    sums->error += bins * square;
+    sums->square += bins * (g * g + square);
 }
 
 /* Rows first, first + step, ... of which `count` make a block. */

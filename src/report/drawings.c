@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "figure.h"
+#include "renderings.h"
 #include "tables.h"
 
 typedef struct drawer {
@@ -472,6 +473,18 @@ static gonio_status draw_left_out(drawer *d)
     return status;
 }
 
+static gonio_status draw_rendered(drawer *d)
+{
+    return gonio_i_draw_renderings(d->context, d->study, GONIO_I_RENDERED, d->results->rendered,
+                                   d->figures.folder);
+}
+
+static gonio_status draw_lit(drawer *d)
+{
+    return gonio_i_draw_renderings(d->context, d->study, GONIO_I_LIT, d->results->lit,
+                                   d->figures.folder);
+}
+
 /* ---- all ---- */
 
 gonio_status gonio_i_draw(gonio_context *context, const gonio_i_study *study,
@@ -479,7 +492,8 @@ gonio_status gonio_i_draw(gonio_context *context, const gonio_i_study *study,
                           const char *folder)
 {
     static gonio_status (*const draw[GONIO_I_EXPERIMENTS])(drawer *) = {
-        draw_spectrum, draw_convergence, draw_grid, draw_methods, draw_directions, draw_left_out};
+        draw_spectrum,   draw_convergence, draw_grid,     draw_methods,
+        draw_directions, draw_left_out,    draw_rendered, draw_lit};
     drawer d = {context, {.folder = folder}, study, results, findings};
     gonio_status status = GONIO_OK;
     for (int k = 0; k < GONIO_I_EXPERIMENTS && status == GONIO_OK; k++) {

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "renderings.h"
 #include "trial.h"
 
 /* One piece: an experiment, and which part of it. */
@@ -297,6 +298,24 @@ static gonio_status compute_left_out(const gonio_i_study *study, gonio_context *
     return status;
 }
 
+/* ---- Fig. 6 and Fig. 7 ---- */
+
+static gonio_status compute_rendering(const gonio_i_study *study, gonio_context *context,
+                                      const part *p, json_t *result)
+{
+    return gonio_i_compute_rendering(study, context, p->experiment, p->index, result);
+}
+
+static double rendering_cost(const gonio_i_study *study, const part *p)
+{
+    return gonio_i_rendering_cost(study, p->experiment, p->index);
+}
+
+static char *rendering_name(const gonio_i_study *study, const part *p)
+{
+    return gonio_i_rendering_name(study, p->experiment, p->index);
+}
+
 /* ---- costs: seconds, roughly ---- */
 
 /* A plan's, as measured for K = 5 .. 60 and L = 10 .. 200. */
@@ -401,6 +420,8 @@ static const kind kinds[GONIO_I_EXPERIMENTS] = {
     [GONIO_I_METHODS] = {method_name, method_cost, compute_method},
     [GONIO_I_DIRECTIONS] = {directions_name, shown_cost, compute_directions},
     [GONIO_I_LEFT_OUT] = {left_out_name, left_out_cost, compute_left_out},
+    [GONIO_I_RENDERED] = {rendering_name, rendering_cost, compute_rendering},
+    [GONIO_I_LIT] = {rendering_name, rendering_cost, compute_rendering},
 };
 
 /* How many parts an experiment has: `indices` for each of `splits`. */
@@ -420,6 +441,9 @@ static size_t indices_of(const gonio_i_study *study, int experiment)
         return GONIO_I_CHOSEN;
     case GONIO_I_LEFT_OUT:
         return study->left_out_count;
+    case GONIO_I_RENDERED:
+    case GONIO_I_LIT:
+        return gonio_i_renderings(study, (gonio_i_experiment)experiment);
     default:
         return 1;
     }
@@ -490,6 +514,8 @@ void gonio_i_results_free(gonio_i_results *results)
     json_decref(results->methods);
     json_decref(results->directions);
     json_decref(results->left_out);
+    json_decref(results->rendered);
+    json_decref(results->lit);
     *results = (gonio_i_results){0};
 }
 
@@ -518,9 +544,9 @@ static json_t *first_of(json_t *outer)
 
 static void sort_results(const gonio_i_study *study, json_t **flat, gonio_i_results *results)
 {
-    json_t **const place[GONIO_I_EXPERIMENTS] = {&results->spectrum,   &results->convergence,
-                                                 &results->grid,       &results->methods,
-                                                 &results->directions, &results->left_out};
+    json_t **const place[GONIO_I_EXPERIMENTS] = {
+        &results->spectrum,   &results->convergence, &results->grid,     &results->methods,
+        &results->directions, &results->left_out,    &results->rendered, &results->lit};
     for (int e = 0; e < GONIO_I_EXPERIMENTS; e++) {
         if (!study->wanted[e]) {
             continue;

@@ -28,6 +28,9 @@ typedef struct gonio_i_results {
     json_t *directions;
     /* [left out]: {"condition": [chosen], "errors": [series]} */
     json_t *left_out;
+    /* [row x method], see renderings.h */
+    json_t *rendered;
+    json_t *lit;
 } gonio_i_results;
 
 /* Runs the pieces that are missing, all experiments in one go. The results are to be freed in any

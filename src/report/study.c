@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const names[GONIO_I_EXPERIMENTS] = {"fig2a", "fig2b", "fig3a",
-                                                       "fig3b", "fig4",  "fig5"};
+static const char *const names[GONIO_I_EXPERIMENTS] = {"fig2a", "fig2b", "fig3a", "fig3b",
+                                                       "fig4",  "fig5",  "fig6",  "fig7"};
 
 const gonio_i_size gonio_i_paper_sizes[GONIO_I_CHOSEN] = {{35, 80}, {40, 120}, {45, 170}};
 
@@ -30,6 +30,17 @@ void gonio_reproduce_options_default(gonio_reproduce_options *options)
 
 /* ---- which experiments ---- */
 
+/* Whether this library can: pictures need the renderer. */
+static bool can_run(int experiment)
+{
+#ifdef GONIO_WITHOUT_RENDER
+    return experiment != GONIO_I_RENDERED && experiment != GONIO_I_LIT;
+#else
+    (void)experiment;
+    return true;
+#endif
+}
+
 static int find_experiment(const char *name, size_t length)
 {
     for (int k = 0; k < GONIO_I_EXPERIMENTS; k++) {
@@ -44,7 +55,7 @@ static gonio_status choose_experiments(gonio_context *context, const char *only,
                                        gonio_i_study *study)
 {
     for (int k = 0; k < GONIO_I_EXPERIMENTS; k++) {
-        study->wanted[k] = only == NULL;
+        study->wanted[k] = only == NULL && can_run(k);
     }
     while (only != NULL) {
         const size_t length = strcspn(only, ",");
@@ -52,8 +63,13 @@ static gonio_status choose_experiments(gonio_context *context, const char *only,
         if (experiment < 0) {
             return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
                                 "no experiment is called '%.*s': there are fig2a, fig2b, fig3a, "
-                                "fig3b, fig4, fig5",
+                                "fig3b, fig4, fig5, fig6, fig7",
                                 (int)length, only);
+        }
+        if (!can_run(experiment)) {
+            return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                                "%s needs the renderer, without which gonio was built",
+                                names[experiment]);
         }
         study->wanted[experiment] = true;
         only = only[length] == ',' ? only + length + 1 : NULL;

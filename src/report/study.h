@@ -13,6 +13,8 @@ typedef enum gonio_i_experiment {
     GONIO_I_METHODS,     /* Fig. 3(b) */
     GONIO_I_DIRECTIONS,  /* Fig. 4 */
     GONIO_I_LEFT_OUT,    /* Fig. 5 and the quoted materials */
+    GONIO_I_RENDERED,    /* Fig. 6 */
+    GONIO_I_LIT,         /* Fig. 7 */
     GONIO_I_EXPERIMENTS
 } gonio_i_experiment;
 

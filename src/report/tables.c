@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "renderings.h"
 #include "run_folder.h"
 #include "sheet.h"
 #include "text.h"
@@ -239,6 +240,16 @@ static void put_left_out(const tables *t, FILE *f)
     }
 }
 
+static void put_rendered(const tables *t, FILE *f)
+{
+    gonio_i_put_renderings(f, t->study, GONIO_I_RENDERED, t->results->rendered);
+}
+
+static void put_lit(const tables *t, FILE *f)
+{
+    gonio_i_put_renderings(f, t->study, GONIO_I_LIT, t->results->lit);
+}
+
 /* ---- files ---- */
 
 static const struct {
@@ -255,6 +266,8 @@ static const struct {
     {"fig3b.csv", GONIO_I_METHODS, put_methods},
     {"fig4.csv", GONIO_I_DIRECTIONS, put_directions},
     {"fig5.csv", GONIO_I_LEFT_OUT, put_left_out},
+    {"fig6.csv", GONIO_I_RENDERED, put_rendered},
+    {"fig7.csv", GONIO_I_LIT, put_lit},
 };
 
 gonio_status gonio_i_write_tables(gonio_context *context, const gonio_i_study *study,

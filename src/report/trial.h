@@ -39,6 +39,19 @@ gonio_status gonio_i_trial_method(gonio_context *context, const gonio_i_collecti
                                   const gonio_i_split *split, uint64_t seed, double *condition,
                                   gonio_error *errors);
 
+/* Who looks at a test material and what a method made of it; an error ends the trial. */
+typedef struct gonio_i_viewer {
+    gonio_status (*show)(void *user, const gonio_material *original, const gonio_material *made);
+    void *user;
+} gonio_i_viewer;
+
+/* gonio_i_trial_tables of which every material is shown. */
+gonio_status gonio_i_trial_seen(gonio_context *context, const gonio_i_collection *collection,
+                                const gonio_i_method_entry *method, gonio_i_size size,
+                                const gonio_i_split *split, uint64_t seed,
+                                const gonio_i_viewer *viewer, double *condition,
+                                gonio_error *errors);
+
 /* The same for any basis, by way of whole tables: what the others do for the paper's basis, slower.
  * Bases of the full grid are large, so that one such trial runs at a time. */
 gonio_status gonio_i_trial_tables(gonio_context *context, const gonio_i_collection *collection,

@@ -11,6 +11,7 @@ typedef struct trial {
     const gonio_basis *basis;
     gonio_basis_view view;
     const gonio_plan *plan;
+    const gonio_i_viewer *viewer; /* NULL for none */
 } trial;
 
 /* Whether the material has data in a cell. */
@@ -48,6 +49,7 @@ static gonio_status compare(const trial *t, const gonio_material *material,
     }
     if (status == GONIO_OK) {
         *error = comparison.all;
+        status = t->viewer != NULL ? t->viewer->show(t->viewer->user, material, other) : GONIO_OK;
     }
     gonio_material_free(&other);
     return status;
@@ -121,6 +123,13 @@ static gonio_status learn(gonio_context *context, const gonio_i_collection *coll
     const gonio_basis_options options = {.components = size.components,
                                          .without_mean = method->without_mean};
     gonio_database *database = NULL;
+    if (method->representation == GONIO_BIVARIATE && method->channels == GONIO_JOINT &&
+        method->mapping == GONIO_LOG) { /* which has been read already */
+        gonio_basis_options subset = options;
+        subset.subset = split->basis;
+        subset.subset_count = split->basis_count;
+        return gonio_basis_learn(context, collection->database, &subset, basis);
+    }
     const char **paths = gonio_i_allocate(context, split->basis_count, sizeof(char *));
     if (paths == NULL) {
         return GONIO_ERROR_MEMORY;
@@ -140,8 +149,8 @@ static gonio_status learn(gonio_context *context, const gonio_i_collection *coll
 
 static gonio_status run(gonio_context *context, const gonio_i_collection *collection,
                         const gonio_i_method_entry *method, gonio_i_size size,
-                        const gonio_i_split *split, uint64_t seed, double *condition,
-                        gonio_error *errors)
+                        const gonio_i_split *split, uint64_t seed, const gonio_i_viewer *viewer,
+                        double *condition, gonio_error *errors)
 {
     gonio_basis *basis = NULL;
     gonio_plan *plan = NULL;
@@ -158,7 +167,7 @@ static gonio_status run(gonio_context *context, const gonio_i_collection *collec
         status = gonio_plan_create(context, basis, &options, &plan);
     }
     if (status == GONIO_OK) {
-        const trial t = {context, method, size, basis, gonio_basis_describe(basis), plan};
+        const trial t = {context, method, size, basis, gonio_basis_describe(basis), plan, viewer};
         *condition = plan->condition_number;
         status = test_all(&t, collection, split, errors);
     }
@@ -167,13 +176,23 @@ static gonio_status run(gonio_context *context, const gonio_i_collection *collec
     return status;
 }
 
+gonio_status gonio_i_trial_seen(gonio_context *context, const gonio_i_collection *collection,
+                                const gonio_i_method_entry *method, gonio_i_size size,
+                                const gonio_i_split *split, uint64_t seed,
+                                const gonio_i_viewer *viewer, double *condition,
+                                gonio_error *errors)
+{
+    gonio_status status = GONIO_OK;
+#pragma omp critical(gonio_trial_tables)
+    status = run(context, collection, method, size, split, seed, viewer, condition, errors);
+    return status;
+}
+
 gonio_status gonio_i_trial_tables(gonio_context *context, const gonio_i_collection *collection,
                                   const gonio_i_method_entry *method, gonio_i_size size,
                                   const gonio_i_split *split, uint64_t seed, double *condition,
                                   gonio_error *errors)
 {
-    gonio_status status = GONIO_OK;
-#pragma omp critical(gonio_trial_tables)
-    status = run(context, collection, method, size, split, seed, condition, errors);
-    return status;
+    return gonio_i_trial_seen(context, collection, method, size, split, seed, NULL, condition,
+                              errors);
 }

@@ -3,6 +3,8 @@
 set -u
 : "${GONIO:?the program to test}"
 export LC_ALL=C
+LSAN_OPTIONS=print_suppressions=0:suppressions=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)/leaks.supp
+export LSAN_OPTIONS
 root=$(mktemp -d "${TMPDIR:-/tmp}/gonio-cli-XXXXXX")
 trap 'chmod -R u+rwX "$root"; rm -rf "$root"' EXIT
 mkdir "$root/files" "$root/work"

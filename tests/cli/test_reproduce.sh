@@ -9,7 +9,7 @@ materials='atlas:gold-polished atlas:oak-sawn atlas:red-cotton atlas:plaster-cas
 
 # shellcheck disable=SC2086
 expect_output 'out: see report.md' reproduce $materials --quick -o out
-for section in 'Fig. 2(a)' 'Fig. 2(b)' 'Fig. 3(a)' 'Fig. 3(b)' 'Fig. 4' 'Fig. 5'; do
+for section in 'Fig. 2(a)' 'Fig. 2(b)' 'Fig. 3(a)' 'Fig. 3(b)' 'Fig. 4' 'Fig. 5' 'Fig. 6' 'Fig. 7'; do
     expect_true "report.md has a section $section" grep -q "^## $section" out/report.md
 done
 for name in fig2a fig2b fig3a fig3a-curves fig3b fig4 fig5; do
@@ -18,7 +18,10 @@ for name in fig2a fig2b fig3a fig3a-curves fig3b fig4 fig5; do
         expect_true "figure $name is drawn" test -s out/figures/$name.png
     fi
 done
-for name in splits bivariate fig2a fig2b fig3a fig3a-means fig3b fig4 fig5; do
+for name in fig6 fig7; do
+    expect_true "figure $name is rendered" test -s out/figures/$name.png
+done
+for name in splits bivariate fig2a fig2b fig3a fig3a-means fig3b fig4 fig5 fig6 fig7; do
     expect_true "table $name" test "$(wc -l <out/tables/$name.csv)" -gt 4
 done
 expect_true 'all three errors are in the tables' \
@@ -35,7 +38,7 @@ same() {
 }
 
 cp -r out again
-rm again/pieces/fig3b* again/pieces/fig5-w* again/report.md again/figures/fig3a.*
+rm again/pieces/fig3b* again/pieces/fig5-w* again/pieces/fig7* again/report.md again/figures/fig3a.*
 # shellcheck disable=SC2086
 expect_output 'again: see' reproduce $materials --quick -o again
 expect_true 'going on is told' grep -q 'note: reproducing: going on' "$root/work/stderr"

@@ -8,11 +8,17 @@ typedef struct options {
     const char *without;
     int verbose;
     int json;
+    int render;
 } options;
 
-static void print_row(const char *name, const gonio_error *error)
+/* `rendered` is NULL where there is none. */
+static void print_row(const char *name, const gonio_error *error, const gonio_image_error *rendered)
 {
-    printf("%-28s %9.3f %9.3f %9.4f\n", name, error->e6, error->cube_root, error->log_relative);
+    printf("%-28s %9.3f %9.3f %9.4f", name, error->e6, error->cube_root, error->log_relative);
+    if (rendered != NULL) {
+        printf(" %9.2f %9.3f", rendered->psnr, rendered->delta_e_itp);
+    }
+    putchar('\n');
 }
 
 static json_t *error_json(const gonio_error *error)
@@ -22,20 +28,28 @@ static json_t *error_json(const gonio_error *error)
                      tool_json_number(error->log_relative));
 }
 
-static json_t *comparison_json(const char *path, const gonio_comparison *c)
+static json_t *comparison_json(const char *path, const gonio_comparison *c,
+                               const gonio_image_error *rendered)
 {
-    return json_pack("{s:s, s:I, s:I, s:o, s:o, s:o, s:o}", "file", path, "bins",
-                     (json_int_t)c->bins, "missing_bins", (json_int_t)c->missing, "all",
-                     error_json(&c->all), "R", error_json(&c->channel[0]), "G",
-                     error_json(&c->channel[1]), "B", error_json(&c->channel[2]));
+    json_t *json = json_pack("{s:s, s:I, s:I, s:o, s:o, s:o, s:o}", "file", path, "bins",
+                             (json_int_t)c->bins, "missing_bins", (json_int_t)c->missing, "all",
+                             error_json(&c->all), "R", error_json(&c->channel[0]), "G",
+                             error_json(&c->channel[1]), "B", error_json(&c->channel[2]));
+    if (json != NULL && rendered != NULL) {
+        json_object_set_new(json, "rendered",
+                            json_pack("{s:o, s:o}", "psnr_db", tool_json_number(rendered->psnr),
+                                      "delta_e_itp", tool_json_number(rendered->delta_e_itp)));
+    }
+    return json;
 }
 
-static void print_comparison(const char *path, const gonio_comparison *c, const options *o)
+static void print_comparison(const char *path, const gonio_comparison *c,
+                             const gonio_image_error *rendered, const options *o)
 {
     static const char *const channels[GONIO_CHANNELS] = {"  R", "  G", "  B"};
-    print_row(path, &c->all);
+    print_row(path, &c->all, rendered);
     for (int k = 0; k < GONIO_CHANNELS && o->verbose; k++) {
-        print_row(channels[k], &c->channel[k]);
+        print_row(channels[k], &c->channel[k], NULL);
     }
     if (o->verbose) {
         printf("  %lld bins compared, %lld of the reference have no data here\n",
@@ -45,20 +59,27 @@ static void print_comparison(const char *path, const gonio_comparison *c, const 
     }
 }
 
-static gonio_status compare_one(tool *t, const gonio_material *reference, const char *path,
-                                const options *o, json_t *results)
+/* `seen` is NULL without --render. */
+static gonio_status compare_one(tool *t, const gonio_material *reference,
+                                const gonio_reference *seen, const char *path, const options *o,
+                                json_t *results)
 {
     gonio_material *other = NULL;
     gonio_comparison comparison;
+    gonio_image_error error;
+    const gonio_image_error *rendered = seen != NULL ? &error : NULL;
     gonio_status status = gonio_material_open(t->context, path, &other);
     if (status == GONIO_OK) {
         status = gonio_compare(t->context, reference, other, &comparison);
     }
+    if (status == GONIO_OK && seen != NULL) {
+        status = gonio_reference_compare(t->context, seen, other, &error);
+    }
     gonio_material_free(&other);
     if (status == GONIO_OK && o->json) {
-        json_array_append_new(results, comparison_json(path, &comparison));
+        json_array_append_new(results, comparison_json(path, &comparison, rendered));
     } else if (status == GONIO_OK) {
-        print_comparison(path, &comparison, o);
+        print_comparison(path, &comparison, rendered, o);
     }
     return status;
 }
@@ -102,7 +123,7 @@ static gonio_status compare_readings(tool *t, const char *reference_path,
                               json_pack("{s:s, s:I, s:o}", "file", path, "readings",
                                         (json_int_t)compared, "all", error_json(&error)));
     } else if (status == GONIO_OK) {
-        print_row(path, &error);
+        print_row(path, &error, NULL);
         printf("  %zu readings compared\n", compared);
     }
     return status;
@@ -149,10 +170,15 @@ static gonio_status compare_all_tables(tool *t, const options *o, const char **p
                                        json_t *results)
 {
     gonio_material *reference = NULL;
+    gonio_reference *seen = NULL;
     gonio_status status = gonio_material_open(t->context, paths[0], &reference);
-    for (size_t k = 1; k < count && status == GONIO_OK; k++) {
-        status = compare_one(t, reference, paths[k], o, results);
+    if (status == GONIO_OK && o->render) {
+        status = gonio_reference_create(t->context, reference, NULL, &seen);
     }
+    for (size_t k = 1; k < count && status == GONIO_OK; k++) {
+        status = compare_one(t, reference, seen, paths[k], o, results);
+    }
+    gonio_reference_free(&seen);
     gonio_material_free(&reference);
     return status;
 }
@@ -168,9 +194,16 @@ static int run(tool *t, const options *o)
     if (o->without != NULL && !readings) {
         return tool_usage_error(t, "--without is for readings: %s is none", arguments[0]);
     }
+    if (o->render && readings) {
+        return tool_usage_error(t, "--render is for whole materials: %s is readings", arguments[0]);
+    }
     json_t *results = json_array();
     if (!o->json) {
-        printf("%-28s %9s %9s %9s\n", "", "E6 %", "cbrt %", "log-rel");
+        printf("%-28s %9s %9s %9s", "", "E6 %", "cbrt %", "log-rel");
+        if (o->render) {
+            printf(" %9s %9s", "PSNR dB", "dE_ITP");
+        }
+        putchar('\n');
     }
     const gonio_status status = readings
                                     ? compare_all_readings(t, o, arguments, count, results)
@@ -190,6 +223,8 @@ int cmd_compare(int argc, const char **argv)
         {"verbose", 'v', POPT_ARG_NONE, &o.verbose, 0, "Each channel, and the bins compared", NULL},
         {"without", '\0', POPT_ARG_STRING, &o.without, 0,
          "Of readings: leave out the directions of this file (those that were used)", "FILE"},
+        {"render", '\0', POPT_ARG_NONE, &o.render, 0, "Also render both and compare the renderings",
+         NULL},
         {"json", '\0', POPT_ARG_NONE, &o.json, 0, "Print the result as JSON", NULL},
         TOOL_OPTIONS};
     tool t;
@@ -197,7 +232,9 @@ int cmd_compare(int argc, const char **argv)
         &t, argc, argv, table, "[OPTION...] REFERENCE OTHER...",
         "E6: relative RMS of ln(1 + rho/s) over all valid bins (Ali et al., eq. 6), per cent.\n"
         "cbrt: relative RMS of the cube root of rho cos cos (Fores et al. 2012), per cent.\n"
-        "log-rel: RMS of the log ratio, cosine-weighted (Nielsen et al. 2015).");
+        "log-rel: RMS of the log ratio, cosine-weighted (Nielsen et al. 2015).\n"
+        "With --render, of tone-mapped spheres in the built-in studio: PSNR, and dE_ITP, the mean\n"
+        "Delta E_ITP (BT.2124; 1 can just be seen).");
     if (code < 0) {
         code = run(&t, &o);
     }

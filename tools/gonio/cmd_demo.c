@@ -9,7 +9,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { MOST_WORDS = 12 };
+enum { MOST_WORDS = 16 };
 
 static const char page[] = "report.html";
 
@@ -25,29 +25,33 @@ static const step steps[] = {
     {"1. Learn what materials look like, from all built-in ones but the one to be measured.",
      cmd_learn,
      {"learn", "atlas:", "--without", material, "-o", "basis.gonio"}},
-    {"2. Choose the 80 readings that determine 35 components best.",
+    {"2. Choose the 20 directions that leave the least expected error.",
      cmd_plan,
-     {"plan", "basis.gonio", "--basis", "35", "-n", "80", "-o", "plan.csv"}},
+     {"plan", "basis.gonio", "-n", "20", "-o", "plan.csv"}},
     {"3. Let a simulated instrument with 1 % noise read them.",
      cmd_measure,
      {"measure", "plan.csv", "atlas:red-glossy-plastic", "--noise", "1", "-o", "readings.csv"}},
-    {"4. Turn the 80 readings into the whole BRDF: 1,096,216 directions, three channels.",
+    {"4. Turn the 20 readings into the whole BRDF, 1,096,216 directions in three channels, and say "
+     "how certain each is.",
      cmd_reconstruct,
-     {"reconstruct", "basis.gonio", "readings.csv", "-o", "reconstructed.binary"}},
+     {"reconstruct", "basis.gonio", "readings.csv", "--deviation", "deviation.binary", "-o",
+      "reconstructed.binary"}},
     {"5. Compare with the truth.",
      cmd_compare,
      {"compare", "atlas:red-glossy-plastic", "reconstructed.binary", "--verbose"}},
-    {"6. An instrument reads all channels of a direction at once; using them all helps.",
-     cmd_reconstruct,
-     {"reconstruct", "basis.gonio", "readings.csv", "--all-channels", "-o",
-      "reconstructed-all.binary"}},
-    {"",
-     cmd_compare,
-     {"compare", "atlas:red-glossy-plastic", "reconstructed.binary", "reconstructed-all.binary"}},
-    {"7. See it: a page for a browser.",
+    {"6. Where would five more readings help most, given these?",
+     cmd_next,
+     {"next", "basis.gonio", "readings.csv", "-n", "5", "-o", "more.csv"}},
+#ifndef GONIO_WITHOUT_RENDER
+    {"7. See it: spheres in a studio, and where they differ.",
+     cmd_render,
+     {"render", "--compare", "atlas:red-glossy-plastic", "reconstructed.binary", "--labels",
+      "original,20 readings", "--differences", "-o", "comparison.png"}},
+#endif
+    {"8. Look around: a page for a browser.",
      cmd_report,
-     {"report", "atlas:red-glossy-plastic", "reconstructed-all.binary", "--readings",
-      "readings.csv", "-o", page}},
+     {"report", "atlas:red-glossy-plastic", "reconstructed.binary", "--readings", "readings.csv",
+      "--deviation", "deviation.binary", "-o", page}},
 };
 
 enum { STEPS = sizeof steps / sizeof *steps };
@@ -100,7 +104,7 @@ static int run(const tool *t, const char *folder)
         return EXIT_DATA;
     }
     const double start = now();
-    printf("Measuring '%s' with 80 readings. Files go to %s; type along in there.\n", material,
+    printf("Measuring '%s' with 20 readings. Files go to %s; type along in there.\n", material,
            folder);
     int code = 0;
     const int steps_to_do = gonio_report_is_built() ? STEPS : STEPS - 1;
@@ -108,8 +112,8 @@ static int run(const tool *t, const char *folder)
         code = run_step(&steps[k]);
     }
     if (code == 0) {
-        printf("\nDone in %.0f s. %s holds basis.gonio, plan.csv, readings.csv and the two "
-               "reconstructions,\nMERL tables that renderers and BRDF viewers read.\n",
+        printf("\nDone in %.0f s. %s holds basis.gonio, plan.csv, readings.csv, the reconstruction, a "
+               "MERL table\nthat renderers and BRDF viewers read, its deviation, and what was drawn.\n",
                now() - start, folder);
         say_where_the_page_is(folder);
     }
@@ -123,10 +127,9 @@ int cmd_demo(int argc, const char **argv)
                                         "The folder for the files (default: gonio-demo)", "DIR"},
                                        TOOL_OPTIONS};
     tool t;
-    int code =
-        tool_begin(&t, argc, argv, table, "[OPTION...]",
-                   "Learns, plans, measures, reconstructs and compares, in under a minute, and\n"
-                   "writes a page to see it on.");
+    int code = tool_begin(&t, argc, argv, table, "[OPTION...]",
+                          "Learns, plans, measures, reconstructs, compares and renders, in about a "
+                          "minute, and writes a page to see it on.");
     if (code < 0) {
         code = run(&t, folder);
     }

@@ -16,6 +16,7 @@ static const tool_command commands[] = {
     {"next", "where to measure next, given what was read", cmd_next},
     {"compare", "how far BRDFs are from a reference", cmd_compare},
     {"report", "a page for a browser: spheres, directions, lobes, errors", cmd_report},
+    {"render", "a material on a sphere or a mesh, comparison pictures", cmd_render},
     {"reproduce", "the paper's experiments on your materials", cmd_reproduce},
     {"demo", "the whole chain on a built-in material", cmd_demo},
 };

@@ -26,6 +26,7 @@ int cmd_measure(int argc, const char **argv);
 int cmd_reconstruct(int argc, const char **argv);
 int cmd_compare(int argc, const char **argv);
 int cmd_report(int argc, const char **argv);
+int cmd_render(int argc, const char **argv);
 int cmd_reproduce(int argc, const char **argv);
 int cmd_demo(int argc, const char **argv);
 

@@ -1,0 +1,257 @@
+/* Triangle meshes: built corner by corner, checked, centred and scaled; which reader a file needs.
+ */
+#include "mesh.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "geometry.h"
+
+void gonio_mesh_free(gonio_mesh **mesh)
+{
+    if (mesh == NULL || *mesh == NULL) {
+        return;
+    }
+    free((*mesh)->position);
+    free((*mesh)->normal);
+    free((*mesh)->corner);
+    free(*mesh);
+    *mesh = NULL;
+}
+
+size_t gonio_mesh_triangles(const gonio_mesh *mesh)
+{
+    return mesh->triangles;
+}
+
+size_t gonio_mesh_corners(const gonio_mesh *mesh)
+{
+    return mesh->corners;
+}
+
+/* ---- building ---- */
+
+static bool is_finite_vector(const float v[3])
+{
+    return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
+}
+
+/* Twice the area, squared, relative to the longest side: 0 for a triangle without area. */
+static bool has_area(const float *a, const float *b, const float *c)
+{
+    double u[3];
+    double v[3];
+    for (int k = 0; k < 3; k++) {
+        u[k] = (double)b[k] - (double)a[k];
+        v[k] = (double)c[k] - (double)a[k];
+    }
+    const double cross[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
+                             u[0] * v[1] - u[1] * v[0]};
+    const double side = fmax(gonio_i_length(u), gonio_i_length(v));
+    return gonio_i_length(cross) > 1e-12 * side * side && side > 0.0;
+}
+
+/* Room for one more of what is `size` bytes each; doubled when it runs out. */
+static gonio_status make_room(const gonio_i_mesh_making *m, size_t count, size_t size, size_t *room,
+                              void **array)
+{
+    if (count < *room) {
+        return GONIO_OK;
+    }
+    const size_t wanted = *room > 0 ? 2 * *room : 1024;
+    void *larger = wanted <= UINT32_MAX / 4 ? reallocarray(*array, wanted, size) : NULL;
+    if (larger == NULL) {
+        return gonio_i_fail(m->context, GONIO_ERROR_MEMORY, "%s: too large: out of memory",
+                            m->path);
+    }
+    *array = larger;
+    *room = wanted;
+    return GONIO_OK;
+}
+
+gonio_status gonio_i_mesh_add_corner(gonio_i_mesh_making *making, const float position[3],
+                                     const float *normal)
+{
+    static const float none[3] = {0.0F, 0.0F, 0.0F};
+    gonio_mesh *mesh = making->mesh;
+    if (!is_finite_vector(position)) {
+        return gonio_i_fail(making->context, GONIO_ERROR_DATA,
+                            "%s: corner %zu is not finite (%g, %g, %g)", making->path,
+                            mesh->corners + 1, (double)position[0], (double)position[1],
+                            (double)position[2]);
+    }
+    size_t room = making->corner_room;
+    gonio_status status =
+        make_room(making, mesh->corners, 3 * sizeof(float), &room, (void **)&mesh->position);
+    if (status == GONIO_OK) {
+        status = make_room(making, mesh->corners, 3 * sizeof(float), &making->corner_room,
+                           (void **)&mesh->normal);
+    }
+    if (status == GONIO_OK) {
+        const bool given = normal != NULL && is_finite_vector(normal);
+        memcpy(mesh->position + 3 * mesh->corners, position, 3 * sizeof *position);
+        memcpy(mesh->normal + 3 * mesh->corners, given ? normal : none, 3 * sizeof *none);
+        making->with_normals = making->with_normals && given;
+        mesh->corners++;
+    }
+    return status;
+}
+
+gonio_status gonio_i_mesh_add_triangle(gonio_i_mesh_making *making, const uint32_t corner[3])
+{
+    gonio_mesh *mesh = making->mesh;
+    for (int k = 0; k < 3; k++) {
+        if (corner[k] >= mesh->corners) {
+            return gonio_i_fail(making->context, GONIO_ERROR_FORMAT,
+                                "%s: a face names a corner that is not there", making->path);
+        }
+    }
+    if (!has_area(mesh->position + 3 * (size_t)corner[0], mesh->position + 3 * (size_t)corner[1],
+                  mesh->position + 3 * (size_t)corner[2])) {
+        making->flat++;
+        return GONIO_OK;
+    }
+    const gonio_status status = make_room(making, mesh->triangles, 3 * sizeof(uint32_t),
+                                          &making->triangle_room, (void **)&mesh->corner);
+    if (status == GONIO_OK) {
+        memcpy(mesh->corner + 3 * mesh->triangles, corner, 3 * sizeof *corner);
+        mesh->triangles++;
+    }
+    return status;
+}
+
+/* ---- into the unit sphere ---- */
+
+/* About the middle of the box around the corners that triangles use. */
+static void find_centre(const gonio_mesh *mesh, double centre[3])
+{
+    double low[3] = {INFINITY, INFINITY, INFINITY};
+    double high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t t = 0; t < 3 * mesh->triangles; t++) {
+        const float *p = mesh->position + 3 * (size_t)mesh->corner[t];
+        for (int k = 0; k < 3; k++) {
+            low[k] = fmin(low[k], (double)p[k]);
+            high[k] = fmax(high[k], (double)p[k]);
+        }
+    }
+    for (int k = 0; k < 3; k++) {
+        centre[k] = 0.5 * (low[k] + high[k]);
+    }
+}
+
+static void fit(gonio_mesh *mesh)
+{
+    double centre[3];
+    find_centre(mesh, centre);
+    double radius = 0.0;
+    for (size_t t = 0; t < 3 * mesh->triangles; t++) {
+        const float *p = mesh->position + 3 * (size_t)mesh->corner[t];
+        const double d[3] = {(double)p[0] - centre[0], (double)p[1] - centre[1],
+                             (double)p[2] - centre[2]};
+        radius = fmax(radius, gonio_i_length(d));
+    }
+    for (size_t k = 0; k < 3 * mesh->corners; k++) {
+        mesh->position[k] = (float)(((double)mesh->position[k] - centre[k % 3]) / radius);
+    }
+    for (size_t c = 0; c < mesh->corners; c++) {
+        float *n = mesh->normal + 3 * c;
+        double unit[3] = {(double)n[0], (double)n[1], (double)n[2]};
+        gonio_i_normalise(unit);
+        for (int k = 0; k < 3; k++) {
+            n[k] = (float)unit[k];
+        }
+    }
+}
+
+/* ---- reading ---- */
+
+/* Words that begin the lines of an OBJ file. */
+static bool looks_like_obj(const gonio_i_bytes *bytes)
+{
+    static const char *const words[] = {"v", "vn", "vt", "vp", "f",      "l",     "p",
+                                        "o", "g",  "s",  "#",  "mtllib", "usemtl"};
+    if (memchr(bytes->data, '\0', bytes->size) != NULL) {
+        return false;
+    }
+    const char *text = (const char *)bytes->data;
+    text += strspn(text, " \t\r\n");
+    const size_t length = text[0] == '#' ? 1 : strcspn(text, " \t\r\n");
+    for (size_t k = 0; k < sizeof words / sizeof *words; k++) {
+        if (strlen(words[k]) == length && strncmp(words[k], text, length) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* The reader for what the content is; NULL for anything else. */
+static gonio_status (*reader_of(const gonio_i_bytes *bytes))(gonio_i_mesh_making *,
+                                                             const gonio_i_bytes *)
+{
+    if (gonio_i_begins_with(bytes, "ply\n", 4) || gonio_i_begins_with(bytes, "ply\r", 4)) {
+        return gonio_i_read_ply;
+    }
+    return looks_like_obj(bytes) ? gonio_i_read_obj : NULL;
+}
+
+static gonio_status read_bytes(gonio_i_mesh_making *making, const gonio_i_bytes *bytes)
+{
+    gonio_status (*reader)(gonio_i_mesh_making *, const gonio_i_bytes *) = reader_of(bytes);
+    if (reader == NULL || bytes->size > INT_MAX) {
+        return gonio_i_fail(making->context, GONIO_ERROR_FORMAT,
+                            "%s: not a mesh that gonio reads (OBJ, PLY, below 2 GiB), judged by "
+                            "its content",
+                            making->path);
+    }
+    const gonio_status status = reader(making, bytes);
+    if (status == GONIO_OK && making->mesh->triangles == 0) {
+        return gonio_i_fail(making->context, GONIO_ERROR_DATA,
+                            making->flat > 0 ? "%s: none of its triangles has an area"
+                                             : "%s: the mesh has no faces",
+                            making->path);
+    }
+    return status;
+}
+
+/* What is said of a mesh that is used all the same. */
+static gonio_status finish(const gonio_i_mesh_making *making)
+{
+    gonio_status status = GONIO_OK;
+    if (making->flat > 0) {
+        gonio_i_warn(making->context, "%s: %zu of %zu triangles have no area and are left out",
+                     making->path, making->flat, making->flat + making->mesh->triangles);
+    }
+    if (!making->with_normals) {
+        gonio_i_note(making->context, "%s: lacks normals; they are made from its faces",
+                     making->path);
+        status = gonio_i_mesh_make_normals(making->context, making->mesh);
+    }
+    if (status == GONIO_OK) {
+        fit(making->mesh);
+    }
+    return status;
+}
+
+gonio_status gonio_mesh_read(gonio_context *context, const char *path, gonio_mesh **mesh)
+{
+    gonio_i_bytes bytes;
+    gonio_status status = gonio_i_read_bytes(context, path, &bytes);
+    if (status != GONIO_OK) {
+        return status;
+    }
+    gonio_i_mesh_making making = {.context = context, .path = path, .with_normals = true};
+    making.mesh = gonio_i_allocate(context, 1, sizeof *making.mesh);
+    status = making.mesh == NULL ? GONIO_ERROR_MEMORY : read_bytes(&making, &bytes);
+    gonio_i_free_bytes(&bytes);
+    if (status == GONIO_OK) {
+        status = finish(&making);
+    }
+    if (status != GONIO_OK) {
+        gonio_mesh_free(&making.mesh);
+        return status;
+    }
+    *mesh = making.mesh;
+    return GONIO_OK;
+}

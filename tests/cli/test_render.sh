@@ -1,0 +1,152 @@
+#!/bin/bash
+# gonio render and compare --render: what they leave, and input that cannot be used.
+. "$(dirname "$0")/lib.sh"
+
+small='--size 16 --samples 4'
+# shellcheck disable=SC2086
+expect_ok render atlas:oak-sawn $small -o probe.png
+if [ ! -s probe.png ]; then
+    printf 'SKIPPED: built without the renderer\n'
+    exit 0
+fi
+
+# ---- what it leaves ----
+
+# shellcheck disable=SC2086
+{
+    expect_output 'a.png: gold-polished, 24 x 16 pixels, 4 samples' \
+        render atlas:gold-polished --size 24x16 --samples 4 -o a.png
+    expect_ok render atlas:gold-polished --size 24x16 --samples 4 --threads 1 -o one.png
+    expect_same a.png one.png
+    expect_ok render atlas:gold-polished $small --seed 1 -o seed.exr
+    expect_ok render atlas:gold-polished $small --seed 1 --threads 3 -o again.exr
+    expect_same seed.exr again.exr
+    for how in '-e sky --show-environment --turn 40' '-e furnace --fov 0' '--light point --light-at 0,30,3' \
+        '--light directional --view 20,-10'; do
+        expect_ok render atlas:oak-sawn $small $how -o how.png
+    done
+    expect_ok render atlas:oak-sawn $small -e seed.exr -o lit.png # an image of ours as environment
+}
+expect_true 'the magic number of PNG' test "$(head -c 4 a.png | xxd -p)" = 89504e47
+expect_true 'the magic number of OpenEXR' test "$(head -c 4 seed.exr | xxd -p)" = 762f3101
+
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n' >t.obj
+# shellcheck disable=SC2086
+expect_ok render atlas:oak-sawn $small -m t.obj -o mesh.png
+expect_true 'missing normals are told' grep -q 't.obj: lacks normals' "$root/work/stderr"
+
+# shellcheck disable=SC2086
+{
+    expect_output 'c.png: 2 x 2 renderings' render --compare --columns 2 atlas:oak-sawn atlas:red-cotton \
+        atlas:gold-polished atlas:red-cotton $small --labels 'original,another' --differences -o c.png
+    expect_output 'c.png: 1 x 3 renderings' render --compare atlas:oak-sawn atlas:red-cotton atlas:oak-sawn \
+        $small -o c.png
+}
+expect_output 'PSNR dB' compare --render atlas:oak-sawn atlas:oak-sawn
+expect_output '"delta_e_itp": 0.0' compare --render --json atlas:oak-sawn atlas:oak-sawn
+
+# ---- the command line ----
+
+r='render atlas:oak-sawn'
+# shellcheck disable=SC2086
+{
+    expect_fail 2 'no output: give -o FILE' $r
+    expect_fail 2 'must end in .png or .exr' $r -o x.jpg
+    expect_fail 2 'must end in .png' render --compare atlas:oak-sawn atlas:red-cotton -o x.exr
+    expect_fail 2 'one MATERIAL is needed' $r atlas:red-cotton -o x.png
+    expect_fail 2 'at least one OTHER' render --compare atlas:oak-sawn -o x.png
+    expect_fail 2 'are not rows of 2' render --compare --columns 2 atlas:oak-sawn atlas:red-cotton atlas:oak-sawn -o x.png
+    expect_fail 2 'is not 2 names' render --compare atlas:oak-sawn atlas:red-cotton $small --labels a -o x.png
+    expect_fail 2 'go with --compare' $r --columns 2 -o x.png
+    expect_fail 2 '0 x 16 pixels' $r --size 0x16 -o x.png
+    expect_fail 2 '0 x 0 pixels' $r --size 0 -o x.png
+    expect_fail 2 'each side must be 1 to 65536' $r --size 99999999999999999999 -o x.png
+    for size in 1x2x3 -5 x5 5x abc ''; do
+        expect_fail 2 'is not N or WIDTHxHEIGHT' $r --size "$size" -o x.png
+    done
+    expect_fail 2 '--samples: 0 is too small' $r --samples 0 -o x.png
+    expect_fail 2 '--seed: -1 is too small' $r --seed -1 -o x.png
+    expect_fail 2 '--key: 0 is not more than 0' $r --key 0 -o x.png
+    expect_fail 2 '--fov: 180' $r --fov 180 -o x.png
+    expect_fail 2 "--view: '1' is not" $r --view 1 -o x.png
+    expect_fail 2 "--view: '0,91' is not" $r --view 0,91 -o x.png
+    expect_fail 2 "--light: 'sun' is neither" $r --light sun -o x.png
+    expect_fail 2 'exclude each other' $r --light point -e sky -o x.png
+    expect_fail 2 'distance 0.5 is not more than 1' $r --light point --light-at 0,0,0.5 -o x.png
+    expect_fail 2 'is not AZIMUTH,ELEVATION' $r --light directional --light-at 0,0,2 -o x.png
+}
+cp t.obj t.obj.png
+# shellcheck disable=SC2086
+expect_fail 2 't.obj.png is an input' $r -m t.obj.png -o t.obj.png
+
+# ---- meshes ----
+
+# mesh CODE PART TEXT
+mesh() {
+    printf "$3" >bad.mesh
+    # shellcheck disable=SC2086
+    expect_fail "$1" "$2" $r $small -m bad.mesh -o x.png
+}
+mesh 1 'bad.mesh: the file is empty' ''
+mesh 1 'bad.mesh: not a mesh that gonio reads' 'solid cube\nendsolid\n'
+mesh 1 'no faces' 'v 0 0 0\nv 1 0 0\nv 0 1 0\n'
+mesh 1 'none of its triangles has an area' 'v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n'
+mesh 1 'bad.mesh: ' 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99\n'
+mesh 1 'its header does not end' 'ply\nformat ascii 1.0\nelement vertex 3\n'
+mesh 1 'it is cut short' 'ply\nformat ascii 1.0\nelement vertex 99999999999\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n'
+mesh 1 "bad.mesh:3: cannot be read as PLY: 'element vertex many'" 'ply\nformat ascii 1.0\nelement vertex many\n'
+mesh 1 'is not finite' 'ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\nnan 2 3\n'
+mesh 1 'names a corner that is not there' 'ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_index\nend_header\n1 2 3\n3 0 0 7\n'
+# shellcheck disable=SC2086
+{
+    expect_fail 1 'missing.ply: cannot read: No such file' $r -m missing.ply -o x.png
+    expect_fail 1 '.: cannot read: Is a directory' $r -m . -o x.png
+    printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 1 2\n' >flat.obj
+    run $r $small -m flat.obj -o flat.png || failed 'a flat triangle' "$(cat "$root/work/stderr")"
+    expect_true 'flat triangles are told' grep -q 'warning: flat.obj: 1 of 2 triangles have no area' "$root/work/stderr"
+}
+
+# ---- environments ----
+
+# radiance FILE WIDTH BYTES
+radiance() { printf "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X $2\n$3" >"$1"; }
+radiance black.hdr 2 '\0\0\0\0\0\0\0\0'
+radiance good.hdr 2 '\200\200\200\200\200\200\200\200'
+radiance short.hdr 2000 '\200'
+# shellcheck disable=SC2086
+{
+    expect_ok $r $small -e good.hdr -o hdr.png
+    expect_fail 1 'black.hdr: the environment is all black' $r $small -e black.hdr -o x.png
+    expect_fail 1 'nowhere: cannot read: No such file' $r $small -e nowhere -o x.png
+    expect_fail 1 't.obj: not an image that gonio reads' $r $small -e t.obj -o x.png
+    expect_fail 1 'a.png: not an image that gonio reads' $r $small -e a.png -o x.png
+    head -c 300 seed.exr >torn.exr
+    expect_fail 1 'torn.exr: cannot be read as OpenEXR' $r $small -e torn.exr -o x.png
+    head -c 8 seed.exr >head.exr
+    expect_fail 1 'head.exr: cannot be read as OpenEXR' $r $small -e head.exr -o x.png
+    radiance wide.hdr 99999999 '\200'
+    expect_fail 1 'wide.hdr: ' $r $small -e wide.hdr -o x.png
+}
+
+# ---- materials, memory, places to write ----
+
+expect_ok convert atlas:oak-sawn holes.binary
+head -c 200000 /dev/zero | tr '\0' '\277' | dd of=holes.binary bs=1 seek=5000000 conv=notrunc status=none
+# shellcheck disable=SC2086
+expect_ok render holes.binary $small -o holes.png
+expect_true 'holes are told' grep -q 'note: holes: .* directions have no data' "$root/work/stderr"
+uniform_table 277 >none.binary
+# shellcheck disable=SC2086
+{
+    expect_fail 1 'none: the material holds no data' render none.binary $small -o x.png
+    expect_fail 1 'nowhere/x.png: cannot write' $r $small -o nowhere/x.png
+}
+# Programs under AddressSanitizer need more address space than that.
+if (ulimit -v 3000000 && "$GONIO" --version) >"$root/work/stdout" 2>&1; then
+    checks=$((checks + 1))
+    (ulimit -v 3000000 && "$GONIO" $r --size 65536 --threads 1 -o x.png) >"$root/work/stdout" 2>"$root/work/stderr"
+    grep -q 'gonio render: out of memory' "$root/work/stderr" || failed 'more memory than there is' "$(cat "$root/work/stderr")"
+    expect_true 'nothing is half-written' test ! -e x.png
+fi
+
+finish
