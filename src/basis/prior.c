@@ -6,8 +6,7 @@
 
 #include "../direction/grid.h"
 
-static const double PEAK = 4.0;
-static const double WIDTH = 0.7 * M_PI / 180.0;
+static const double WIDTH = M_PI / 180.0;
 
 /* The weight that learning gave a column, on average 1 (basis.h, mixtures). */
 static double weight_of(const gonio_basis_view *view, size_t column)
@@ -108,15 +107,30 @@ gonio_i_place gonio_i_place_of(gonio_half_difference at)
                            exp(-0.5 * at.theta_h * at.theta_h / (WIDTH * WIDTH))};
 }
 
-double gonio_i_smoothness(const gonio_i_place *a, const gonio_i_place *b)
+static double square_distance(const gonio_i_place *a, const gonio_i_place *b)
 {
     double square = 0.0;
     for (int k = 0; k < 4; k++) {
         square += (a->p[k] - b->p[k]) * (a->p[k] - b->p[k]);
     }
-    const double smooth = exp(-0.5 * square);
-    const double peak = PEAK * PEAK * a->peak * b->peak;
-    return peak > 1e-9 ? smooth + peak * exp(-2.0 * square) : smooth;
+    return square;
+}
+
+double gonio_i_smooth(const gonio_i_place *a, const gonio_i_place *b)
+{
+    return exp(-0.5 * square_distance(a, b));
+}
+
+double gonio_i_peaked(const gonio_i_place *a, const gonio_i_place *b)
+{
+    const double both = a->peak * b->peak;
+    return both > 1e-12 ? both * exp(-2.0 * square_distance(a, b)) : 0.0;
+}
+
+double gonio_i_remainder(const gonio_i_place *a, const gonio_i_place *b, double peak)
+{
+    const double smooth = gonio_i_smooth(a, b);
+    return peak > 0.0 ? smooth + peak * peak * gonio_i_peaked(a, b) : smooth;
 }
 
 gonio_half_difference gonio_i_row_coordinates(const gonio_basis_view *view, size_t row,

@@ -36,7 +36,7 @@ void gonio_i_prior_row(const gonio_i_prior *prior, size_t row, double *f);
 
 /* The remainder has covariance alpha^2 k(x, x'),
  *
- *     k = exp(-|p - p'|^2/2) + PEAK^2 exp(-(theta_h^2 + theta_h'^2)/(2 WIDTH^2)) exp(-2 |p - p'|^2):
+ *     k = exp(-|p - p'|^2/2) + peak^2 exp(-(theta_h^2 + theta_h'^2)/(2 WIDTH^2)) exp(-2 |p - p'|^2):
  *
  * near the mirror direction, within about a degree (WIDTH), peaks can be narrower than any in the database.
  *
@@ -50,7 +50,10 @@ typedef struct gonio_i_place {
 } gonio_i_place;
 
 gonio_i_place gonio_i_place_of(gonio_half_difference at);
-double gonio_i_smoothness(const gonio_i_place *a, const gonio_i_place *b);
+/* The two parts of k: k = smooth + peak^2 peaked, for a `peak` of 0 or more. */
+double gonio_i_smooth(const gonio_i_place *a, const gonio_i_place *b);
+double gonio_i_peaked(const gonio_i_place *a, const gonio_i_place *b);
+double gonio_i_remainder(const gonio_i_place *a, const gonio_i_place *b, double peak);
 
 /* The coordinates that a row of the basis stands for, above the horizon where its cell has any such
  * bin, and its channel (joint) or 0. */

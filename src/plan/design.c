@@ -14,6 +14,7 @@ static const double NOISE = 0.05;
 
 /* Of the remainder that the database has never seen, log units, between candidates. */
 static const double SMOOTHNESS = 0.2;
+static const double PEAK = 8.0;
 
 /* Variance that may stay out of the covariance between candidates. */
 static const double LEFT = 1e-4;
@@ -125,7 +126,7 @@ static void factorise(place_list *p, const double *f, const gonio_i_place *place
     const size_t k = p->prior->components;
     for (size_t i = 0; i < p->rows; i++) {
         left[i] = dot(f + i * k, f + i * k, k) +
-                  SMOOTHNESS * SMOOTHNESS * gonio_i_smoothness(&place[i], &place[i]);
+                  SMOOTHNESS * SMOOTHNESS * gonio_i_remainder(&place[i], &place[i], PEAK);
     }
     size_t rank = 0;
     for (; rank < most; rank++) {
@@ -140,7 +141,7 @@ static void factorise(place_list *p, const double *f, const gonio_i_place *place
         for (size_t i = 0; i < p->rows; i++) {
             const double c =
                 dot(f + i * k, f + pivot * k, k) +
-                SMOOTHNESS * SMOOTHNESS * gonio_i_smoothness(&place[i], &place[pivot]);
+                SMOOTHNESS * SMOOTHNESS * gonio_i_remainder(&place[i], &place[pivot], PEAK);
             const double known = dot(p->f + i * most, p->f + pivot * most, rank);
             p->f[i * most + rank] = (c - known) / root;
         }
@@ -276,43 +277,67 @@ static gonio_status cut(gonio_context *context, const gonio_plan_options *option
     return GONIO_OK;
 }
 
-static gonio_status fill_plan(const place_list *p, const gonio_plan_options *options,
-                              gonio_plan *plan)
+/* What the model leaves open, as a part of E6, per cent; `reciprocal`: 1/|g|. */
+static double open_part(const place_list *p, double reciprocal)
 {
-    size_t *chosen = gonio_i_allocate(p->context, plan->count, sizeof *chosen);
-    plan->expected = gonio_i_allocate(p->context, plan->count, sizeof *plan->expected);
-    const gonio_i_design_problem problem = {.context = p->context,
-                                            .f = p->f,
-                                            .rows = p->rows,
-                                            .components = p->components,
-                                            .covariance = p->known != NULL
-                                                              ? p->known->covariance
-                                                              : p->identity,
-                                            .loss = p->loss,
-                                            .allowed = p->allowed,
-                                            .variance = NOISE * NOISE,
-                                            .count = plan->count};
-    double reciprocal = 0.0;
     double all = 0.0;
     for (size_t row = 0; row < p->rows; row++) {
         all += p->loss[row];
     }
-    gonio_status status =
-        chosen == NULL || plan->expected == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
-    if (status == GONIO_OK && p->known != NULL) {
+    return 100.0 * LEFT_OPEN * sqrt(all) * reciprocal;
+}
+
+/* From the loss that is left to E6. Of a material that was read, what was expected before shrinks
+ * with the loss; down to what the model leaves open. */
+static gonio_status fill_expected(const place_list *p, const double *remaining, gonio_plan *plan)
+{
+    double reciprocal = 0.0;
+    gonio_status status = GONIO_OK;
+    if (p->known != NULL) {
         reciprocal = 1.0 / p->known->norm;
-    } else if (status == GONIO_OK) {
+    } else {
         status = mean_reciprocal(p, &reciprocal);
     }
+    const double open = open_part(p, reciprocal);
+    double scale = 100.0 * 100.0 * reciprocal * reciprocal;
+    if (p->known != NULL) {
+        scale = fmax(p->known->expected * p->known->expected - open * open, 0.0) / remaining[0];
+    }
+    for (size_t k = 0; k < plan->count; k++) {
+        plan->expected[k] = sqrt(scale * fmax(remaining[k + 1], 0.0) + open * open);
+    }
+    return status;
+}
+
+static gonio_status fill_plan(const place_list *p, const gonio_plan_options *options,
+                              gonio_plan *plan)
+{
+    size_t *chosen = gonio_i_allocate(p->context, plan->count, sizeof *chosen);
+    double *remaining = gonio_i_allocate(p->context, plan->count + 1, sizeof *remaining);
+    plan->expected = gonio_i_allocate(p->context, plan->count, sizeof *plan->expected);
+    const gonio_i_design_problem problem = {
+        .context = p->context,
+        .f = p->f,
+        .rows = p->rows,
+        .components = p->components,
+        .covariance = p->known != NULL ? p->known->covariance : p->identity,
+        .loss = p->loss,
+        .allowed = p->allowed,
+        .variance = NOISE * NOISE,
+        .count = plan->count};
+    const bool done = chosen != NULL && remaining != NULL && plan->expected != NULL;
+    gonio_status status = done ? GONIO_OK : GONIO_ERROR_MEMORY;
     if (status == GONIO_OK) {
-        status = gonio_i_design_find(&problem, chosen, plan->expected);
+        status = gonio_i_design_find(&problem, chosen, remaining);
+    }
+    if (status == GONIO_OK) {
+        status = fill_expected(p, remaining, plan);
     }
     for (size_t k = 0; k < plan->count && status == GONIO_OK; k++) {
-        const double open = LEFT_OPEN * LEFT_OPEN * all;
-        plan->expected[k] = 100.0 * sqrt(fmax(plan->expected[k], 0.0) + open) * reciprocal;
         fill_entry(p, options, chosen[k], &plan->entries[k]);
     }
     free(chosen);
+    free(remaining);
     return status == GONIO_OK ? cut(p->context, options, plan) : status;
 }
 

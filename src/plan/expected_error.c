@@ -197,24 +197,24 @@ static gonio_status choose_blocks(design *d, size_t *chosen)
     return status;
 }
 
-/* trace(P W) after each reading, made again in order: an exchange changes what was left before. */
+/* trace(P W) before the first and after each reading, made again in order: an exchange changes what
+ * was left before. */
 static void find_remaining(design *d, const size_t *chosen, double *remaining)
 {
     const size_t k = d->k;
     memcpy(d->p, d->problem->covariance, k * k * sizeof *d->p);
+    remaining[0] = dot(d->p, d->w, k * k);
     for (size_t n = 0; n < d->problem->count; n++) {
         const double *f = row_of(d, chosen[n]);
         double *g = d->vector;
         multiply(d->p, f, k, g);
         const double s = d->problem->variance + dot(f, g, k);
-        double trace = 0.0;
         for (size_t i = 0; i < k; i++) {
             for (size_t j = 0; j < k; j++) {
                 d->p[i * k + j] -= g[i] * g[j] / s;
-                trace += d->p[i * k + j] * d->w[i * k + j];
             }
         }
-        remaining[n] = trace;
+        remaining[n + 1] = dot(d->p, d->w, k * k);
     }
 }
 

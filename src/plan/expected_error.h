@@ -16,8 +16,8 @@ typedef struct gonio_i_design_problem {
     size_t count;
 } gonio_i_design_problem;
 
-/* chosen[count], in the order of reading; remaining[count] (or NULL): the expected loss after each
- * of them. `count` is at most the number of rows allowed. Errors: _MEMORY, _CANCELLED. */
+/* chosen[count], in the order of reading; remaining[count + 1] (or NULL): the expected loss before
+ * the first and after each of them. `count` is at most the number of rows allowed. Errors: _MEMORY, _CANCELLED. */
 gonio_status gonio_i_design_find(const gonio_i_design_problem *problem, size_t *chosen,
                                  double *remaining);
 

@@ -32,13 +32,14 @@ static gonio_status allocate(gonio_i_gaussian *e)
     e->seen = gonio_i_allocate(c, e->prior->samples * n, sizeof *e->seen);
     e->gram = gonio_i_allocate(c, n * n, sizeof *e->gram);
     e->smooth = gonio_i_allocate(c, n * n, sizeof *e->smooth);
+    e->peaked = gonio_i_allocate(c, n * n, sizeof *e->peaked);
     e->lower = gonio_i_allocate(c, n * n, sizeof *e->lower);
     e->weight = gonio_i_allocate(c, e->prior->samples, sizeof *e->weight);
     e->centre = gonio_i_allocate(c, e->components, sizeof *e->centre);
     e->rest = gonio_i_allocate(c, n, sizeof *e->rest);
     e->solved = gonio_i_allocate(c, n, sizeof *e->solved);
     const bool done = e->f && e->place && e->y && e->variance && e->bound && e->left_out &&
-                      e->seen && e->gram && e->smooth && e->lower && e->weight && e->centre && e->rest &&
+                      e->seen && e->gram && e->smooth && e->peaked && e->lower && e->weight && e->centre && e->rest &&
                       e->solved;
     return done ? GONIO_OK : GONIO_ERROR_MEMORY;
 }
@@ -54,6 +55,7 @@ void gonio_i_gaussian_end(gonio_i_gaussian *e)
     free(e->seen);
     free(e->gram);
     free(e->smooth);
+    free(e->peaked);
     free(e->lower);
     free(e->weight);
     free(e->centre);
@@ -101,9 +103,12 @@ gonio_status gonio_i_gaussian_begin(gonio_context *context, const gonio_i_prior 
         e->variance[i] = o->variance;
         e->bound[i] = o->bound;
         for (size_t j = 0; j <= i; j++) {
-            const double k = gonio_i_smoothness(&e->place[i], &e->place[j]);
-            e->smooth[i * e->n + j] = k;
-            e->smooth[j * e->n + i] = k;
+            const double smooth = gonio_i_smooth(&e->place[i], &e->place[j]);
+            const double peaked = gonio_i_peaked(&e->place[i], &e->place[j]);
+            e->smooth[i * e->n + j] = smooth;
+            e->smooth[j * e->n + i] = smooth;
+            e->peaked[i * e->n + j] = peaked;
+            e->peaked[j * e->n + i] = peaked;
         }
     }
     return see_samples(e);
@@ -114,7 +119,8 @@ static gonio_status factorise(gonio_i_gaussian *e, double *logarithm)
 {
     const size_t n = e->n;
     for (size_t i = 0; i < n * n; i++) {
-        e->lower[i] = e->h * e->h * e->gram[i] + e->alpha * e->alpha * e->smooth[i];
+        const double k = e->smooth[i] + e->peak * e->peak * e->peaked[i];
+        e->lower[i] = e->h * e->h * e->gram[i] + e->alpha * e->alpha * k;
     }
     for (size_t i = 0; i < n; i++) {
         e->lower[i * n + i] += e->left_out[i] ? NO_SAY : e->variance[i];
@@ -181,10 +187,11 @@ static gonio_status weigh_samples(gonio_i_gaussian *e)
     return GONIO_OK;
 }
 
-gonio_status gonio_i_gaussian_solve(gonio_i_gaussian *e, double alpha)
+gonio_status gonio_i_gaussian_solve(gonio_i_gaussian *e, double alpha, double peak)
 {
     double logarithm = 0.0;
     e->alpha = alpha;
+    e->peak = peak;
     gonio_status status = factorise(e, &logarithm);
     memset(e->centre, 0, e->components * sizeof *e->centre);
     if (status == GONIO_OK && e->prior->samples > 0) {
@@ -318,7 +325,7 @@ gonio_status gonio_i_gaussian_settle(gonio_i_gaussian *e, size_t *outlying)
         if (status == GONIO_OK) {
             const bool bounds = judge_bounds(e, &j);
             changed = judge_readings(e, &j) || bounds;
-            status = changed ? gonio_i_gaussian_solve(e, e->alpha) : GONIO_OK;
+            status = changed ? gonio_i_gaussian_solve(e, e->alpha, e->peak) : GONIO_OK;
         }
     }
     *outlying = 0;

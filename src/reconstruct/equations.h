@@ -22,8 +22,10 @@ typedef struct gonio_i_gaussian {
     bool *left_out;        /* [n]: a bound that is kept anyway, which says nothing */
     double *seen;          /* [samples][n]: a F z_j */
     double *gram;          /* [n][n]: F F' */
-    double *smooth;        /* [n][n]: k */
+    double *smooth;        /* [n][n]: the parts of k */
+    double *peaked;        /* [n][n] */
     double alpha;
+    double peak;
     double *lower;         /* [n][n]: L of S */
     double *weight;        /* [samples]: q */
     double *centre;        /* [K]: z */
@@ -33,13 +35,13 @@ typedef struct gonio_i_gaussian {
     double misfit;         /* what the variances are multiplied by, see below */
 } gonio_i_gaussian;
 
-/* Fills in everything up to `smooth`. To be freed in any case. Errors: _MEMORY. */
+/* Fills in everything up to `peaked`. To be freed in any case. Errors: _MEMORY. */
 gonio_status gonio_i_gaussian_begin(gonio_context *context, const gonio_i_prior *prior,
                                     const gonio_i_column *column, gonio_i_gaussian *gaussian);
 void gonio_i_gaussian_end(gonio_i_gaussian *gaussian);
 
-/* The rest, for an alpha. Errors: _NUMERICAL, _MEMORY. */
-gonio_status gonio_i_gaussian_solve(gonio_i_gaussian *gaussian, double alpha);
+/* The rest, for an alpha and a peak. Errors: _NUMERICAL, _MEMORY. */
+gonio_status gonio_i_gaussian_solve(gonio_i_gaussian *gaussian, double alpha, double peak);
 
 /* What the other readings say of each one: the difference to it, and its variance (noise
  * included), difference[n], variance[n]. */

@@ -9,11 +9,16 @@
 #include "equations.h"
 #include "spread.h"
 
-/* alpha is one of these, in log units. */
-static const double SMOOTHNESS[] = {0.0, 0.03, 0.06, 0.12, 0.25, 0.5, 1.0};
+/* alpha, in log units, and the peak that goes with it are one of these. Narrow peaks only where
+ * there is much that the database does not know: for materials like its own they cost a tenth. */
+static const struct remainder {
+    double alpha;
+    double peak;
+} REMAINDERS[] = {{0.0, 0.0},  {0.03, 0.0}, {0.06, 0.0}, {0.12, 0.0}, {0.25, 0.0},
+                  {0.25, 8.0}, {0.5, 0.0},  {0.5, 8.0},  {1.0, 0.0},  {1.0, 8.0}};
 
 enum {
-    CHOICES = sizeof SMOOTHNESS / sizeof *SMOOTHNESS,
+    CHOICES = sizeof REMAINDERS / sizeof *REMAINDERS,
     MOST_TRIED = 128,        /* readings of a column that alpha is chosen by */
     MOST_COLUMNS_TRIED = 8,  /* columns that it is chosen by */
 };
@@ -38,7 +43,7 @@ static gonio_status add_scores(gonio_i_gaussian *e, double score[CHOICES])
     gonio_status status =
         difference == NULL || variance == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
     for (int k = 0; k < CHOICES && status == GONIO_OK; k++) {
-        status = gonio_i_gaussian_solve(e, SMOOTHNESS[k]);
+        status = gonio_i_gaussian_solve(e, REMAINDERS[k].alpha, REMAINDERS[k].peak);
         if (status == GONIO_OK) {
             status = gonio_i_gaussian_leave_one_out(e, difference, variance);
         }
@@ -84,8 +89,9 @@ static gonio_status score_column(gonio_context *context, const gonio_i_prior *pr
     return status;
 }
 
-static gonio_status choose_smoothness(gonio_context *context, const gonio_i_prior *prior,
-                                      const gonio_i_column *columns, size_t count, double *alpha)
+static gonio_status choose_remainder(gonio_context *context, const gonio_i_prior *prior,
+                                     const gonio_i_column *columns, size_t count,
+                                     gonio_i_posterior *p)
 {
     double score[CHOICES] = {0.0};
     const size_t tried = count < MOST_COLUMNS_TRIED ? count : MOST_COLUMNS_TRIED;
@@ -98,7 +104,8 @@ static gonio_status choose_smoothness(gonio_context *context, const gonio_i_prio
     for (int k = 1; k < CHOICES; k++) {
         best = score[k] > score[best] ? k : best;
     }
-    *alpha = SMOOTHNESS[best];
+    p->smoothness = REMAINDERS[best].alpha;
+    p->peak = REMAINDERS[best].peak;
     return status;
 }
 
@@ -109,7 +116,7 @@ gonio_status gonio_i_posterior_evidence(gonio_context *context, const gonio_i_pr
     gonio_i_gaussian e;
     gonio_status status = gonio_i_gaussian_begin(context, prior, column, &e);
     if (status == GONIO_OK) {
-        status = gonio_i_gaussian_solve(&e, smoothness);
+        status = gonio_i_gaussian_solve(&e, smoothness, 0.0);
     }
     *evidence = e.evidence;
     gonio_i_gaussian_end(&e);
@@ -152,6 +159,7 @@ static gonio_status keep_column(gonio_i_gaussian *e, size_t column, gonio_i_post
 {
     const size_t n = e->alpha > 0.0 ? e->n : 0;
     *kept = (gonio_i_spread_column){
+        .peak = e->peak,
         .n = n,
         .place = gonio_i_allocate(e->context, n, sizeof *kept->place),
         .weight = gonio_i_allocate(e->context, n, sizeof *kept->weight),
@@ -191,7 +199,7 @@ static gonio_status find_column(gonio_context *context, const gonio_i_prior *pri
     double surprise = 0.0;
     gonio_status status = gonio_i_gaussian_begin(context, prior, &columns[column], &e);
     if (status == GONIO_OK) {
-        status = gonio_i_gaussian_solve(&e, p->smoothness);
+        status = gonio_i_gaussian_solve(&e, p->smoothness, p->peak);
     }
     if (status == GONIO_OK) {
         status = gonio_i_gaussian_settle(&e, &outlying);
@@ -219,11 +227,12 @@ gonio_status gonio_i_posterior_find(gonio_context *context, const gonio_i_prior 
     gonio_i_spread_column *kept = gonio_i_allocate(context, count, sizeof *kept);
     gonio_status status = kept == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
     p->smoothness = options->smoothness;
+    p->peak = 0.0;
     p->outlying = 0;
     p->residual = 0.0;
     p->surprise = 0.0;
     if (status == GONIO_OK && !(options->smoothness >= 0.0)) {
-        status = choose_smoothness(context, prior, columns, count, &p->smoothness);
+        status = choose_remainder(context, prior, columns, count, p);
     }
     for (size_t k = 0; k < count && status == GONIO_OK; k++) {
         status = find_column(context, prior, columns, k, p, &sums, &kept[k]);

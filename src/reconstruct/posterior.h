@@ -46,6 +46,7 @@ typedef struct gonio_i_posterior {
     double *field;        /* [columns][rows]: g */
     double *deviation;    /* [columns][rows] of g, or NULL */
     double smoothness;    /* alpha */
+    double peak;          /* of the remainder */
     double predicted;     /* of E6, per cent */
     double surprise;      /* root mean square of (reading - what the others say) / its deviation */
     double *covariance;   /* [K][K], of z, the mean over the columns; or NULL */

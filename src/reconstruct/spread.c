@@ -41,8 +41,8 @@ typedef struct spreader {
     double *q;   /* [size][size] */
 } spreader;
 
-static void fill_t(const gonio_i_prior *prior, const gonio_i_place *place, size_t n, size_t row,
-                   double *t)
+static void fill_t(const gonio_i_prior *prior, const gonio_i_place *place, double peak, size_t n,
+                   size_t row, double *t)
 {
     int channel = 0;
     gonio_i_prior_row(prior, row, t);
@@ -50,7 +50,7 @@ static void fill_t(const gonio_i_prior *prior, const gonio_i_place *place, size_
         const gonio_i_place here =
             gonio_i_place_of(gonio_i_row_coordinates(&prior->view, row, &channel));
         for (size_t i = 0; i < n; i++) {
-            t[prior->components + i] = gonio_i_smoothness(&here, &place[i]);
+            t[prior->components + i] = gonio_i_remainder(&here, &place[i], peak);
         }
     }
 }
@@ -181,7 +181,7 @@ static double remainder_at(const spreader *s, size_t row)
     int channel = 0;
     const gonio_i_place here =
         gonio_i_place_of(gonio_i_row_coordinates(&s->e->prior->view, row, &channel));
-    return gonio_i_smoothness(&here, &here);
+    return gonio_i_remainder(&here, &here, s->e->peak);
 }
 
 /* Sums over the rows of a block. */
@@ -218,7 +218,8 @@ static gonio_status spread_block(const spreader *s, size_t first, size_t step, s
                                  const workspace *w, block_sums *sums)
 {
     for (size_t b = 0; b < count; b++) {
-        fill_t(s->e->prior, s->e->place, s->n, first + b * step, w->t + b * s->size);
+        fill_t(s->e->prior, s->e->place, s->e->peak, s->n, first + b * step,
+               w->t + b * s->size);
     }
     const gonio_status status = gonio_i_product_transposed(
         s->e->context, w->t, count, s->size, s->q, s->size, w->product, s->size);
@@ -291,7 +292,7 @@ gonio_status gonio_i_spread_variance(const gonio_i_gaussian *gaussian, const dou
 /* Whether a column was read where the one before it was: then k is the same. */
 static bool same_places(const gonio_i_spread_column *a, const gonio_i_spread_column *b)
 {
-    return a->n == b->n &&
+    return a->n == b->n && a->peak == b->peak &&
            (a->n == 0 || memcmp(a->place, b->place, a->n * sizeof *a->place) == 0);
 }
 
@@ -315,7 +316,7 @@ gonio_status gonio_i_spread_fields(gonio_context *context, const gonio_i_prior *
             for (size_t j = 0; j < count && t != NULL; j++) {
                 const gonio_i_spread_column *c = &columns[j];
                 if (j == 0 || !same_places(c, c - 1)) {
-                    fill_t(prior, c->place, c->n, row, t);
+                    fill_t(prior, c->place, c->peak, c->n, row, t);
                 }
                 c->field[row] = prior->view.mean[row] + dot(t, c->c, prior->components) +
                                 dot(t + prior->components, c->weight, c->n);

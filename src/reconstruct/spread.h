@@ -14,6 +14,7 @@ gonio_status gonio_i_spread_variance(const gonio_i_gaussian *gaussian, const dou
 
 /* The field of a column: what it is made of. */
 typedef struct gonio_i_spread_column {
+    double peak;
     size_t n;             /* readings whose smoothness counts */
     gonio_i_place *place; /* [n] */
     double *weight;       /* [n]: alpha^2 S^-1 (y - F z) */

@@ -46,7 +46,7 @@ static const step steps[] = {
     {"7. See it: spheres in a studio, and where they differ.",
      cmd_render,
      {"render", "--compare", "atlas:red-glossy-plastic", "reconstructed.binary", "--labels",
-      "original,20 readings", "--differences", "-o", "comparison.png"}},
+      "original,reconstruction", "--differences", "-o", "comparison.png"}},
 #endif
     {"8. Look around: a page for a browser.",
      cmd_report,
