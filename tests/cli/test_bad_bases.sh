@@ -5,10 +5,10 @@
 materials='atlas:oak-sawn atlas:gold-polished atlas:plaster-cast atlas:red-cotton'
 # shellcheck disable=SC2086
 {
-    expect_ok learn $materials -o good.gonio
-    expect_ok learn $materials --channels separate -o separate.gonio
-    expect_ok learn $materials atlas:steel-brushed -o other.gonio
-    expect_ok learn atlas:oak-sawn atlas:red-cotton -o small.gonio
+    expect_ok learn --grid bivariate $materials -o good.gonio
+    expect_ok learn --grid bivariate $materials --channels separate -o separate.gonio
+    expect_ok learn --grid bivariate $materials atlas:steel-brushed -o other.gonio
+    expect_ok learn --grid bivariate atlas:oak-sawn atlas:red-cotton -o small.gonio
 }
 expect_ok plan good.gonio -n 9 -o p.csv
 expect_ok measure p.csv atlas:white-linen -o r.csv
@@ -76,7 +76,7 @@ expect_fail 1 "bad.gonio: 'variances' is missing" info bad.gonio
 
 with centring contring
 expect_ok info bad.gonio
-expect_ok learn atlas:oak-sawn atlas:red-cotton --mapping relative --no-mean -o relative.gonio
+expect_ok learn --grid bivariate atlas:oak-sawn atlas:red-cotton --mapping relative --no-mean -o relative.gonio
 sed 's/relative\x00/relatove\x00/' relative.gonio >bad.gonio
 every_reader 1 "bad.gonio: 'mapping' is missing or unknown" bad.gonio
 sed 's/mapping\x00/mopping\x00/' relative.gonio >bad.gonio

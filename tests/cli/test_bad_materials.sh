@@ -2,7 +2,7 @@
 # Files that are no material, or a damaged one, given to every command that reads materials.
 . "$(dirname "$0")/lib.sh"
 
-expect_ok learn atlas:oak-sawn atlas:gold-polished atlas:plaster-cast -o b.gonio
+expect_ok learn --grid bivariate atlas:oak-sawn atlas:gold-polished atlas:plaster-cast -o b.gonio
 expect_ok plan b.gonio -n 4 -o p.csv
 expect_ok convert atlas:red-cotton good.binary
 
@@ -139,7 +139,7 @@ expect_fail 1 "two materials are called 'oak-sawn'" \
     learn atlas:oak-sawn atlas:oak-sawn atlas:plaster-cast -o x.gonio
 cp good.binary copy.binary
 expect_fail 1 'span only 1 dimensions' \
-    learn good.binary copy.binary atlas:oak-sawn --basis 2 -o x.gonio
+    learn --grid bivariate good.binary copy.binary atlas:oak-sawn --basis 2 -o x.gonio
 rm copy.binary
 
 # ---- HDF5 of another kind, and neural BRDFs ----

@@ -2,7 +2,7 @@
 # Plans and readings: tables that must be refused, and unusual ones that must be understood.
 . "$(dirname "$0")/lib.sh"
 
-expect_ok learn atlas:oak-sawn atlas:gold-polished atlas:plaster-cast atlas:red-cotton -o b.gonio
+expect_ok learn --grid bivariate atlas:oak-sawn atlas:gold-polished atlas:plaster-cast atlas:red-cotton -o b.gonio
 expect_ok plan b.gonio -K 2 -n 4 -o p.csv
 expect_ok measure p.csv atlas:white-linen -o r.csv
 expect_ok reconstruct b.gonio r.csv -o good.binary
