@@ -5,10 +5,10 @@
 materials='atlas:oak-sawn atlas:gold-polished atlas:plaster-cast atlas:red-cotton'
 # shellcheck disable=SC2086
 {
-    expect_ok learn $materials -o good.gonio
-    expect_ok learn $materials --channels separate -o separate.gonio
-    expect_ok learn $materials atlas:steel-brushed -o other.gonio
-    expect_ok learn atlas:oak-sawn atlas:red-cotton -o small.gonio
+    expect_ok learn --grid bivariate $materials -o good.gonio
+    expect_ok learn --grid bivariate $materials --channels separate -o separate.gonio
+    expect_ok learn --grid bivariate $materials atlas:steel-brushed -o other.gonio
+    expect_ok learn --grid bivariate atlas:oak-sawn atlas:red-cotton -o small.gonio
 }
 expect_ok plan good.gonio -n 9 -o p.csv
 expect_ok measure p.csv atlas:white-linen -o r.csv
@@ -76,7 +76,7 @@ expect_fail 1 "bad.gonio: 'variances' is missing" info bad.gonio
 
 with centring contring
 expect_ok info bad.gonio
-expect_ok learn atlas:oak-sawn atlas:red-cotton --mapping relative --no-mean -o relative.gonio
+expect_ok learn --grid bivariate atlas:oak-sawn atlas:red-cotton --mapping relative --no-mean -o relative.gonio
 sed 's/relative\x00/relatove\x00/' relative.gonio >bad.gonio
 every_reader 1 "bad.gonio: 'mapping' is missing or unknown" bad.gonio
 sed 's/mapping\x00/mopping\x00/' relative.gonio >bad.gonio
@@ -90,12 +90,20 @@ every_reader 1 "bad.gonio: 'loadings_checksum' is missing" bad.gonio
 fingerprint=$(gonio info good.gonio | sed -n 's/^ *fingerprint *//p')
 with "$fingerprint" 0123456789abcdef
 every_reader 1 "bad.gonio: 'fingerprint' does not fit the contents" bad.gonio
-for place in $((size / 2)) $((size * 3 / 4)); do
+# Where the number around an offset begins: its last byte, of the sign and exponent, is 3f or bf.
+number_at() {
+    local start=$(($1 / 8 * 8))
+    od -An -v -tx1 -w8 -j $start -N 4000 good.gonio | awk -v start=$start '
+        { for (k = 1; k <= 8; k++) count[k] += $k == "3f" || $k == "bf" }
+        END { last = 1; for (k = 2; k <= 8; k++) if (count[k] > count[last]) last = k
+              print start + last % 8 }'
+}
+for place in $(number_at $((size / 2))) $(number_at $((size * 3 / 4))); do
     cp good.gonio bad.gonio
-    patch bad.gonio $((place / 8 * 8)) '\x00\x00\x00\x00\x00\x00\xf8\x7f'
+    patch bad.gonio "$place" '\x00\x00\x00\x00\x00\x00\xf8\x7f'
     every_reader 1 'bad.gonio: ' bad.gonio
     cp good.gonio bad.gonio
-    printf '\x01' | dd of=bad.gonio bs=1 seek=$((place / 8 * 8)) conv=notrunc status=none
+    printf '\x01' | dd of=bad.gonio bs=1 seek="$place" conv=notrunc status=none
     if ! cmp -s bad.gonio good.gonio; then
         every_reader 1 'does not fit the contents (the file was changed)' bad.gonio
     fi

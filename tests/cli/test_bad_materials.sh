@@ -2,7 +2,7 @@
 # Files that are no material, or a damaged one, given to every command that reads materials.
 . "$(dirname "$0")/lib.sh"
 
-expect_ok learn atlas:oak-sawn atlas:gold-polished atlas:plaster-cast -o b.gonio
+expect_ok learn --grid bivariate atlas:oak-sawn atlas:gold-polished atlas:plaster-cast -o b.gonio
 expect_ok plan b.gonio -n 4 -o p.csv
 expect_ok convert atlas:red-cotton good.binary
 
@@ -53,10 +53,19 @@ printf 'just some text\n' >text.csv
 head -c 4096 /dev/zero | tr '\0' '\1' >noise.binary
 every_reader 1 'empty.binary: the file is empty' empty.binary
 every_reader 1 'start.binary: not a material that gonio reads' start.binary
-every_reader 1 'text.csv: not a material that gonio reads' text.csv
+# every_text PART FILE: what is said of a text, which where readings will do is taken for some.
+every_text() {
+    expect_fail 1 "$2: not a material that gonio reads" convert "$2" x.binary
+    expect_fail 1 "$2: not a material that gonio reads" \
+        learn "$2" atlas:oak-sawn atlas:plaster-cast -o x.gonio
+    expect_fail 1 "$2: not a material that gonio reads" compare atlas:oak-sawn "$2"
+    expect_fail 1 "$2: $1" measure p.csv "$2" -o x.csv
+    expect_fail 1 "$2: $1" compare "$2" atlas:oak-sawn
+}
+every_text 'no lines below the column names' text.csv
 expect_fail 1 'noise.binary: not a material that gonio reads' convert noise.binary x.binary
 expect_fail 1 'noise.binary:1: binary data' info noise.binary
-every_reader 1 'p.csv: not a material that gonio reads' p.csv
+every_text 'no column of values (R_per_sr, G_per_sr, B_per_sr, or 400nm_per_sr ...)' p.csv
 
 # ---- MERL tables of the wrong size ----
 
@@ -139,7 +148,7 @@ expect_fail 1 "two materials are called 'oak-sawn'" \
     learn atlas:oak-sawn atlas:oak-sawn atlas:plaster-cast -o x.gonio
 cp good.binary copy.binary
 expect_fail 1 'span only 1 dimensions' \
-    learn good.binary copy.binary atlas:oak-sawn --basis 2 -o x.gonio
+    learn --grid bivariate good.binary copy.binary atlas:oak-sawn --basis 2 -o x.gonio
 rm copy.binary
 
 # ---- HDF5 of another kind, and neural BRDFs ----

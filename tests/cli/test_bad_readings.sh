@@ -2,7 +2,7 @@
 # Plans and readings: tables that must be refused, and unusual ones that must be understood.
 . "$(dirname "$0")/lib.sh"
 
-expect_ok learn atlas:oak-sawn atlas:gold-polished atlas:plaster-cast atlas:red-cotton -o b.gonio
+expect_ok learn --grid bivariate atlas:oak-sawn atlas:gold-polished atlas:plaster-cast atlas:red-cotton -o b.gonio
 expect_ok plan b.gonio -K 2 -n 4 -o p.csv
 expect_ok measure p.csv atlas:white-linen -o r.csv
 expect_ok reconstruct b.gonio r.csv -o good.binary
@@ -79,7 +79,7 @@ for column in theta_i_deg phi_i_deg theta_o_deg phi_o_deg; do
     table lacking.csv "${header/$column/note}" "$first"
     every_reader 1 "lacking.csv: no column '$column'" lacking.csv
 done
-expect_fail 1 'p.csv: no column of values (R_per_sr, G_per_sr, B_per_sr)' \
+expect_fail 1 'p.csv: no column of values (R_per_sr, G_per_sr, B_per_sr, or 400nm_per_sr ...)' \
     reconstruct b.gonio p.csv -o x.binary
 
 # ---- angles ----

@@ -11,7 +11,7 @@ new=white-emulsion-paint
 
 chain() { # FOLDER OPTION...
     mkdir "$1"
-    expect_ok learn "${materials[@]/#/atlas:}" --without $new -o "$1/b.gonio" "${@:2}"
+    expect_ok learn --grid bivariate "${materials[@]/#/atlas:}" --without $new -o "$1/b.gonio" "${@:2}"
     expect_ok plan "$1/b.gonio" -K 6 -n 20 --seed 3 --history "$1/history.csv" -o "$1/p.csv" \
         "${@:2}"
     expect_ok measure "$1/p.csv" atlas:$new --noise 1 --floor 1e-4 --seed 5 -o "$1/r.csv" "${@:2}"
@@ -29,7 +29,7 @@ fingerprint() { "$GONIO" info "$1" | sed -n 's/^ *fingerprint *//p'; }
 expect_true 'bases learned with 1 and 2 threads are the same' \
     test "$(fingerprint one/b.gonio)" = "$(fingerprint two/b.gonio)"
 mv one/b.gonio b.gonio
-expect_ok learn "${materials[@]/#/atlas:}" --without $new -o one/b.gonio --threads 1
+expect_ok learn --grid bivariate "${materials[@]/#/atlas:}" --without $new -o one/b.gonio --threads 1
 expect_same b.gonio one/b.gonio
 
 error() { "$GONIO" compare "$@" | sed -n '2s/^[^ ]* *\([0-9]*\)\..*/\1/p'; }
@@ -55,7 +55,7 @@ expect_output 'MERL table 90 x 90 x 180' info one/out.binary
 
 # ---- the other kinds of basis ----
 
-for kind in '--channels separate' '--grid full' '--grid full --channels separate'; do
+for kind in '--grid bivariate --channels separate' '--grid full' '--grid full --channels separate'; do
     # shellcheck disable=SC2086
     expect_ok learn atlas:gold-polished atlas:red-glossy-plastic atlas:burgundy-velvet $kind \
         -K 2 -o kind.gonio
@@ -67,7 +67,7 @@ done
 rm kind*
 
 # Three materials, two components: one of the three is given back but for its phi_d.
-expect_ok learn atlas:gold-polished atlas:red-glossy-plastic atlas:burgundy-velvet -o 3.gonio
+expect_ok learn --grid bivariate atlas:gold-polished atlas:red-glossy-plastic atlas:burgundy-velvet -o 3.gonio
 expect_ok plan 3.gonio -n 3 -o 3.csv
 expect_ok measure 3.csv atlas:red-glossy-plastic -o 3-readings.csv
 expect_ok reconstruct 3.gonio 3-readings.csv -o 3.binary
@@ -77,7 +77,7 @@ rm 3*
 
 # ---- the built-in basis, learned on first use ----
 
-expect_ok plan --basis 3 -n 5 --restarts 1 -o builtin.csv
+expect_ok plan --method condition --basis 3 -n 5 --restarts 1 -o builtin.csv
 expect_true 'the built-in basis is announced' \
     grep -q '^gonio plan: note: no BASIS given: learning' "$root/work/stderr"
 cached=$(find "$XDG_CACHE_HOME/gonio" -type f)
@@ -87,7 +87,7 @@ expect_ok reconstruct builtin-readings.csv -o builtin.binary
 expect_true 'the second use is silent' test ! -s "$root/work/stderr"
 head -c 5000 "$cached" >damaged
 mv damaged "$cached"
-expect_fail 1 "$cached: not a gonio basis" plan --basis 3 -n 5 -o x.csv
+expect_fail 1 "$cached: not a gonio basis" plan --method condition --basis 3 -n 5 -o x.csv
 rm builtin*
 
 # ---- conversions ----
@@ -137,7 +137,7 @@ if jq --version >"$root/work/stdout" 2>&1; then
     json '.[0].materials[11]' info --json b.gonio
     json '.[0].components' info --json one/p.csv
     json '.[2].measured' info --json b.gonio a.binary one/r.csv
-    json '.explained_variance' learn atlas:gold-polished atlas:burgundy-velvet --json -o x.gonio
+    json '.explained_variance' learn --grid bivariate atlas:gold-polished atlas:burgundy-velvet --json -o x.gonio
     json '.condition_number' plan b.gonio -K 2 -n 4 --json -o x.csv
     json '.residual_log' reconstruct b.gonio one/r.csv --json -o x.binary
     json '.comparisons[1].B.log_relative' compare --json a.binary b.binary one/out.binary

@@ -5,10 +5,10 @@
 materials='atlas:oak-sawn atlas:gold-polished atlas:plaster-cast atlas:red-cotton atlas:steel-brushed'
 # shellcheck disable=SC2086
 {
-    expect_ok learn $materials -o log.gonio
+    expect_ok learn --grid bivariate $materials -o log.gonio
     expect_output '12 components from 5 materials' \
-        learn $materials --mapping relative --channels separate -K 12 -o relative.gonio
-    expect_output '5 components from 5 materials' learn $materials --no-mean -o materials.gonio
+        learn --grid bivariate $materials --mapping relative --channels separate -K 12 -o relative.gonio
+    expect_output '5 components from 5 materials' learn --grid bivariate $materials --no-mean -o materials.gonio
 }
 expect_output 'mapping      log, with mean' info log.gonio
 expect_output 'mapping      relative, with mean' info relative.gonio

@@ -5,7 +5,7 @@
 
 materials='atlas:oak-sawn atlas:gold-polished atlas:plaster-cast'
 # shellcheck disable=SC2086
-expect_ok learn $materials -o b.gonio
+expect_ok learn --grid bivariate $materials -o b.gonio
 expect_ok plan b.gonio -n 4 -o p.csv
 expect_ok measure p.csv atlas:white-linen -o r.csv
 expect_ok convert atlas:white-linen m.binary
@@ -14,7 +14,7 @@ expect_ok plan b.gonio -n 100 --restarts 1 -o long.csv
 # every_writer CODE PART OUTPUT: what each command says of an output.
 every_writer() {
     # shellcheck disable=SC2086
-    expect_fail "$1" "$2" learn $materials -o "$3"
+    expect_fail "$1" "$2" learn --grid bivariate $materials -o "$3"
     expect_fail "$1" "$2" plan b.gonio -n 4 -o "$3"
     expect_fail "$1" "$2" plan b.gonio -n 4 --history "$3" -o x.csv
     expect_fail "$1" "$2" measure p.csv m.binary -o "$3"
@@ -63,18 +63,18 @@ expect_fail 1 'm-old.binary: cannot write: File too large' \
 expect_fail 1 'x.binary: cannot write: File too large' reconstruct b.gonio r.csv -o x.binary
 kilobytes=580 # room for what learn keeps in its scratch files, but not for the basis
 # shellcheck disable=SC2086
-expect_fail 1 'x.gonio: cannot write: File too large' learn $materials -o x.gonio
+expect_fail 1 'x.gonio: cannot write: File too large' learn --grid bivariate $materials -o x.gonio
 kilobytes=200 # the scratch files of three materials reach to 290
 # shellcheck disable=SC2086
 expect_fail 1 'cannot write the scratch file: File too large; set TMPDIR' \
-    learn $materials -o x.gonio
+    learn --grid bivariate $materials -o x.gonio
 kilobytes=1
 expect_fail 1 'x.csv: cannot write: File too large' plan b.gonio -n 100 --restarts 1 -o x.csv
 expect_fail 1 'x.csv: cannot write: File too large' measure long.csv m.binary -o x.csv
 runner=gonio
 no_scratch() (export TMPDIR=$root/nowhere && exec "$GONIO" "$@")
 # shellcheck disable=SC2086
-runner=no_scratch expect_fail 1 'nowhere: cannot make a scratch file' learn $materials -o x.gonio
+runner=no_scratch expect_fail 1 'nowhere: cannot make a scratch file' learn --grid bivariate $materials -o x.gonio
 
 # An old output survives a failure.
 cp r.csv old.csv
@@ -106,7 +106,7 @@ ln -s b.gonio soft.gonio
 for name in m.binary ./m.binary "$PWD/m.binary" soft.binary hard.binary; do
     expect_fail 2 "$name is an input: give another name" convert m.binary "$name"
     expect_fail 2 "$name is an input" measure p.csv m.binary -o "$name"
-    expect_fail 2 "$name is an input" learn atlas:oak-sawn m.binary -o "$name"
+    expect_fail 2 "$name is an input" learn --grid bivariate atlas:oak-sawn m.binary -o "$name"
 done
 expect_fail 2 'm.binary is an input' convert soft.binary m.binary
 expect_fail 2 'm.binary is an input' learn . atlas:oak-sawn -o m.binary

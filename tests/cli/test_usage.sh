@@ -2,7 +2,7 @@
 # Command lines that cannot be meant: exit code 2, one line, nothing done.
 . "$(dirname "$0")/lib.sh"
 
-expect_ok learn atlas:gold-polished atlas:red-cotton atlas:oak-sawn atlas:plaster-cast -o b.gonio
+expect_ok learn --grid bivariate atlas:gold-polished atlas:red-cotton atlas:oak-sawn atlas:plaster-cast -o b.gonio
 expect_ok plan b.gonio -n 5 -o p.csv
 expect_ok measure p.csv atlas:white-linen -o r.csv
 
@@ -59,18 +59,18 @@ expect_fail 2 'no output' convert atlas:white-linen ''
 # ---- learn ----
 
 expect_fail 2 '4 components asked for, but 4 columns give at most 3' \
-    learn atlas:gold-polished atlas:red-cotton atlas:oak-sawn atlas:plaster-cast --basis 4 \
+    learn --grid bivariate atlas:gold-polished atlas:red-cotton atlas:oak-sawn atlas:plaster-cast --basis 4 \
     -o x.gonio
-expect_fail 2 'a basis needs at least 2 materials' learn atlas:oak-sawn -o x.gonio
+expect_fail 2 'a basis needs at least 2 materials' learn --grid bivariate atlas:oak-sawn -o x.gonio
 expect_fail 2 '--basis: -3 is too small' learn atlas:oak-sawn atlas:red-cotton -K -3 -o x.gonio
-expect_fail 2 "--grid: 'trivariate' is neither" \
+expect_fail 2 "--grid: 'trivariate' is none of bivariate, full, sectored" \
     learn atlas:oak-sawn atlas:red-cotton --grid trivariate -o x.gonio
-expect_fail 2 "--channels: 'both' is neither" \
+expect_fail 2 "--channels: 'both' is none of joint, separate" \
     learn atlas:oak-sawn atlas:red-cotton --channels both -o x.gonio
-expect_fail 2 "--mapping: 'cubic' is neither 'log' nor 'relative'" \
+expect_fail 2 "--mapping: 'cubic' is none of log, relative" \
     learn atlas:oak-sawn atlas:red-cotton --mapping cubic -o x.gonio
 expect_fail 2 '3 components asked for, but 2 columns give at most 2' \
-    learn atlas:oak-sawn atlas:red-cotton --no-mean -K 3 -o x.gonio
+    learn --grid bivariate atlas:oak-sawn atlas:red-cotton --no-mean -K 3 -o x.gonio
 expect_fail 2 "--without: no material is called 'steel'" \
     learn atlas:oak-sawn atlas:red-cotton --without steel -o x.gonio
 expect_fail 2 'no materials given' \

@@ -638,7 +638,8 @@ static void test_what_ridge_refuses(void **state)
         assert_null(r);
     }
     assert_string_equal(gonio_reconstruct_method_name(1), "ridge");
-    assert_null(gonio_reconstruct_method_name(2));
+    assert_string_equal(gonio_reconstruct_method_name(2), "posterior");
+    assert_null(gonio_reconstruct_method_name(3));
     assert_null(gonio_reconstruct_method_summary(-1));
 }
 

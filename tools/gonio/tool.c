@@ -432,5 +432,6 @@ bool tool_is_readings(const char *path)
     if (file != NULL) {
         fclose(file);
     }
-    return size > 0 && memchr(head, '\0', size) == NULL;
+    const bool hdf5 = size >= 4 && memcmp(head, "\211HDF", 4) == 0;
+    return size > 0 && !hdf5 && memchr(head, '\0', size) == NULL;
 }

@@ -1,0 +1,554 @@
+/* The posterior against the textbook's formulas for Gaussians, computed densely; leaving out,
+ * evidence, bounds, wrong readings, what comes out. */
+#include "../support.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../unit/made_basis.h"
+#include "core/random.h"
+#include "reconstruct/equations.h"
+
+enum { MOST = 60 };
+
+static const double ALPHA = 0.1;
+
+static gonio_context *context;
+static gonio_basis *small;          /* bivariate, of which the priors are */
+static gonio_basis *basis;          /* sectored */
+static gonio_i_prior *gaussian; /* without samples: h = 1 */
+static gonio_i_prior *mixture;
+
+static int set_up(void **state)
+{
+    (void)state;
+    context = support_context();
+    small = made_basis(context, GONIO_BIVARIATE, GONIO_SEPARATE, 0);
+    basis = made_basis(context, GONIO_SECTORED, GONIO_SEPARATE, 0);
+    assert_int_equal(gonio_i_prior_create(context, small, &gaussian), GONIO_OK);
+    assert_int_equal(gonio_i_prior_create(context, small, &mixture), GONIO_OK);
+    gaussian->samples = 0;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    gonio_i_prior_free(&gaussian);
+    gonio_i_prior_free(&mixture);
+    gonio_basis_free(&small);
+    gonio_basis_free(&basis);
+    gonio_context_free(&context);
+    return 0;
+}
+
+static void assert_close(double value, double expected, double tolerance)
+{
+    if (!(fabs(value - expected) <= tolerance)) {
+        fail_msg("%.17g where %.17g is expected (within %g)", value, expected, tolerance);
+    }
+}
+
+/* A material drawn from the prior, read at random rows. */
+typedef struct drawn {
+    double *z;
+    size_t row[MOST];
+    gonio_i_observation reading[MOST];
+} drawn;
+
+static double truth_at(const double *z, gonio_half_difference at)
+{
+    const size_t k = gaussian->components;
+    double f[64];
+    double g = 0.0;
+    assert_true(k <= 64);
+    gonio_i_prior_at(gaussian, at, 0, &g, f);
+    for (size_t j = 0; j < k; j++) {
+        g += f[j] * z[j];
+    }
+    return g;
+}
+
+/* Whether a row's coordinates are those of its cell: not where a part of it is below the horizon. */
+static bool is_whole(size_t row)
+{
+    int channel = 0;
+    double mean = 0.0;
+    double own[64];
+    double there[64];
+    gonio_i_prior_row(gaussian, row, own);
+    gonio_i_prior_at(gaussian, gonio_i_row_coordinates(&gaussian->view, row, &channel), 0, &mean,
+                     there);
+    return fabs(own[0] - there[0]) <= 1e-9 * fabs(own[0]);
+}
+
+static drawn draw(uint64_t seed, double deviation)
+{
+    drawn d = {.z = malloc(gaussian->components * sizeof *d.z)};
+    gonio_i_random random;
+    gonio_i_random_seed(&random, seed, 0);
+    for (size_t j = 0; j < gaussian->components; j++) {
+        d.z[j] = gonio_i_random_normal(&random);
+    }
+    for (size_t i = 0; i < MOST; i++) {
+        int channel = 0;
+        gonio_i_observation *o = &d.reading[i];
+        do {
+            d.row[i] = (size_t)gonio_i_random_below(&random, gaussian->view.rows);
+        } while (!is_whole(d.row[i]));
+        o->at = gonio_i_row_coordinates(&gaussian->view, d.row[i], &channel);
+        o->g = truth_at(d.z, o->at) + deviation * gonio_i_random_normal(&random);
+        o->variance = deviation * deviation;
+    }
+    return d;
+}
+
+/* What is found of one column: the caller frees both. */
+typedef struct found {
+    double *field;
+    double *deviation;
+    gonio_i_posterior posterior;
+} found;
+
+static found find(const gonio_i_prior *prior, gonio_i_observation *readings, size_t count,
+                  double alpha)
+{
+    double coefficients[64];
+    found r = {.field = malloc(prior->view.rows * sizeof *r.field),
+               .deviation = malloc(prior->view.rows * sizeof *r.deviation)};
+    const gonio_i_column column = {count, readings};
+    const gonio_i_posterior_options options = {.smoothness = alpha, .deviation = true};
+    r.posterior = (gonio_i_posterior){
+        .coefficients = coefficients, .field = r.field, .deviation = r.deviation};
+    assert_int_equal(gonio_i_posterior_find(context, prior, &column, 1, &options, &r.posterior),
+                     GONIO_OK);
+    r.posterior.coefficients = NULL;
+    return r;
+}
+
+static void drop(found *r)
+{
+    free(r->field);
+    free(r->deviation);
+}
+
+/* Root mean square of the difference of two fields. */
+static double difference(const found *a, const found *b)
+{
+    double sum = 0.0;
+    for (size_t row = 0; row < gaussian->view.rows; row++) {
+        const double d = a->field[row] - b->field[row];
+        sum += d * d;
+    }
+    return sqrt(sum / (double)gaussian->view.rows);
+}
+
+/* ---- dense algebra ---- */
+
+/* a becomes its inverse (Gauss and Jordan), and the logarithm of its determinant is returned. */
+static double invert(double *a, size_t n)
+{
+    double logarithm = 0.0;
+    for (size_t c = 0; c < n; c++) {
+        const double pivot = a[c * n + c];
+        assert_true(pivot > 0.0);
+        logarithm += log(pivot);
+        a[c * n + c] = 1.0;
+        for (size_t j = 0; j < n; j++) {
+            a[c * n + j] /= pivot;
+        }
+        for (size_t i = 0; i < n; i++) {
+            const double factor = a[i * n + c];
+            if (i != c) {
+                a[i * n + c] = 0.0;
+                for (size_t j = 0; j < n; j++) {
+                    a[i * n + j] -= factor * a[c * n + j];
+                }
+            }
+        }
+    }
+    return logarithm;
+}
+
+/* h^2 f f' + alpha^2 k of two directions. */
+static double covariance(gonio_half_difference a, gonio_half_difference b, double h, double alpha)
+{
+    double mean = 0.0;
+    double f[2][64];
+    const gonio_i_place x = gonio_i_place_of(a);
+    const gonio_i_place y = gonio_i_place_of(b);
+    double sum = 0.0;
+    gonio_i_prior_at(gaussian, a, 0, &mean, f[0]);
+    gonio_i_prior_at(gaussian, b, 0, &mean, f[1]);
+    for (size_t j = 0; j < gaussian->components; j++) {
+        sum += f[0][j] * f[1][j];
+    }
+    return h * h * sum + alpha * alpha * gonio_i_smoothness(&x, &y);
+}
+
+static double mean_at(gonio_half_difference at)
+{
+    double mean = 0.0;
+    double f[64];
+    gonio_i_prior_at(gaussian, at, 0, &mean, f);
+    return mean;
+}
+
+/* The inverse of the covariance of readings; ln of its determinant before. */
+static double invert_covariance(const gonio_i_observation *readings, size_t n, double h,
+                                double alpha, double *s)
+{
+    for (size_t i = 0; i < n; i++) {
+        for (size_t j = 0; j < n; j++) {
+            s[i * n + j] = covariance(readings[i].at, readings[j].at, h, alpha) +
+                           (i == j ? readings[i].variance : 0.0);
+        }
+    }
+    return invert(s, n);
+}
+
+/* Mean and variance of g at a direction, given readings. */
+static void textbook(const gonio_i_observation *readings, size_t n, const double *s,
+                     gonio_half_difference at, double *mean, double *variance)
+{
+    double c[MOST];
+    *mean = mean_at(at);
+    *variance = covariance(at, at, 1.0, ALPHA);
+    for (size_t i = 0; i < n; i++) {
+        c[i] = covariance(at, readings[i].at, 1.0, ALPHA);
+    }
+    for (size_t i = 0; i < n; i++) {
+        for (size_t j = 0; j < n; j++) {
+            *mean += c[i] * s[i * n + j] * (readings[j].g - mean_at(readings[j].at));
+            *variance -= c[i] * s[i * n + j] * c[j];
+        }
+    }
+}
+
+/* The deviations of all rows may be widened alike, so that they fit what is true. */
+static void test_the_textbooks_posterior(void **state)
+{
+    (void)state;
+    static const size_t counts[] = {1, 2, 12, 50};
+    for (size_t c = 0; c < 4; c++) {
+        drawn d = draw(c, 0.05);
+        const size_t n = counts[c];
+        double *s = malloc(n * n * sizeof *s);
+        found r = find(gaussian, d.reading, n, ALPHA);
+        assert_int_equal(r.posterior.outlying, 0);
+        invert_covariance(d.reading, n, 1.0, ALPHA, s);
+        double widened = 0.0;
+        for (size_t row = 11; row < gaussian->view.rows; row += 41) {
+            if (!is_whole(row)) {
+                continue;
+            }
+            int channel = 0;
+            double mean = 0.0;
+            double variance = 0.0;
+            textbook(d.reading, n, s, gonio_i_row_coordinates(&gaussian->view, row, &channel),
+                     &mean, &variance);
+            assert_close(r.field[row], mean, 1e-6);
+            const double ratio = r.deviation[row] * r.deviation[row] / variance;
+            widened = widened == 0.0 ? ratio : widened;
+            assert_close(ratio / widened, 1.0, 1e-5);
+        }
+        assert_true(widened > 0.2 && widened < 5.0);
+        drop(&r);
+        free(s);
+        free(d.z);
+    }
+}
+
+static void test_leaving_one_out(void **state)
+{
+    (void)state;
+    enum { N = 15 };
+    drawn d = draw(4, 0.05);
+    const gonio_i_column column = {N, d.reading};
+    gonio_i_gaussian e;
+    double left[N];
+    double variance[N];
+    assert_int_equal(gonio_i_gaussian_begin(context, gaussian, &column, &e), GONIO_OK);
+    assert_int_equal(gonio_i_gaussian_solve(&e, ALPHA), GONIO_OK);
+    assert_int_equal(gonio_i_gaussian_leave_one_out(&e, left, variance), GONIO_OK);
+    gonio_i_gaussian_end(&e);
+    for (size_t i = 0; i < N; i++) {
+        gonio_i_observation others[N - 1];
+        double s[(N - 1) * (N - 1)];
+        double mean = 0.0;
+        double known = 0.0;
+        for (size_t j = 0; j < N - 1; j++) {
+            others[j] = d.reading[j < i ? j : j + 1];
+        }
+        invert_covariance(others, N - 1, 1.0, ALPHA, s);
+        textbook(others, N - 1, s, d.reading[i].at, &mean, &known);
+        assert_close(left[i], d.reading[i].g - mean, 1e-7);
+        assert_close(variance[i], known + d.reading[i].variance, 1e-7 * variance[i]);
+    }
+    free(d.z);
+}
+
+/* ln sum_j share_j N(y; a F z_j, h^2 F F' + alpha^2 k + D); of a Gaussian, j = 1 and z = 0. */
+static void test_the_evidence(void **state)
+{
+    (void)state;
+    enum { N = 9 };
+    const gonio_i_prior *const priors[2] = {gaussian, mixture};
+    drawn d = draw(6, 0.1);
+    const gonio_i_column column = {N, d.reading};
+    for (int p = 0; p < 2; p++) {
+        gonio_i_gaussian e;
+        assert_int_equal(gonio_i_gaussian_begin(context, priors[p], &column, &e), GONIO_OK);
+        const double h = e.h;
+        gonio_i_gaussian_end(&e);
+        assert_true(p == 0 ? h == 1.0 : h > 0.0 && h < 1.0);
+        double s[N * N];
+        const double logarithm = invert_covariance(d.reading, N, h, ALPHA, s);
+        double density = 0.0;
+        const size_t samples = p == 0 ? 1 : mixture->samples;
+        for (size_t j = 0; j < samples; j++) {
+            double rest[N];
+            double square = 0.0;
+            for (size_t i = 0; i < N; i++) {
+                const double mean = mean_at(d.reading[i].at);
+                const double *z = mixture->sample + j * mixture->components;
+                const double centre =
+                    p == 0 ? 0.0 : sqrt(1.0 - h * h) * (truth_at(z, d.reading[i].at) - mean);
+                rest[i] = d.reading[i].g - mean - centre;
+            }
+            for (size_t i = 0; i < N * N; i++) {
+                square += rest[i / N] * s[i] * rest[i % N];
+            }
+            density += (p == 0 ? 1.0 : mixture->share[j]) * exp(-0.5 * square);
+        }
+        const double expected = log(density) - 0.5 * (logarithm + N * log(2.0 * M_PI));
+        double evidence = 0.0;
+        assert_int_equal(
+            gonio_i_posterior_evidence(context, priors[p], &column, ALPHA, &evidence), GONIO_OK);
+        assert_close(evidence, expected, 1e-6 * fabs(expected));
+    }
+    free(d.z);
+}
+
+static void test_deviations_shrink(void **state)
+{
+    (void)state;
+    static const size_t counts[] = {1, 3, 10, 30, MOST};
+    drawn d = draw(8, 1e-3);
+    found before = find(gaussian, d.reading, 1, ALPHA);
+    for (size_t c = 0; c < 5; c++) {
+        found r = find(gaussian, d.reading, counts[c], ALPHA);
+        for (size_t row = 0; row < gaussian->view.rows; row++) {
+            assert_true(r.deviation[row] >= 0.0 && isfinite(r.deviation[row]));
+            assert_true(r.deviation[row] <= before.deviation[row] + 1e-6);
+        }
+        for (size_t i = 0; i < counts[c]; i++) {
+            assert_true(r.deviation[d.row[i]] < 0.02);
+            assert_close(r.field[d.row[i]], d.reading[i].g, 0.02);
+        }
+        assert_true(c == 0 || r.posterior.predicted < before.posterior.predicted);
+        drop(&before);
+        before = r;
+    }
+    drop(&before);
+    free(d.z);
+}
+
+/* ---- bounds and wrong readings ---- */
+
+/* Fewer readings of a material than determine it, and one more that is a bound. */
+static void check_bound(int sense, uint64_t seed)
+{
+    enum { N = 6 };
+    drawn d = draw(seed, 0.02);
+    gonio_i_observation *bound = &d.reading[N];
+    found without = find(gaussian, d.reading, N, ALPHA);
+    const double said = without.field[d.row[N]];
+    const double open = without.deviation[d.row[N]];
+    bound->bound = sense;
+    /* One that holds anyway says nothing, however far off it is. */
+    bound->g = said - sense * (3.0 + 2.0 * open);
+    found kept = find(gaussian, d.reading, N + 1, ALPHA);
+    assert_int_equal(kept.posterior.outlying, 0);
+    assert_true(difference(&kept, &without) < 1e-3);
+    drop(&kept);
+    /* One that does not is a reading. */
+    bound->g = said + sense * 1.5 * open;
+    found broken = find(gaussian, d.reading, N + 1, ALPHA);
+    assert_true(sense * (broken.field[d.row[N]] - said) > 0.5 * open);
+    drop(&broken);
+    drop(&without);
+    free(d.z);
+}
+
+static void test_bounds(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 10; seed < 13; seed++) {
+        check_bound(-1, seed); /* darkness */
+        check_bound(1, seed);  /* saturation */
+    }
+}
+
+static void test_a_reading_ten_times_too_large(void **state)
+{
+    (void)state;
+    enum { N = 40 };
+    for (uint64_t seed = 20; seed < 23; seed++) {
+        drawn d = draw(seed, 0.05);
+        found clean = find(gaussian, d.reading, N, ALPHA);
+        for (int sense = -1; sense <= 1; sense += 2) {
+            d.reading[7].g += sense * log(10.0);
+            found wrong = find(gaussian, d.reading, N, ALPHA);
+            double sum = 0.0;
+            for (size_t row = 0; row < gaussian->view.rows; row++) {
+                sum += clean.field[row] * clean.field[row];
+            }
+            assert_true(difference(&wrong, &clean) <
+                        0.01 * sqrt(sum / (double)gaussian->view.rows));
+            assert_in_range(wrong.posterior.outlying, 1, 2); /* its neighbour may go with it */
+            d.reading[7].g -= sense * log(10.0);
+            drop(&wrong);
+        }
+        assert_int_equal(clean.posterior.outlying, 0);
+        drop(&clean);
+        free(d.z);
+    }
+}
+
+/* ---- from readings to a material ---- */
+
+static gonio_readings *read_lines(const char *folder, const char *const *lines, size_t count)
+{
+    char path[256];
+    snprintf(path, sizeof path, "%s/r.csv", folder);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs("theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,R_per_sr,G_per_sr,B_per_sr\n", file);
+    for (size_t k = 0; k < count; k++) {
+        fprintf(file, "%s\n", lines[k]);
+    }
+    fclose(file);
+    gonio_readings *readings = NULL;
+    assert_int_equal(gonio_readings_read(context, path, NULL, &readings), GONIO_OK);
+    return readings;
+}
+
+/* Every valid bin has data, finite and not negative. */
+static void assert_sane(const gonio_reconstruction *made)
+{
+    gonio_material *material = NULL;
+    double *rho = malloc(GONIO_CHANNELS * GONIO_SLAB_BINS * sizeof *rho);
+    assert_int_equal(gonio_reconstruction_material(context, basis, made, "made", &material),
+                     GONIO_OK);
+    for (int theta_h = 0; theta_h < GONIO_THETA_H_BINS; theta_h++) {
+        assert_int_equal(gonio_material_read_slab(material, context, theta_h, rho), GONIO_OK);
+        for (int k = 0; k < GONIO_CHANNELS * GONIO_SLAB_BINS; k++) {
+            const int inside = k % GONIO_SLAB_BINS;
+            const gonio_bin bin = {theta_h, inside / GONIO_PHI_D_BINS, inside % GONIO_PHI_D_BINS};
+            if (gonio_bin_is_valid(bin)) {
+                assert_true(rho[k] >= 0.0 && isfinite(rho[k]));
+            }
+        }
+    }
+    free(rho);
+    gonio_material_free(&material);
+}
+
+static void test_what_comes_out_is_sane(void **state)
+{
+    (void)state;
+    static const char *const lines[] = {"30,0,30,180,0.2,0.1,0.05", "0,0,45,90,0.05,0.02,0",
+                                        "60,0,60,180,1e6,1e5,1e4", "10,0,70,20,0,0,0"};
+    char *folder = support_folder();
+    for (size_t count = 1; count <= 4; count++) {
+        gonio_readings *readings = read_lines(folder, lines, count);
+        gonio_reconstruct_options options;
+        gonio_reconstruct_options_default(&options);
+        options.method = "posterior";
+        gonio_reconstruction *made = NULL;
+        assert_int_equal(gonio_reconstruct(context, basis, readings, &options, &made), GONIO_OK);
+        assert_int_equal(made->readings, count);
+        assert_int_equal(made->columns, GONIO_CHANNELS);
+        assert_true(isfinite(made->predicted_e6) && made->predicted_e6 > 0.0);
+        assert_sane(made);
+        gonio_reconstruction_free(&made);
+        gonio_readings_free(&readings);
+    }
+    support_remove(folder);
+}
+
+/* Of a detector that saturates, peaks are at least what it says. */
+static void test_saturation(void **state)
+{
+    (void)state;
+    static const char *const lines[] = {"0,0,30,180,0.05,0.05,0.05", "40,0,20,180,0.06,0.06,0.06",
+                                        "30,0,30,180,0.1,0.1,0.1"};
+    char *folder = support_folder();
+    gonio_readings *readings = read_lines(folder, lines, 3);
+    double value[2][GONIO_CHANNELS];
+    for (int k = 0; k < 2; k++) {
+        gonio_reconstruct_options options;
+        gonio_reconstruct_options_default(&options);
+        options.method = "posterior";
+        options.believe = true;
+        options.saturation = k == 0 ? 0.0 : 0.1;
+        gonio_reconstruction *made = NULL;
+        assert_int_equal(gonio_reconstruct(context, basis, readings, &options, &made), GONIO_OK);
+        gonio_reconstruction_predict(
+            basis, made,
+            gonio_half_difference_from_pair(gonio_readings_describe(readings).reading[2].pair),
+            value[k], NULL);
+        gonio_reconstruction_free(&made);
+    }
+    for (int c = 0; c < GONIO_CHANNELS; c++) {
+        assert_true(value[1][c] >= value[0][c] * (1.0 - 1e-9));
+        assert_true(value[1][c] >= 0.08);
+    }
+    gonio_readings_free(&readings);
+    support_remove(folder);
+}
+
+static void test_what_is_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        double noise, floor, saturation;
+    } cases[] = {{-1.0, 0.0, 0.0}, {NAN, 0.0, 0.0},      {INFINITY, 0.0, 0.0},
+                 {0.0, -1.0, 0.0}, {0.0, INFINITY, 0.0}, {0.0, 0.0, -1.0},
+                 {0.0, 0.0, NAN}};
+    static const char *const lines[] = {"30,0,30,180,0.2,0.1,0.05"};
+    char *folder = support_folder();
+    gonio_readings *readings = read_lines(folder, lines, 1);
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        const gonio_reconstruct_options options = {.method = "posterior",
+                                                   .noise = cases[k].noise,
+                                                   .floor = cases[k].floor,
+                                                   .saturation = cases[k].saturation};
+        gonio_reconstruction *made = NULL;
+        assert_int_equal(gonio_reconstruct(context, basis, readings, &options, &made),
+                         GONIO_ERROR_ARGUMENT);
+        assert_null(made);
+        assert_non_null(strstr(support_message(), "noise, floor and saturation"));
+    }
+    gonio_readings_free(&readings);
+    support_remove(folder);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_the_textbooks_posterior),
+        cmocka_unit_test(test_leaving_one_out),
+        cmocka_unit_test(test_the_evidence),
+        cmocka_unit_test(test_deviations_shrink),
+        cmocka_unit_test(test_bounds),
+        cmocka_unit_test(test_a_reading_ten_times_too_large),
+        cmocka_unit_test(test_what_comes_out_is_sane),
+        cmocka_unit_test(test_saturation),
+        cmocka_unit_test(test_what_is_refused),
+    };
+    return cmocka_run_group_tests_name("posterior", tests, set_up, tear_down);
+}

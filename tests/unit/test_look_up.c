@@ -1,0 +1,232 @@
+/* Readings taken out of others, errors between readings, spectra as colours. */
+#include "../support.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "made_readings.h"
+#include "reconstruct/estimate.h"
+
+static const gonio_readings_options any = {.average_repeats = true, .negative_to_zero = true};
+
+static void assert_close(double value, double expected, double tolerance)
+{
+    if (!(fabs(value - expected) <= tolerance)) {
+        fail_msg("%.17g where %.17g is expected (within %g)", value, expected, tolerance);
+    }
+}
+
+static gonio_readings *make(const char *lines, const char *columns)
+{
+    char text[2048];
+    char *folder = support_folder();
+    gonio_readings *readings = NULL;
+    snprintf(text, sizeof text, "theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg%s\n%s", columns,
+             lines);
+    assert_int_equal(made_readings(NULL, folder, "r.csv", text, &any, &readings), GONIO_OK);
+    support_remove(folder);
+    return readings;
+}
+
+static const char rgb[] = ",R_per_sr,G_per_sr,B_per_sr";
+
+/* 30 and 50 degrees apart, 40 of phi; a second one; one in the mirror direction. */
+static const char known_lines[] = "30,0,50,40,0.1,0.2,0.3\n"
+                                  "20,0,70,200,0.4,0.5,\n"
+                                  "45,0,45,180,10,20,30\n";
+
+/* Which known reading a plan of one direction takes: its R; -1 if there is none. */
+static double looked_up(const char *line)
+{
+    gonio_context *context = support_context();
+    gonio_readings *known = make(known_lines, rgb);
+    gonio_readings *plan = make(line, "");
+    const gonio_status status = gonio_readings_look_up(context, plan, known);
+    const double value = status == GONIO_OK ? gonio_readings_value(plan, 0, 0) : -1.0;
+    if (status != GONIO_OK) {
+        assert_int_equal(status, GONIO_ERROR_DATA);
+        assert_non_null(strstr(support_message(), "has no reading at these directions"));
+    }
+    bool same = false;
+    assert_int_equal(gonio_readings_find(context, plan, known, &same), GONIO_OK);
+    assert_int_equal(same, status == GONIO_OK);
+    gonio_readings_free(&plan);
+    gonio_readings_free(&known);
+    gonio_context_free(&context);
+    return value;
+}
+
+static void test_look_up(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *line;
+        double value;
+    } cases[] = {
+        {"30,0,50,40\n", 0.1},       {"30,100,50,140\n", 0.1}, /* turned: isotropic */
+        {"50,40,30,0\n", 0.1},                                 /* reciprocal */
+        {"30.003,0,50.003,40\n", 0.1},                         /* within 1e-4 radians */
+        {"30.1,0,50,40\n", -1.0},    {"30,0,50,41\n", -1.0},   {"20,0,70,200\n", 0.4},
+        {"70,200,20,0\n", 0.4},      {"45,10,45,190\n", 10.0}, {"0,0,45,0\n", -1.0},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        assert_close(looked_up(cases[k].line), cases[k].value, 0.0);
+    }
+}
+
+static void test_what_was_not_read_stays_so(void **state)
+{
+    (void)state;
+    gonio_readings *known = make(known_lines, rgb);
+    gonio_readings *plan = make("20,0,70,200\n30,0,50,40\n", "");
+    assert_int_equal(gonio_readings_look_up(NULL, plan, known), GONIO_OK);
+    assert_close(gonio_readings_value(plan, 0, 1), 0.5, 0.0);
+    assert_true(isnan(gonio_readings_value(plan, 0, 2)));
+    assert_close(gonio_readings_value(plan, 1, 2), 0.3, 0.0);
+    gonio_readings_free(&plan);
+    gonio_readings_free(&known);
+}
+
+static void test_spectra_are_looked_up_too(void **state)
+{
+    (void)state;
+    gonio_readings *known = make("30,0,50,40,0.1,0.2\n10,0,20,0,0.3,0.4\n",
+                                 ",400nm_per_sr,500nm_per_sr");
+    gonio_readings *plan = make("10,0,20,0\n", "");
+    assert_int_equal(gonio_readings_look_up(NULL, plan, known), GONIO_OK);
+    assert_int_equal(gonio_readings_channels(plan), 2);
+    assert_close(gonio_readings_value(plan, 0, 0), 0.3, 0.0);
+    assert_close(gonio_readings_value(plan, 0, 1), 0.4, 0.0);
+    assert_close(gonio_readings_describe(plan).wavelength[1], 500.0, 0.0);
+    gonio_readings_free(&plan);
+    gonio_readings_free(&known);
+}
+
+/* ---- errors ---- */
+
+static void test_errors_between_readings(void **state)
+{
+    (void)state;
+    gonio_readings *a = make(known_lines, rgb);
+    gonio_readings *b = make("30,0,50,40,0.11,0.2,0.2\n20,0,70,200,0.4,0.6,7\n"
+                             "45,0,45,180,1,2,3\n",
+                             rgb);
+    const bool left_out[3] = {false, false, true};
+    const double pairs[][3] = {/* value, other, channel */
+                               {0.1, 0.11, 0}, {0.2, 0.2, 1}, {0.3, 0.2, 2}, {0.4, 0.4, 0},
+                               {0.5, 0.6, 1}};
+    double sums[5] = {0.0};
+    for (size_t k = 0; k < 5; k++) {
+        const double cosines = k < 3 ? cos(M_PI / 6.0) * cos(50.0 * M_PI / 180.0)
+                                     : cos(M_PI / 9.0) * cos(70.0 * M_PI / 180.0);
+        const double s = gonio_log_scale((int)pairs[k][2]);
+        const double g = log(1.0 + pairs[k][0] / s);
+        const double cube = cbrt(pairs[k][0] * cosines);
+        sums[0] += pow(g - log(1.0 + pairs[k][1] / s), 2.0);
+        sums[1] += g * g;
+        sums[2] += pow(cube - cbrt(pairs[k][1] * cosines), 2.0);
+        sums[3] += cube * cube;
+        sums[4] += pow(log((pairs[k][0] * cosines + 0.001) / (pairs[k][1] * cosines + 0.001)), 2.0);
+    }
+    gonio_error error;
+    size_t compared = 0;
+    assert_int_equal(gonio_compare_readings(NULL, a, b, left_out, &error, &compared), GONIO_OK);
+    assert_int_equal(compared, 2);
+    assert_close(error.e6, 100.0 * sqrt(sums[0] / sums[1]), 1e-9);
+    assert_close(error.cube_root, 100.0 * sqrt(sums[2] / sums[3]), 1e-9);
+    assert_close(error.log_relative, sqrt(sums[4] / 5.0), 1e-12);
+    assert_int_equal(gonio_compare_readings(NULL, a, a, NULL, &error, &compared), GONIO_OK);
+    assert_int_equal(compared, 3);
+    assert_true(error.e6 == 0.0 && error.cube_root == 0.0 && error.log_relative == 0.0);
+    gonio_readings_free(&a);
+    gonio_readings_free(&b);
+}
+
+static void test_readings_that_cannot_be_compared(void **state)
+{
+    (void)state;
+    gonio_context *context = support_context();
+    gonio_readings *a = make(known_lines, rgb);
+    gonio_readings *fewer = make("30,0,50,40,0.1,0.2,0.3\n", rgb);
+    gonio_readings *spectral = make("30,0,50,40,1\n20,0,70,200,1\n45,0,45,180,1\n",
+                                    ",400nm_per_sr");
+    gonio_readings *dark = make("30,0,50,40,0,0,0\n", rgb);
+    gonio_error error;
+    size_t compared = 0;
+    const bool all[3] = {true, true, true};
+    assert_int_equal(gonio_compare_readings(context, a, fewer, NULL, &error, &compared),
+                     GONIO_ERROR_MISMATCH);
+    assert_int_equal(gonio_compare_readings(context, a, spectral, NULL, &error, &compared),
+                     GONIO_ERROR_MISMATCH);
+    assert_int_equal(gonio_compare_readings(context, dark, fewer, NULL, &error, &compared),
+                     GONIO_ERROR_DATA);
+    assert_int_equal(gonio_compare_readings(context, a, a, all, &error, &compared),
+                     GONIO_ERROR_DATA);
+    assert_non_null(strstr(support_message(), "nothing to compare"));
+    gonio_readings_free(&dark);
+    gonio_readings_free(&spectral);
+    gonio_readings_free(&fewer);
+    gonio_readings_free(&a);
+    gonio_context_free(&context);
+}
+
+/* ---- spectra as colours ---- */
+
+static void test_spectra_as_colours(void **state)
+{
+    (void)state;
+    double wavelength[31];
+    double value[31];
+    double colour[GONIO_CHANNELS];
+    double twice[GONIO_CHANNELS];
+    for (size_t k = 0; k < 31; k++) {
+        wavelength[k] = 400.0 + 10.0 * (double)k;
+        value[k] = 0.7;
+    }
+    gonio_i_spectrum_to_rgb(wavelength, value, 31, colour); /* flat: white */
+    for (int c = 0; c < GONIO_CHANNELS; c++) {
+        assert_close(colour[c], 0.7, 1e-12);
+    }
+    /* Light of one end or the middle is mostly of that colour; never negative. */
+    static const double middle[GONIO_CHANNELS] = {620.0, 540.0, 450.0};
+    for (int c = 0; c < GONIO_CHANNELS; c++) {
+        for (size_t k = 0; k < 31; k++) {
+            value[k] = exp(-0.5 * pow((wavelength[k] - middle[c]) / 15.0, 2.0));
+        }
+        gonio_i_spectrum_to_rgb(wavelength, value, 31, colour);
+        for (int other = 0; other < GONIO_CHANNELS; other++) {
+            assert_true(colour[other] >= 0.0 && isfinite(colour[other]));
+            assert_true(other == c || colour[other] < 0.7 * colour[c]);
+        }
+        for (size_t k = 0; k < 31; k++) {
+            value[k] *= 2.0;
+        }
+        gonio_i_spectrum_to_rgb(wavelength, value, 31, twice);
+        assert_close(twice[c], 2.0 * colour[c], 1e-12);
+    }
+    /* Its order does not matter. */
+    double backwards[31];
+    double reversed[31];
+    for (size_t k = 0; k < 31; k++) {
+        backwards[k] = wavelength[30 - k];
+        reversed[k] = value[30 - k];
+    }
+    gonio_i_spectrum_to_rgb(backwards, reversed, 31, colour);
+    for (int c = 0; c < GONIO_CHANNELS; c++) {
+        assert_close(colour[c], twice[c], 1e-12);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_look_up),
+        cmocka_unit_test(test_what_was_not_read_stays_so),
+        cmocka_unit_test(test_spectra_are_looked_up_too),
+        cmocka_unit_test(test_errors_between_readings),
+        cmocka_unit_test(test_readings_that_cannot_be_compared),
+        cmocka_unit_test(test_spectra_as_colours),
+    };
+    return cmocka_run_group_tests_name("readings looked up and compared", tests, NULL, NULL);
+}

@@ -1,0 +1,334 @@
+/* Mixtures by certificates: each against the formula of basis.h, the mean and the weights, columns
+ * given back by their samples, threads, the file. */
+#include "../support.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <hdf5.h>
+
+#include "basis/mixtures.h"
+#include "basis/prior.h"
+#include "core/random.h"
+#include "made_basis.h"
+
+enum { SEED = 7 };
+
+static void assert_close(double value, double expected, double tolerance)
+{
+    if (!(fabs(value - expected) <= tolerance)) {
+        fail_msg("%.17g where %.17g is expected (within %g)", value, expected, tolerance);
+    }
+}
+
+static const struct {
+    gonio_representation representation;
+    gonio_channel_model channels;
+} kinds[] = {{GONIO_SECTORED, GONIO_SEPARATE},
+             {GONIO_SECTORED, GONIO_JOINT},
+             {GONIO_BIVARIATE, GONIO_SEPARATE},
+             {GONIO_BIVARIATE, GONIO_JOINT}};
+
+enum { KINDS = sizeof kinds / sizeof *kinds };
+
+/* A basis, the columns that it was learned from, measured ones first: h[column][rows]. */
+typedef struct fixture {
+    gonio_database *database;
+    gonio_basis *basis;
+    gonio_basis_view view;
+    size_t measured;
+    double *h;
+} fixture;
+
+static fixture make(gonio_context *context, int kind)
+{
+    fixture f = {.database = made_database(kinds[kind].representation, kinds[kind].channels),
+                 .basis = made_basis(context, kinds[kind].representation, kinds[kind].channels, SEED)};
+    const gonio_basis_options options = {.mixtures = MADE_MIXTURES, .seed = SEED};
+    f.view = gonio_basis_describe(f.basis);
+    f.measured = f.view.columns - f.view.mixtures;
+    f.h = malloc(f.view.columns * f.view.rows * sizeof *f.h);
+    float *values = malloc(f.view.mixtures * f.view.rows * sizeof *values);
+    assert_true(f.h != NULL && values != NULL);
+    assert_int_equal(
+        gonio_database_read_rows(f.database, NULL, 0, f.view.rows, NULL, 0, f.h), GONIO_OK);
+    gonio_i_mixtures *mixtures = NULL;
+    assert_int_equal(
+        gonio_i_mixtures_create(context, f.basis, f.database, &options, &mixtures), GONIO_OK);
+    gonio_i_mixtures_fill(mixtures, 0, f.view.rows, values);
+    for (size_t k = 0; k < f.view.mixtures * f.view.rows; k++) {
+        f.h[f.measured * f.view.rows + k] = (double)values[k];
+    }
+    gonio_i_mixtures_free(&mixtures);
+    free(values);
+    return f;
+}
+
+static fixture made[KINDS];
+
+/* A context, as BLAS is on one thread from the first one on. */
+static gonio_context *context_of(int threads)
+{
+    const gonio_context_options options = {.threads = threads};
+    gonio_context *context = NULL;
+    assert_int_equal(gonio_context_create(&context, &options), GONIO_OK);
+    return context;
+}
+
+static int set_up(void **state)
+{
+    (void)state;
+    gonio_context *context = context_of(0);
+    for (int kind = 0; kind < KINDS; kind++) {
+        made[kind] = make(context, kind);
+    }
+    gonio_context_free(&context);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < KINDS; kind++) {
+        free(made[kind].h);
+        gonio_basis_free(&made[kind].basis);
+        gonio_database_free(&made[kind].database);
+    }
+    return 0;
+}
+
+/* column(theta_h / f) of a row, theta_h in radians. */
+static double stretched(const fixture *f, size_t column, double width, size_t row)
+{
+    const size_t each = f->view.channels == GONIO_JOINT ? GONIO_CHANNELS : 1;
+    const int32_t slab = gonio_grid_cells(f->view.representation) / GONIO_THETA_H_BINS;
+    const int32_t cell = f->view.cell[row / each];
+    const double centre =
+        gonio_bin_centre(gonio_cell_bin(f->view.representation, cell)).theta_h / width;
+    const double place =
+        fmin(fmax(90.0 * sqrt(centre / (M_PI / 2.0)) - 0.5, 0.0), GONIO_THETA_H_BINS - 1.0);
+    const int low = place >= GONIO_THETA_H_BINS - 1 ? GONIO_THETA_H_BINS - 2 : (int)place;
+    double value[2];
+    for (int k = 0; k < 2; k++) {
+        const size_t position = gonio_basis_position(f->basis, (low + k) * slab + cell % slab);
+        value[k] = f->h[column * f->view.rows + position * each + row % each];
+    }
+    return (1.0 - (place - low)) * value[0] + (place - low) * value[1];
+}
+
+static void test_the_formula(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < KINDS; kind++) {
+        const fixture f = made[kind];
+        for (size_t k = 0; k < f.view.mixtures; k++) {
+            /* Each mixture has a stream: the share, then of each half its column and ln f. */
+            gonio_i_random random;
+            gonio_i_random_seed(&random, SEED, k);
+            const double share = gonio_i_random_uniform(&random);
+            size_t column[2];
+            double width[2];
+            for (int half = 0; half < 2; half++) {
+                column[half] = (size_t)gonio_i_random_below(&random, f.measured);
+                width[half] = exp(0.3 * gonio_i_random_normal(&random));
+            }
+            for (size_t row = k; row < f.view.rows; row += 101) {
+                const double a = stretched(&f, column[0], width[0], row);
+                const double b = stretched(&f, column[1], width[1], row);
+                const double expected =
+                    log(1.0 + share * (exp(a) - 1.0) + (1.0 - share) * (exp(b) - 1.0));
+                assert_close(f.h[(f.measured + k) * f.view.rows + row], expected,
+                             1e-6 * (1.0 + expected));
+            }
+        }
+    }
+}
+
+static void test_the_mean_is_that_of_the_two_groups(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < KINDS; kind++) {
+        const fixture f = made[kind];
+        for (size_t row = 0; row < f.view.rows; row += 13) {
+            double mean[2] = {0.0, 0.0};
+            for (size_t j = 0; j < f.view.columns; j++) {
+                mean[j >= f.measured] += f.h[j * f.view.rows + row];
+            }
+            assert_close(f.view.mean[row],
+                         0.5 * (mean[0] / (double)f.measured + mean[1] / (double)MADE_MIXTURES),
+                         1e-12);
+        }
+    }
+}
+
+/* m + f z_j is column j where nothing was cut off, and z has mean 0 and covariance I. */
+static void test_samples_are_the_columns(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < KINDS; kind++) {
+        const fixture f = made[kind];
+        const size_t k = f.view.components;
+        gonio_i_prior *prior = NULL;
+        assert_int_equal(gonio_i_prior_create(NULL, f.basis, &prior), GONIO_OK);
+        assert_int_equal(prior->samples, f.view.columns);
+        double *row_f = malloc(k * sizeof *row_f);
+        double largest = 0.0;
+        for (size_t row = 0; row < f.view.rows; row += 7) {
+            gonio_i_prior_row(prior, row, row_f);
+            for (size_t j = 0; j < f.view.columns; j++) {
+                double g = f.view.mean[row];
+                for (size_t c = 0; c < k; c++) {
+                    g += row_f[c] * prior->sample[j * k + c];
+                }
+                largest = fmax(largest, fabs(g - f.h[j * f.view.rows + row]));
+            }
+        }
+        assert_close(largest, 0.0, 1e-4);
+        const double n = (double)f.view.columns;
+        double all = 0.0;
+        for (size_t j = 0; j < prior->samples; j++) {
+            all += prior->share[j];
+        }
+        assert_close(all, 1.0, 1e-12);
+        for (size_t a = 0; a < k; a++) {
+            double mean = 0.0;
+            for (size_t j = 0; j < prior->samples; j++) {
+                mean += prior->share[j] * prior->sample[j * k + a];
+            }
+            assert_close(mean, 0.0, 1e-3);
+            for (size_t b = 0; b <= a; b++) {
+                double sum = 0.0;
+                for (size_t j = 0; j < prior->samples; j++) {
+                    sum += prior->share[j] * prior->sample[j * k + a] * prior->sample[j * k + b];
+                }
+                assert_close(sum, a == b ? (n - 1.0) / n : 0.0, 1e-9);
+            }
+        }
+        free(row_f);
+        gonio_i_prior_free(&prior);
+    }
+}
+
+static void test_threads_and_seeds(void **state)
+{
+    (void)state;
+    const uint64_t checksum = made[0].view.checksum;
+    for (int threads = 1; threads <= 2; threads++) {
+        gonio_context *context = context_of(threads);
+        gonio_basis *basis = made_basis(context, GONIO_SECTORED, GONIO_SEPARATE, SEED);
+        assert_true(gonio_basis_describe(basis).checksum == checksum);
+        gonio_basis_free(&basis);
+        gonio_context_free(&context);
+    }
+    gonio_basis *other = made_basis(NULL, GONIO_BIVARIATE, GONIO_SEPARATE, SEED + 1);
+    assert_true(gonio_basis_describe(other).checksum != made[2].view.checksum);
+    gonio_basis_free(&other);
+}
+
+static void test_what_has_no_mixtures(void **state)
+{
+    (void)state;
+    static const struct {
+        gonio_database_options kind;
+        bool without_mean;
+    } cases[] = {{{.representation = GONIO_BIVARIATE, .mapping = GONIO_LOG_RELATIVE}, false},
+                 {{.representation = GONIO_SECTORED}, true}};
+    gonio_context *context = support_context();
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        const gonio_basis_options options = {.mixtures = 4, .without_mean = cases[k].without_mean};
+        gonio_database *database = NULL;
+        gonio_basis *basis = NULL;
+        assert_int_equal(gonio_database_create(context, made_paths, MADE_MATERIALS, &cases[k].kind,
+                                               &database),
+                         GONIO_OK);
+        assert_int_equal(gonio_basis_learn(context, database, &options, &basis),
+                         GONIO_ERROR_ARGUMENT);
+        assert_null(basis);
+        assert_non_null(strstr(support_message(), "mixtures are for the log mapping with a mean"));
+        gonio_database_free(&database);
+    }
+    gonio_context_free(&context);
+}
+
+/* ---- the file ---- */
+
+static void test_the_file_keeps_mixtures(void **state)
+{
+    (void)state;
+    char *folder = support_folder();
+    char path[256];
+    snprintf(path, sizeof path, "%s/basis.gonio", folder);
+    const gonio_basis *basis = made[0].basis;
+    gonio_basis *again = NULL;
+    assert_int_equal(gonio_basis_write(NULL, basis, "", path), GONIO_OK);
+    assert_int_equal(gonio_basis_read(NULL, path, &again), GONIO_OK);
+    const gonio_basis_view a = gonio_basis_describe(basis);
+    const gonio_basis_view b = gonio_basis_describe(again);
+    assert_int_equal(b.representation, GONIO_SECTORED);
+    assert_int_equal(b.channels, GONIO_SEPARATE);
+    assert_int_equal(b.mixtures, MADE_MIXTURES);
+    assert_int_equal(b.columns, a.columns);
+    assert_int_equal(b.components, a.components);
+    assert_int_equal(b.rows, a.rows);
+    assert_true(a.fingerprint == b.fingerprint && a.checksum == b.checksum);
+    assert_memory_equal(a.cell, b.cell, a.cells * sizeof *a.cell);
+    assert_memory_equal(a.mean, b.mean, a.rows * sizeof *a.mean);
+    assert_memory_equal(a.vectors, b.vectors, a.rows * a.components * sizeof *a.vectors);
+    assert_memory_equal(a.loadings, b.loadings, a.columns * a.components * sizeof *a.loadings);
+    gonio_basis_free(&again);
+    support_remove(folder);
+}
+
+/* Writes another number of mixtures into a file; removes the attribute if it is INT64_MIN. */
+static void change_mixtures(const char *path, int64_t mixtures)
+{
+    const hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
+    assert_true(file >= 0);
+    if (mixtures == INT64_MIN) {
+        assert_true(H5Adelete(file, "mixtures") >= 0);
+    } else {
+        const hid_t attribute = H5Aopen(file, "mixtures", H5P_DEFAULT);
+        assert_true(attribute >= 0);
+        assert_true(H5Awrite(attribute, H5T_NATIVE_INT64, &mixtures) >= 0);
+        H5Aclose(attribute);
+    }
+    H5Fclose(file);
+}
+
+static void test_a_damaged_number_of_mixtures(void **state)
+{
+    (void)state;
+    static const int64_t wrong[] = {-1,        INT64_MAX, 1 << 21, MADE_MIXTURES - 1,
+                                    MADE_MIXTURES + 1, 0, INT64_MIN};
+    char *folder = support_folder();
+    char path[256];
+    snprintf(path, sizeof path, "%s/basis.gonio", folder);
+    gonio_context *context = support_context();
+    const gonio_basis *basis = made[2].basis;
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
+        gonio_basis *again = NULL;
+        assert_int_equal(gonio_basis_write(context, basis, "", path), GONIO_OK);
+        change_mixtures(path, wrong[k]);
+        assert_int_equal(gonio_basis_read(context, path, &again), GONIO_ERROR_FORMAT);
+        assert_null(again);
+        assert_non_null(strstr(support_message(), "learn the basis again"));
+    }
+    gonio_context_free(&context);
+    support_remove(folder);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_the_formula),
+        cmocka_unit_test(test_the_mean_is_that_of_the_two_groups),
+        cmocka_unit_test(test_samples_are_the_columns),
+        cmocka_unit_test(test_threads_and_seeds),
+        cmocka_unit_test(test_what_has_no_mixtures),
+        cmocka_unit_test(test_the_file_keeps_mixtures),
+        cmocka_unit_test(test_a_damaged_number_of_mixtures),
+    };
+    return cmocka_run_group_tests_name("mixtures", tests, set_up, tear_down);
+}
