@@ -3,8 +3,8 @@
  *     gonio-accuracy FOLDER SPLITS.json FIRST LAST N[,N...] [noise|outliers|METHOD ...]
  *
  * For splits FIRST to LAST of a splits file (as `gonio reproduce --splits` takes it) learns a basis
- * of the materials to learn from, plans, reads the test materials at single directions, reconstructs
- * and compares. Prints a line of CSV for each material and number of readings. */
+ * of the materials to learn from, plans, reads the test materials at single directions,
+ * reconstructs and compares. Prints a line of CSV for each material and number of readings. */
 #include <gonio/gonio.h>
 
 #include <jansson.h>
@@ -112,8 +112,8 @@ static double coverage(gonio_context *context, const gonio_material *original,
         for (size_t k = 0; k < GONIO_SLAB_VALUES; k++) {
             const int channel = (int)(k / GONIO_SLAB_BINS);
             if (rho[k] >= 0.0 && other[k] >= 0.0) {
-                const double off = gonio_log_from_brdf(rho[k], channel) -
-                                   gonio_log_from_brdf(other[k], channel);
+                const double off =
+                    gonio_log_from_brdf(rho[k], channel) - gonio_log_from_brdf(other[k], channel);
                 inside += fabs(off) <= 1.96 * sigma[k] / gonio_log_scale(channel);
                 all++;
             }
@@ -128,10 +128,8 @@ static void run(gonio_context *context, const setting *s, const gonio_basis *bas
                 size_t n, int split)
 {
     gonio_readings *readings = first_of(context, plan, n);
-    const gonio_instrument_options instrument = {.noise = s->noise,
-                                                 .floor = s->floor,
-                                                 .seed = (uint64_t)split,
-                                                 .outliers = s->outliers};
+    const gonio_instrument_options instrument = {
+        .noise = s->noise, .floor = s->floor, .seed = (uint64_t)split, .outliers = s->outliers};
     gonio_reconstruct_options how;
     gonio_reconstruction *made = NULL;
     gonio_material *material = NULL;
@@ -155,7 +153,8 @@ static void run(gonio_context *context, const setting *s, const gonio_basis *bas
     printf("%s,%d,%s,%zu,%g,%g,%g,%.4f,%.4f,%.5f,%.4f,%.4f,%g,%zu,%.3f,%.3f\n", s->method, split,
            gonio_material_name(original), n, s->noise, s->floor, s->outliers, comparison.all.e6,
            comparison.all.cube_root, comparison.all.log_relative, made->predicted_e6, inside,
-           made->smoothness, made->outlying, plan->expected != NULL ? plan->expected[n - 1] : NAN, made->surprise);
+           made->smoothness, made->outlying, plan->expected != NULL ? plan->expected[n - 1] : NAN,
+           made->surprise);
     fflush(stdout);
     gonio_material_free(&deviation);
     gonio_material_free(&material);

@@ -123,9 +123,9 @@ typedef struct gonio_database_view {
     const uint64_t *fingerprints; /* [materials], material.h */
     size_t columns;               /* materials, or 3 x materials if separate */
     size_t cells;                 /* cells with data in every material */
-    const int32_t *cell;          /* [cells], ascending; bivariate theta_d + 90 theta_h; full a bin's
-                                  * index; sectored sector + 12 (theta_d + 90 theta_h) */
-    size_t rows;                  /* 3 x cells if joint, cells if separate */
+    const int32_t *cell; /* [cells], ascending; bivariate theta_d + 90 theta_h; full a bin's
+                          * index; sectored sector + 12 (theta_d + 90 theta_h) */
+    size_t rows;         /* 3 x cells if joint, cells if separate */
 } gonio_database_view;
 
 GONIO_API gonio_database_view gonio_database_describe(const gonio_database *database);

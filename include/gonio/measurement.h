@@ -51,10 +51,10 @@ GONIO_API void gonio_readings_free(gonio_readings **readings);
 typedef struct gonio_readings_view {
     size_t count;
     const gonio_reading *reading;
-    const char *path;   /* where it was read from, for messages */
-    uint64_t basis;     /* fingerprint of the basis the plan was made for; 0 if not stated */
-    size_t components;  /* K of the plan; 0 if not stated */
-    const char *method; /* of the plan; "" if not stated */
+    const char *path;         /* where it was read from, for messages */
+    uint64_t basis;           /* fingerprint of the basis the plan was made for; 0 if not stated */
+    size_t components;        /* K of the plan; 0 if not stated */
+    const char *method;       /* of the plan; "" if not stated */
     size_t wavelengths;       /* of spectral readings; 0: R, G, B */
     const double *wavelength; /* [wavelengths], nm */
     const double *spectrum;   /* [count][wavelengths], 1/sr; NaN where nothing was read */

@@ -48,17 +48,17 @@ typedef struct gonio_reconstruction {
     double condition_number; /* kappa of X'X of the readings used; of S X'X S + eta I with ridge */
     double residual;         /* root mean square of X c - (b - m), log units */
     /* By posterior only, otherwise 0 and NULL: */
-    double *field;          /* g in every row of the basis, [columns][rows] */
-    double *deviation;      /* its standard deviation, [columns][rows], if asked for */
-    double predicted_e6;    /* the E6 to expect, per cent */
-    double smoothness;      /* alpha: how far the remainder goes from the database, log units */
-    double surprise;        /* root mean square of what the others say of each reading, in deviations:
-                             * 1 where the material is as the database expects */
-    size_t outlying;        /* readings that the others contradict; they hardly count */
-    size_t wavelengths;     /* 0 for R, G, B */
-    double *wavelength;     /* [wavelengths], nm */
-    const char *suspicion;  /* what would explain the readings far better than what they say they
-                             * are ("the values include the cosine of theta_o"); NULL if nothing */
+    double *field;       /* g in every row of the basis, [columns][rows] */
+    double *deviation;   /* its standard deviation, [columns][rows], if asked for */
+    double predicted_e6; /* the E6 to expect, per cent */
+    double smoothness;   /* alpha: how far the remainder goes from the database, log units */
+    double surprise;     /* root mean square of what the others say of each reading, in deviations:
+                          * 1 where the material is as the database expects */
+    size_t outlying;     /* readings that the others contradict; they hardly count */
+    size_t wavelengths;  /* 0 for R, G, B */
+    double *wavelength;  /* [wavelengths], nm */
+    const char *suspicion; /* what would explain the readings far better than what they say they
+                            * are ("the values include the cosine of theta_o"); NULL if nothing */
 } gonio_reconstruction;
 
 /* What a reconstruction by posterior says of a reading at any directions: value[channels] in 1/sr,
@@ -75,9 +75,9 @@ GONIO_API gonio_status gonio_reconstruction_predict_readings(
     gonio_context *context, const gonio_basis *basis, const gonio_reconstruction *reconstruction,
     gonio_readings *readings);
 
-/* The standard deviations of g as a material, in place of rho/s: the numbers that a MERL table of it
- * holds are the deviations. The basis and the
- * reconstruction must outlive it. Errors: _MEMORY; _ARGUMENT if they were not asked for. */
+/* The standard deviations of g as a material, in place of rho/s: the numbers that a MERL table of
+ * it holds are the deviations. The basis and the reconstruction must outlive it. Errors: _MEMORY;
+ * _ARGUMENT if they were not asked for. */
 GONIO_API gonio_status gonio_reconstruction_deviation_material(
     gonio_context *context, const gonio_basis *basis, const gonio_reconstruction *reconstruction,
     gonio_material **material);
@@ -133,8 +133,8 @@ GONIO_API gonio_status gonio_reconstruct_material(gonio_context *context, const 
 GONIO_API gonio_status gonio_plan_next(gonio_context *context, const gonio_basis *basis,
                                        const gonio_readings *readings,
                                        const gonio_reconstruct_options *options,
-                                       const gonio_plan_options *plan_options,
-                                       double *expected_now, gonio_plan **plan);
+                                       const gonio_plan_options *plan_options, double *expected_now,
+                                       gonio_plan **plan);
 
 GONIO_API void gonio_reconstruction_free(gonio_reconstruction **reconstruction);
 

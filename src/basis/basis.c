@@ -41,8 +41,8 @@ gonio_basis *gonio_i_basis_allocate(gonio_context *context, size_t materials, si
     made->mean = gonio_i_allocate(context, rows, sizeof *made->mean);
     made->vectors = gonio_i_allocate(context, rows * components, sizeof *made->vectors);
     made->variances = gonio_i_allocate(context, variance_count, sizeof *made->variances);
-    made->loadings = gonio_i_allocate(
-        context, gonio_i_basis_columns(made) * components, sizeof *made->loadings);
+    made->loadings =
+        gonio_i_allocate(context, gonio_i_basis_columns(made) * components, sizeof *made->loadings);
     if (made->names == NULL || made->fingerprints == NULL || made->cell == NULL ||
         made->mean == NULL || made->vectors == NULL || made->variances == NULL ||
         made->loadings == NULL) {
@@ -210,7 +210,8 @@ static void add_everything(const gonio_basis *basis, gonio_fingerprint *fingerpr
 static void add_loadings(const gonio_basis *basis, gonio_fingerprint *fingerprint)
 {
     gonio_fingerprint_add(fingerprint, basis->loadings,
-                          gonio_i_basis_columns(basis) * basis->components * sizeof *basis->loadings);
+                          gonio_i_basis_columns(basis) * basis->components *
+                              sizeof *basis->loadings);
 }
 
 static gonio_status hash(const gonio_basis *basis,
@@ -303,8 +304,8 @@ void gonio_basis_row_at(const gonio_basis *basis, gonio_half_difference coordina
     *mean = 0.0;
     memset(row, 0, components * sizeof *row);
     for (int k = 0; k < points; k++) {
-        const size_t position = gonio_basis_position(
-            basis, gonio_cell_of_bin(basis->representation, stencil[k].bin));
+        const size_t position =
+            gonio_basis_position(basis, gonio_cell_of_bin(basis->representation, stencil[k].bin));
         const size_t source =
             basis->channels == GONIO_JOINT ? GONIO_CHANNELS * position + (size_t)channel : position;
         *mean += stencil[k].weight * basis->mean[source];

@@ -30,8 +30,8 @@ typedef struct learner {
     gonio_database_view view;
     const size_t *subset; /* of its materials; NULL for all */
     size_t materials;
-    size_t columns;  /* with mixtures */
-    size_t measured; /* columns of the materials, which come first */
+    size_t columns;                   /* with mixtures */
+    size_t measured;                  /* columns of the materials, which come first */
     const gonio_i_mixtures *mixtures; /* NULL without */
     double weight[2];                 /* of a measured column and of a mixture; on average 1 */
     bool any_rank;                    /* fewer components will do */

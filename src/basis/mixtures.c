@@ -36,9 +36,9 @@ static void draw(gonio_i_mixtures *m, size_t columns, uint64_t seed)
         gonio_i_random_seed(&random, seed, k);
         const double share = gonio_i_random_uniform(&random);
         for (int h = 0; h < 2; h++) {
-            m->recipe[k].half[h] = (half){(size_t)gonio_i_random_below(&random, columns),
-                                          h == 0 ? share : 1.0 - share,
-                                          exp(WIDTH_DEVIATION * gonio_i_random_normal(&random))};
+            m->recipe[k].half[h] =
+                (half){(size_t)gonio_i_random_below(&random, columns), h == 0 ? share : 1.0 - share,
+                       exp(WIDTH_DEVIATION * gonio_i_random_normal(&random))};
         }
     }
 }
@@ -82,8 +82,7 @@ gonio_status gonio_i_mixtures_create(gonio_context *context, const gonio_basis *
     m->count = basis->mixtures;
     m->recipe = gonio_i_allocate(context, m->count, sizeof *m->recipe);
     m->measured = gonio_i_allocate(context, columns * basis->rows, sizeof *m->measured);
-    gonio_status status =
-        m->recipe == NULL || m->measured == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    gonio_status status = m->recipe == NULL || m->measured == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
     if (status == GONIO_OK) {
         draw(m, columns, options->seed);
         status = read_measured(context, database, options, columns, m);
@@ -120,8 +119,7 @@ static double stretched(const gonio_i_mixtures *m, const half *h, size_t row)
     double value[2];
     for (int k = 0; k < 2; k++) {
         const size_t position = gonio_basis_position(m->basis, (low + k) * slab + cell % slab);
-        value[k] =
-            (double)m->measured[h->column * m->basis->rows + position * each + row % each];
+        value[k] = (double)m->measured[h->column * m->basis->rows + position * each + row % each];
     }
     return value[0] + (inside - low) * (value[1] - value[0]);
 }

@@ -36,9 +36,11 @@ void gonio_i_prior_row(const gonio_i_prior *prior, size_t row, double *f);
 
 /* The remainder has covariance alpha^2 k(x, x'),
  *
- *     k = exp(-|p - p'|^2/2) + peak^2 exp(-(theta_h^2 + theta_h'^2)/(2 WIDTH^2)) exp(-2 |p - p'|^2):
+ *     k = exp(-|p - p'|^2/2) + peak^2 exp(-(theta_h^2 + theta_h'^2)/(2 WIDTH^2)) exp(-2 |p -
+ * p'|^2):
  *
- * near the mirror direction, within about a degree (WIDTH), peaks can be narrower than any in the database.
+ * near the mirror direction, within about a degree (WIDTH), peaks can be narrower than any in the
+ * database.
  *
  * Half/difference coordinates in which the remainder is smooth: lengths of 10 bins of theta_h
  * (which crowd around the mirror direction), 20 degrees of theta_d, and phi_d as far as it matters

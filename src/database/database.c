@@ -349,10 +349,10 @@ static gonio_status read_slab(gonio_context *context, const gonio_database *data
         gonio_slab_scale(GONIO_LOG_RELATIVE, 0, theta_h, r->scale);
         divide_slab(r->scale, r->rho);
     }
-    static strides (*const rows_of[])(const gonio_database *, int, const reader *) = {
-        [GONIO_BIVARIATE] = bivariate_rows,
-        [GONIO_FULL] = full_rows,
-        [GONIO_SECTORED] = sectored_rows};
+    static strides (*const rows_of[])(const gonio_database *, int,
+                                      const reader *) = {[GONIO_BIVARIATE] = bivariate_rows,
+                                                         [GONIO_FULL] = full_rows,
+                                                         [GONIO_SECTORED] = sectored_rows};
     const strides step = rows_of[database->options.representation](database, theta_h, r);
     const size_t first = database->tile[database->slab_tiles[theta_h]].first;
     const size_t end = database->tile[database->slab_tiles[theta_h + 1]].first;

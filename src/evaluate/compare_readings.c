@@ -18,8 +18,7 @@ static void add_value(gonio_half_difference at, double s, double rho, double oth
     const double difference = g - log1p(other / s);
     const double cube = cbrt(rho * cosines);
     const double cubes = cube - cbrt(other * cosines);
-    const double ratio =
-        log((rho * w + GONIO_I_RATIO_OFFSET) / (other * w + GONIO_I_RATIO_OFFSET));
+    const double ratio = log((rho * w + GONIO_I_RATIO_OFFSET) / (other * w + GONIO_I_RATIO_OFFSET));
     const gonio_i_error_sums part = {difference * difference, g * g, cubes * cubes, cube * cube,
                                      ratio * ratio};
     gonio_i_error_add(sums, &part);

@@ -69,12 +69,12 @@ gonio_status gonio_readings_look_up(gonio_context *context, gonio_readings *plan
     gonio_half_difference *at = coordinates(context, known);
     gonio_status status = at == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
     if (status == GONIO_OK && known->wavelengths > 0) {
-        status = gonio_i_readings_set_wavelengths(context, plan, known->wavelength,
-                                                  known->wavelengths);
+        status =
+            gonio_i_readings_set_wavelengths(context, plan, known->wavelength, known->wavelengths);
     }
     for (size_t k = 0; k < plan->count && status == GONIO_OK; k++) {
-        const size_t from = find(at, known->count,
-                                 gonio_half_difference_from_pair(plan->reading[k].pair));
+        const size_t from =
+            find(at, known->count, gonio_half_difference_from_pair(plan->reading[k].pair));
         if (from == known->count) {
             status = gonio_i_fail(context, GONIO_ERROR_DATA,
                                   "%s:%zu: %s has no reading at these directions; plan with "

@@ -55,9 +55,8 @@ size_t gonio_readings_channels(const gonio_readings *readings)
 
 double gonio_readings_value(const gonio_readings *readings, size_t reading, size_t channel)
 {
-    return readings->wavelengths > 0
-               ? readings->spectrum[reading * readings->wavelengths + channel]
-               : readings->reading[reading].value[channel];
+    return readings->wavelengths > 0 ? readings->spectrum[reading * readings->wavelengths + channel]
+                                     : readings->reading[reading].value[channel];
 }
 
 double gonio_readings_scale(const gonio_readings *readings, size_t channel)
@@ -232,11 +231,11 @@ static gonio_status find_columns(gonio_context *context, const gonio_readings *r
         }
     }
     if (values_needed && !any) {
-        return gonio_i_fail(
-            context, GONIO_ERROR_FORMAT,
-            "%s: no column of values (R_per_sr, G_per_sr, B_per_sr, or 400nm_per_sr ...): a plan that was "
-            "not measured yet?",
-            readings->path);
+        return gonio_i_fail(context, GONIO_ERROR_FORMAT,
+                            "%s: no column of values (R_per_sr, G_per_sr, B_per_sr, or "
+                            "400nm_per_sr ...): a plan that was "
+                            "not measured yet?",
+                            readings->path);
     }
     c->channel = gonio_i_csv_column(readings->csv, "channel");
     return GONIO_OK;

@@ -63,8 +63,8 @@ static gonio_status read_number(numbers *n, double *value)
     read_word(n, word);
     *value = strtod(word, &end);
     if (*end != '\0' || end == word || !isfinite(*value)) {
-        return gonio_i_fail(n->context, GONIO_ERROR_FORMAT, "%s:%zu: '%.40s' is no number",
-                            n->path, n->line, word);
+        return gonio_i_fail(n->context, GONIO_ERROR_FORMAT, "%s:%zu: '%.40s' is no number", n->path,
+                            n->line, word);
     }
     return GONIO_OK;
 }
@@ -113,8 +113,7 @@ static gonio_status read_wavelengths(numbers *n, gonio_i_csv *csv, size_t *count
 static gonio_status read_reading(numbers *n, gonio_i_csv *csv, size_t wavelengths)
 {
     const size_t row = csv->rows;
-    gonio_status status =
-        gonio_i_csv_add_row(csv, n->line) ? GONIO_OK : GONIO_ERROR_MEMORY;
+    gonio_status status = gonio_i_csv_add_row(csv, n->line) ? GONIO_OK : GONIO_ERROR_MEMORY;
     for (size_t k = 0; k < ANGLES + wavelengths && status == GONIO_OK; k++) {
         double value = 0.0;
         status = read_number(n, &value);
@@ -134,12 +133,14 @@ gonio_status gonio_i_scattered_read(gonio_context *context, const char *path, go
     }
     size_t wavelengths = 0;
     gonio_i_csv *made = gonio_i_csv_create(context);
-    gonio_status status = made == NULL ? GONIO_ERROR_MEMORY : read_wavelengths(&n, made, &wavelengths);
+    gonio_status status =
+        made == NULL ? GONIO_ERROR_MEMORY : read_wavelengths(&n, made, &wavelengths);
     while (status == GONIO_OK && skip(&n) != EOF) {
         status = read_reading(&n, made, wavelengths);
     }
     if (status == GONIO_OK && ferror(n.file)) {
-        status = gonio_i_fail(context, GONIO_ERROR_IO, "%s: cannot read: %s", path, strerror(errno));
+        status =
+            gonio_i_fail(context, GONIO_ERROR_IO, "%s: cannot read: %s", path, strerror(errno));
     }
     fclose(n.file);
     if (status != GONIO_OK) {

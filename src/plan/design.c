@@ -71,8 +71,7 @@ static gonio_status allocate_places(place_list *p)
     for (size_t k = 0; p->identity != NULL && k < p->components; k++) {
         p->identity[k * (p->components + 1)] = 1.0;
     }
-    const bool done =
-        p->f && p->mean && p->loss && p->allowed && p->at && p->identity;
+    const bool done = p->f && p->mean && p->loss && p->allowed && p->at && p->identity;
     return done ? GONIO_OK : GONIO_ERROR_MEMORY;
 }
 
@@ -175,8 +174,7 @@ static gonio_status list_candidates(place_list *p, const gonio_plan_options *opt
     const size_t most = p->known != NULL ? p->prior->components : MOST_RANK;
     p->rows = options->candidate_count;
     p->components = p->known != NULL || p->rows > most ? most : p->rows;
-    double *f =
-        gonio_i_allocate(p->context, p->rows * p->prior->components, sizeof *f);
+    double *f = gonio_i_allocate(p->context, p->rows * p->prior->components, sizeof *f);
     gonio_status status = f == NULL ? GONIO_ERROR_MEMORY : allocate_places(p);
     for (size_t k = 0; k < p->rows && status == GONIO_OK; k++) {
         p->at[k] = gonio_half_difference_from_pair(options->candidates[k]);
@@ -315,16 +313,16 @@ static gonio_status fill_plan(const place_list *p, const gonio_plan_options *opt
     size_t *chosen = gonio_i_allocate(p->context, plan->count, sizeof *chosen);
     double *remaining = gonio_i_allocate(p->context, plan->count + 1, sizeof *remaining);
     plan->expected = gonio_i_allocate(p->context, plan->count, sizeof *plan->expected);
-    const gonio_i_design_problem problem = {
-        .context = p->context,
-        .f = p->f,
-        .rows = p->rows,
-        .components = p->components,
-        .covariance = p->known != NULL ? p->known->covariance : p->identity,
-        .loss = p->loss,
-        .allowed = p->allowed,
-        .variance = NOISE * NOISE,
-        .count = plan->count};
+    const gonio_i_design_problem problem = {.context = p->context,
+                                            .f = p->f,
+                                            .rows = p->rows,
+                                            .components = p->components,
+                                            .covariance = p->known != NULL ? p->known->covariance
+                                                                           : p->identity,
+                                            .loss = p->loss,
+                                            .allowed = p->allowed,
+                                            .variance = NOISE * NOISE,
+                                            .count = plan->count};
     const bool done = chosen != NULL && remaining != NULL && plan->expected != NULL;
     gonio_status status = done ? GONIO_OK : GONIO_ERROR_MEMORY;
     if (status == GONIO_OK) {

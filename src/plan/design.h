@@ -12,7 +12,7 @@ gonio_status gonio_i_design_plan(gonio_context *context, const gonio_basis *basi
 
 /* What is known of a material already, for the readings that come next. */
 typedef struct gonio_i_known {
-    const double *covariance; /* [K][K]: of z */
+    const double *covariance;          /* [K][K]: of z */
     const gonio_half_difference *read; /* [count]: directions that are not to be read again */
     size_t count;
     double expected; /* the E6 to expect without another reading, per cent */

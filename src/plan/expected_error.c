@@ -85,8 +85,8 @@ static gonio_status find_gains(design *d)
     for (size_t first = 0; first < d->rows && status == GONIO_OK; first += BLOCK_ROWS) {
         const size_t count = d->rows - first < BLOCK_ROWS ? d->rows - first : BLOCK_ROWS;
         double *b = a + BLOCK_ROWS * d->k;
-        status = gonio_i_product_transposed(context, row_of(d, first), count, d->k, d->p, d->k, a,
-                                            d->k);
+        status =
+            gonio_i_product_transposed(context, row_of(d, first), count, d->k, d->p, d->k, a, d->k);
         if (status == GONIO_OK) {
             status = gonio_i_product_transposed(context, a, count, d->k, d->w, d->k, b, d->k);
         }
@@ -115,8 +115,7 @@ static void update(design *d, const double *f, double variance, double sign)
     multiply(d->w, g, k, wg);
     multiply(d->p, wg, k, pwg);
     const double gwg = dot(g, wg, k);
-#pragma omp parallel for schedule(static)                                                          \
-    num_threads(gonio_context_threads(d->problem->context))
+#pragma omp parallel for schedule(static) num_threads(gonio_context_threads(d->problem->context))
     for (size_t x = 0; x < d->rows; x++) {
         const double a = dot(row_of(d, x), g, k);
         const double b = dot(row_of(d, x), pwg, k);

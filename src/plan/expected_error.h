@@ -6,7 +6,7 @@
 
 typedef struct gonio_i_design_problem {
     gonio_context *context;
-    const double *f;          /* [rows][components] */
+    const double *f; /* [rows][components] */
     size_t rows;
     size_t components;
     const double *covariance; /* [components][components]: of z before the first reading */
@@ -17,7 +17,8 @@ typedef struct gonio_i_design_problem {
 } gonio_i_design_problem;
 
 /* chosen[count], in the order of reading; remaining[count + 1] (or NULL): the expected loss before
- * the first and after each of them. `count` is at most the number of rows allowed. Errors: _MEMORY, _CANCELLED. */
+ * the first and after each of them. `count` is at most the number of rows allowed. Errors: _MEMORY,
+ * _CANCELLED. */
 gonio_status gonio_i_design_find(const gonio_i_design_problem *problem, size_t *chosen,
                                  double *remaining);
 

@@ -57,11 +57,8 @@ const char *gonio_plan_method_reconstruction(const char *method)
 
 void gonio_plan_options_default(gonio_plan_options *options)
 {
-    *options = (gonio_plan_options){.count = 80,
-                                    .restarts = 5,
-                                    .keep_history = true,
-                                    .start = "random",
-                                    .phi_d = M_PI / 2.0};
+    *options = (gonio_plan_options){
+        .count = 80, .restarts = 5, .keep_history = true, .start = "random", .phi_d = M_PI / 2.0};
 }
 
 const char *gonio_plan_start_name(int index)

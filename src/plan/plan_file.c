@@ -25,8 +25,7 @@ static bool add_plan_notes(gonio_i_csv *csv, const gonio_plan *plan)
            (plan->expected != NULL
                 ? gonio_i_csv_add_comment(csv, "expected_e6_percent: %.4g",
                                           plan->expected[plan->count - 1])
-                : gonio_i_csv_add_comment(csv, "condition_number: %.6g",
-                                          plan->condition_number)) &&
+                : gonio_i_csv_add_comment(csv, "condition_number: %.6g", plan->condition_number)) &&
            gonio_i_csv_add_comment(csv, "grid: half/difference 90 x 90 x 180") &&
            gonio_i_csv_add_comment(csv, "theta from the normal, phi about it, incident (i) towards "
                                         "the light, outgoing (o) towards the detector; a row asks "
@@ -47,12 +46,12 @@ static bool add_entry(gonio_i_csv *csv, const gonio_plan_entry *entry)
 
 static bool fill_plan(gonio_i_csv *csv, const gonio_plan *plan, const char *command)
 {
-    bool done = add_origin(csv, "plan", command) && add_plan_notes(csv, plan) &&
-                gonio_i_csv_add_column(csv, "theta_i_deg") &&
-                gonio_i_csv_add_column(csv, "phi_i_deg") &&
-                gonio_i_csv_add_column(csv, "theta_o_deg") &&
-                gonio_i_csv_add_column(csv, "phi_o_deg") && gonio_i_csv_add_column(csv, "channel") &&
-                (plan->expected == NULL || gonio_i_csv_add_column(csv, "expected_e6_percent"));
+    bool done =
+        add_origin(csv, "plan", command) && add_plan_notes(csv, plan) &&
+        gonio_i_csv_add_column(csv, "theta_i_deg") && gonio_i_csv_add_column(csv, "phi_i_deg") &&
+        gonio_i_csv_add_column(csv, "theta_o_deg") && gonio_i_csv_add_column(csv, "phi_o_deg") &&
+        gonio_i_csv_add_column(csv, "channel") &&
+        (plan->expected == NULL || gonio_i_csv_add_column(csv, "expected_e6_percent"));
     for (size_t k = 0; done && k < plan->count; k++) {
         done = add_entry(csv, &plan->entries[k]) &&
                (plan->expected == NULL || gonio_i_csv_set(csv, k, 5, "%.4g", plan->expected[k]));

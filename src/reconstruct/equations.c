@@ -39,8 +39,8 @@ static gonio_status allocate(gonio_i_gaussian *e)
     e->rest = gonio_i_allocate(c, n, sizeof *e->rest);
     e->solved = gonio_i_allocate(c, n, sizeof *e->solved);
     const bool done = e->f && e->place && e->y && e->variance && e->bound && e->left_out &&
-                      e->seen && e->gram && e->smooth && e->peaked && e->lower && e->weight && e->centre && e->rest &&
-                      e->solved;
+                      e->seen && e->gram && e->smooth && e->peaked && e->lower && e->weight &&
+                      e->centre && e->rest && e->solved;
     return done ? GONIO_OK : GONIO_ERROR_MEMORY;
 }
 
@@ -315,10 +315,10 @@ gonio_status gonio_i_gaussian_settle(gonio_i_gaussian *e, size_t *outlying)
                    gonio_i_allocate(e->context, e->n, sizeof *j.variance),
                    gonio_i_allocate(e->context, e->n, sizeof *j.deviations),
                    gonio_i_allocate(e->context, e->n, sizeof *j.outlying)};
-    gonio_status status = j.difference == NULL || j.variance == NULL || j.deviations == NULL ||
-                                  j.outlying == NULL
-                              ? GONIO_ERROR_MEMORY
-                              : GONIO_OK;
+    gonio_status status =
+        j.difference == NULL || j.variance == NULL || j.deviations == NULL || j.outlying == NULL
+            ? GONIO_ERROR_MEMORY
+            : GONIO_OK;
     bool changed = true;
     for (int round = 0; round < MOST_ROUNDS && changed && status == GONIO_OK; round++) {
         status = gonio_i_gaussian_leave_one_out(e, j.difference, j.variance);

@@ -5,7 +5,8 @@
 #include "posterior.h"
 
 /* h: how much of the database's covariance each of its columns keeps around itself. 1 would be a
- * plain Gaussian, better by 2 % at 170 readings of the neural MERL materials and worse by 8 % at 5. */
+ * plain Gaussian, better by 2 % at 170 readings of the neural MERL materials and worse by 8 % at 5.
+ */
 static const double GONIO_I_KERNEL_WIDTH = 0.7;
 
 typedef struct gonio_i_gaussian {
@@ -13,26 +14,26 @@ typedef struct gonio_i_gaussian {
     const gonio_i_prior *prior;
     size_t n;
     size_t components;
-    double h; /* 1 without samples */
-    double *f;             /* [n][K] */
-    gonio_i_place *place;  /* [n] */
-    double *y;             /* [n]: g - m */
-    double *variance;      /* [n]: D */
-    int *bound;            /* [n] */
-    bool *left_out;        /* [n]: a bound that is kept anyway, which says nothing */
-    double *seen;          /* [samples][n]: a F z_j */
-    double *gram;          /* [n][n]: F F' */
-    double *smooth;        /* [n][n]: the parts of k */
-    double *peaked;        /* [n][n] */
+    double h;             /* 1 without samples */
+    double *f;            /* [n][K] */
+    gonio_i_place *place; /* [n] */
+    double *y;            /* [n]: g - m */
+    double *variance;     /* [n]: D */
+    int *bound;           /* [n] */
+    bool *left_out;       /* [n]: a bound that is kept anyway, which says nothing */
+    double *seen;         /* [samples][n]: a F z_j */
+    double *gram;         /* [n][n]: F F' */
+    double *smooth;       /* [n][n]: the parts of k */
+    double *peaked;       /* [n][n] */
     double alpha;
     double peak;
-    double *lower;         /* [n][n]: L of S */
-    double *weight;        /* [samples]: q */
-    double *centre;        /* [K]: z */
-    double *rest;          /* [n]: y - F z */
-    double *solved;        /* [n]: S^-1 rest */
-    double evidence;       /* ln p(y) */
-    double misfit;         /* what the variances are multiplied by, see below */
+    double *lower;   /* [n][n]: L of S */
+    double *weight;  /* [samples]: q */
+    double *centre;  /* [K]: z */
+    double *rest;    /* [n]: y - F z */
+    double *solved;  /* [n]: S^-1 rest */
+    double evidence; /* ln p(y) */
+    double misfit;   /* what the variances are multiplied by, see below */
 } gonio_i_gaussian;
 
 /* Fills in everything up to `peaked`. To be freed in any case. Errors: _MEMORY. */

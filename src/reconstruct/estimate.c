@@ -70,8 +70,7 @@ static gonio_status allocate(gonio_context *context, const gonio_basis_view *vie
     }
     r->columns = columns;
     r->components = view->components;
-    r->coefficients =
-        gonio_i_allocate(context, columns * r->components, sizeof *r->coefficients);
+    r->coefficients = gonio_i_allocate(context, columns * r->components, sizeof *r->coefficients);
     r->field = gonio_i_allocate(context, columns * view->rows, sizeof *r->field);
     if (options->deviation) {
         r->deviation = gonio_i_allocate(context, columns * view->rows, sizeof *r->deviation);
@@ -100,8 +99,8 @@ static gonio_status find(gonio_context *context, const gonio_i_prior *prior,
     r->surprise = p.surprise;
     r->residual = p.residual;
     for (size_t k = 0; k < columns->count; k++) {
-        r->readings = columns->column[k].count > r->readings ? columns->column[k].count
-                                                             : r->readings;
+        r->readings =
+            columns->column[k].count > r->readings ? columns->column[k].count : r->readings;
     }
     return status;
 }
@@ -149,8 +148,7 @@ gonio_status gonio_i_estimate_readings(gonio_context *context, const gonio_basis
     gonio_reconstruction *made = NULL;
     status = gonio_i_columns_create(context, &view, readings, options, NULL, &columns);
     if (status == GONIO_OK) {
-        status =
-            gonio_i_columns_check(context, &columns, gonio_readings_describe(readings).path);
+        status = gonio_i_columns_check(context, &columns, gonio_readings_describe(readings).path);
     }
     if (status == GONIO_OK) {
         status = gonio_i_prior_create(context, basis, &prior);

@@ -34,8 +34,8 @@ double gonio_i_field_at(const gonio_basis *basis, const double *field, int chann
     const int points = stencil_at(&view, at, stencil);
     double value = 0.0;
     for (int k = 0; k < points; k++) {
-        const size_t position = gonio_basis_position(
-            basis, gonio_cell_of_bin(view.representation, stencil[k].bin));
+        const size_t position =
+            gonio_basis_position(basis, gonio_cell_of_bin(view.representation, stencil[k].bin));
         value += stencil[k].weight *
                  field[joint ? position * GONIO_CHANNELS + (size_t)channel : position];
     }
@@ -68,14 +68,12 @@ void gonio_reconstruction_predict(const gonio_basis *basis, const gonio_reconstr
         const double g = gonio_i_field_at(basis, rows_of(basis, r, r->field, k), (int)k, at);
         value[k] = scale_of(r, k) * expm1(fmin(fmax(g, 0.0), GONIO_I_LARGEST_LOG));
         if (deviation != NULL) {
-            deviation[k] =
-                gonio_i_field_at(basis, rows_of(basis, r, r->deviation, k), (int)k, at);
+            deviation[k] = gonio_i_field_at(basis, rows_of(basis, r, r->deviation, k), (int)k, at);
         }
     }
 }
 
-gonio_status gonio_reconstruction_predict_readings(gonio_context *context,
-                                                   const gonio_basis *basis,
+gonio_status gonio_reconstruction_predict_readings(gonio_context *context, const gonio_basis *basis,
                                                    const gonio_reconstruction *r,
                                                    gonio_readings *readings)
 {
@@ -86,8 +84,7 @@ gonio_status gonio_reconstruction_predict_readings(gonio_context *context,
     double *value = gonio_i_allocate(context, channels_of(r), sizeof *value);
     gonio_status status = value == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
     if (status == GONIO_OK && r->wavelengths > 0) {
-        status =
-            gonio_i_readings_set_wavelengths(context, readings, r->wavelength, r->wavelengths);
+        status = gonio_i_readings_set_wavelengths(context, readings, r->wavelength, r->wavelengths);
     }
     for (size_t k = 0; k < readings->count && status == GONIO_OK; k++) {
         gonio_reading *reading = &readings->reading[k];
@@ -106,8 +103,8 @@ gonio_status gonio_reconstruction_predict_readings(gonio_context *context,
 typedef struct spread_field {
     const gonio_basis *basis;
     gonio_basis_view view;
-    bool plain;  /* g itself in place of e^g - 1 */
-    double *g;   /* [channel][position] */
+    bool plain; /* g itself in place of e^g - 1 */
+    double *g;  /* [channel][position] */
 } spread_field;
 
 static void release(void *self)
@@ -222,8 +219,7 @@ static gonio_status create(gonio_context *context, const gonio_basis *basis,
     f->view = gonio_basis_describe(basis);
     f->plain = plain;
     f->g = gonio_i_allocate(context, GONIO_CHANNELS * f->view.cells, sizeof *f->g);
-    gonio_status status =
-        f->g == NULL ? GONIO_ERROR_MEMORY : fill_field(context, r, from, f);
+    gonio_status status = f->g == NULL ? GONIO_ERROR_MEMORY : fill_field(context, r, from, f);
     const gonio_material_source source = {read_field, release, f};
     if (status == GONIO_OK) {
         status = gonio_material_create(context, name, "reconstruction", source, material);

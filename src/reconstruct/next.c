@@ -51,8 +51,8 @@ static gonio_status find_posterior(next *n, const gonio_reconstruct_options *opt
     const gonio_i_posterior_options how = {.smoothness = -1.0};
     gonio_status status = gonio_i_estimate_check(n->context, n->basis, n->readings, options);
     if (status == GONIO_OK) {
-        status = gonio_i_columns_create(n->context, &n->view, n->readings, options, NULL,
-                                        &n->columns);
+        status =
+            gonio_i_columns_create(n->context, &n->view, n->readings, options, NULL, &n->columns);
     }
     if (status == GONIO_OK) {
         status = gonio_i_columns_check(n->context, &n->columns, n->readings->path);

@@ -38,13 +38,14 @@ static gonio_i_observation observe(const gonio_readings *readings, size_t index,
     const double value = true_value(reading, read, s, transform);
     const bool turned = transform != NULL && transform->turn != NULL;
     const bool saturated = options->saturation > 0.0 && read >= options->saturation;
-    return (gonio_i_observation){
-        .at = gonio_half_difference_from_pair(turned ? transform->turn(reading->pair)
-                                                     : reading->pair),
-        .channel = (int)channel,
-        .g = log1p(value / s),
-        .variance = variance_of(value, s, options),
-        .bound = saturated ? 1 : read <= 0.0 ? -1 : 0};
+    return (gonio_i_observation){.at = gonio_half_difference_from_pair(
+                                     turned ? transform->turn(reading->pair) : reading->pair),
+                                 .channel = (int)channel,
+                                 .g = log1p(value / s),
+                                 .variance = variance_of(value, s, options),
+                                 .bound = saturated     ? 1
+                                          : read <= 0.0 ? -1
+                                                        : 0};
 }
 
 static void add_channel(const gonio_readings *readings, size_t channel,

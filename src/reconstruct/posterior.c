@@ -19,8 +19,8 @@ static const struct remainder {
 
 enum {
     CHOICES = sizeof REMAINDERS / sizeof *REMAINDERS,
-    MOST_TRIED = 128,        /* readings of a column that alpha is chosen by */
-    MOST_COLUMNS_TRIED = 8,  /* columns that it is chosen by */
+    MOST_TRIED = 128,       /* readings of a column that alpha is chosen by */
+    MOST_COLUMNS_TRIED = 8, /* columns that it is chosen by */
 };
 
 /* Readings are wrong more often than Gaussians say: what is left out is scored by Student's t with
@@ -40,8 +40,7 @@ static gonio_status add_scores(gonio_i_gaussian *e, double score[CHOICES])
 {
     double *difference = gonio_i_allocate(e->context, e->n, sizeof *difference);
     double *variance = gonio_i_allocate(e->context, e->n, sizeof *variance);
-    gonio_status status =
-        difference == NULL || variance == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    gonio_status status = difference == NULL || variance == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
     for (int k = 0; k < CHOICES && status == GONIO_OK; k++) {
         status = gonio_i_gaussian_solve(e, REMAINDERS[k].alpha, REMAINDERS[k].peak);
         if (status == GONIO_OK) {
@@ -158,13 +157,12 @@ static gonio_status keep_column(gonio_i_gaussian *e, size_t column, gonio_i_post
                                 gonio_i_spread_column *kept)
 {
     const size_t n = e->alpha > 0.0 ? e->n : 0;
-    *kept = (gonio_i_spread_column){
-        .peak = e->peak,
-        .n = n,
-        .place = gonio_i_allocate(e->context, n, sizeof *kept->place),
-        .weight = gonio_i_allocate(e->context, n, sizeof *kept->weight),
-        .c = p->coefficients + column * e->components,
-        .field = p->field + column * e->prior->view.rows};
+    *kept = (gonio_i_spread_column){.peak = e->peak,
+                                    .n = n,
+                                    .place = gonio_i_allocate(e->context, n, sizeof *kept->place),
+                                    .weight = gonio_i_allocate(e->context, n, sizeof *kept->weight),
+                                    .c = p->coefficients + column * e->components,
+                                    .field = p->field + column * e->prior->view.rows};
     if (kept->place == NULL || kept->weight == NULL) {
         return GONIO_ERROR_MEMORY;
     }
@@ -179,20 +177,17 @@ static gonio_status solve_column(gonio_i_gaussian *e, size_t column, gonio_i_pos
                                  predicted_sums *sums, gonio_i_spread_column *kept)
 {
     double *c = p->coefficients + column * e->components;
-    double *deviation =
-        p->deviation != NULL ? p->deviation + column * e->prior->view.rows : NULL;
+    double *deviation = p->deviation != NULL ? p->deviation + column * e->prior->view.rows : NULL;
     find_coefficients(e, c);
     const gonio_status status = keep_column(e, column, p, kept);
-    return status == GONIO_OK
-               ? gonio_i_spread_variance(e, c, deviation, p->covariance, &sums->error,
-                                         &sums->square)
-               : status;
+    return status == GONIO_OK ? gonio_i_spread_variance(e, c, deviation, p->covariance,
+                                                        &sums->error, &sums->square)
+                              : status;
 }
 
 static gonio_status find_column(gonio_context *context, const gonio_i_prior *prior,
-                                const gonio_i_column *columns, size_t column,
-                                gonio_i_posterior *p, predicted_sums *sums,
-                                gonio_i_spread_column *kept)
+                                const gonio_i_column *columns, size_t column, gonio_i_posterior *p,
+                                predicted_sums *sums, gonio_i_spread_column *kept)
 {
     gonio_i_gaussian e;
     size_t outlying = 0;
@@ -219,8 +214,7 @@ static gonio_status find_column(gonio_context *context, const gonio_i_prior *pri
 
 gonio_status gonio_i_posterior_find(gonio_context *context, const gonio_i_prior *prior,
                                     const gonio_i_column *columns, size_t count,
-                                    const gonio_i_posterior_options *options,
-                                    gonio_i_posterior *p)
+                                    const gonio_i_posterior_options *options, gonio_i_posterior *p)
 {
     predicted_sums sums = {0.0, 0.0};
     size_t readings = 0;

@@ -327,9 +327,8 @@ gonio_status gonio_reconstruct(gonio_context *context, const gonio_basis *basis,
                             readings->path, readings->basis, view.fingerprint);
     }
     size_t components = 0;
-    gonio_status status =
-        choose_solver(context, &view, t.options, gonio_readings_describe(readings).method,
-                      &t.solver);
+    gonio_status status = choose_solver(context, &view, t.options,
+                                        gonio_readings_describe(readings).method, &t.solver);
     if (status == GONIO_OK && t.solver.method->solve == NULL) {
         return gonio_i_estimate_readings(context, basis, readings, t.options, reconstruction);
     }

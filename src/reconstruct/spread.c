@@ -36,9 +36,9 @@ typedef struct spreader {
     const gonio_i_gaussian *e;
     const double *c;
     double *deviation; /* [rows], or NULL */
-    size_t n;    /* readings whose smoothness counts: none if alpha is 0 */
-    size_t size; /* of t */
-    double *q;   /* [size][size] */
+    size_t n;          /* readings whose smoothness counts: none if alpha is 0 */
+    size_t size;       /* of t */
+    double *q;         /* [size][size] */
 } spreader;
 
 static void fill_t(const gonio_i_prior *prior, const gonio_i_place *place, double peak, size_t n,
@@ -90,8 +90,8 @@ static gonio_status take_out_readings(const spreader *s, double *q)
             }
         }
         gonio_i_divide_triangle(w, s->size, n, e->lower);
-        status = gonio_i_product_transposed(e->context, w, s->size, n, w, s->size, product,
-                                            s->size);
+        status =
+            gonio_i_product_transposed(e->context, w, s->size, n, w, s->size, product, s->size);
     }
     for (size_t k = 0; k < s->size * s->size && status == GONIO_OK; k++) {
         q[k] -= product[k];
@@ -114,8 +114,8 @@ static gonio_status fill_differences(const spreader *s, const size_t *listed, si
                 root * (a * e->prior->sample[listed[j] * e->components + k] - e->centre[k]);
         }
     }
-    gonio_status status = gonio_i_product_rows(e->context, d, count, e->components, s->size, e->f,
-                                               e->n, seen);
+    gonio_status status =
+        gonio_i_product_rows(e->context, d, count, e->components, s->size, e->f, e->n, seen);
     gonio_i_divide_triangle(seen, count, e->n, e->lower);
     gonio_i_divide_lower(seen, count, e->n, e->lower);
     if (status == GONIO_OK) {
@@ -218,11 +218,10 @@ static gonio_status spread_block(const spreader *s, size_t first, size_t step, s
                                  const workspace *w, block_sums *sums)
 {
     for (size_t b = 0; b < count; b++) {
-        fill_t(s->e->prior, s->e->place, s->e->peak, s->n, first + b * step,
-               w->t + b * s->size);
+        fill_t(s->e->prior, s->e->place, s->e->peak, s->n, first + b * step, w->t + b * s->size);
     }
-    const gonio_status status = gonio_i_product_transposed(
-        s->e->context, w->t, count, s->size, s->q, s->size, w->product, s->size);
+    const gonio_status status = gonio_i_product_transposed(s->e->context, w->t, count, s->size,
+                                                           s->q, s->size, w->product, s->size);
     for (size_t b = 0; b < count && status == GONIO_OK; b++) {
         spread_row(s, first + b * step, w->t + b * s->size, w->product + b * s->size, sums);
     }

@@ -84,13 +84,12 @@ static void thin(gonio_i_column *column)
 
 /* ln of the density of the values under a transform; of a column's first MOST_TRIED, scaled. */
 static gonio_status weigh(gonio_context *context, const gonio_i_prior *prior,
-                          const gonio_readings *readings,
-                          const gonio_reconstruct_options *options,
+                          const gonio_readings *readings, const gonio_reconstruct_options *options,
                           const gonio_i_transform *transform, double *evidence)
 {
     gonio_i_columns columns;
-    gonio_status status = gonio_i_columns_create(context, &prior->view, readings, options,
-                                                 transform, &columns);
+    gonio_status status =
+        gonio_i_columns_create(context, &prior->view, readings, options, transform, &columns);
     const size_t tried = columns.count < MOST_COLUMNS ? columns.count : MOST_COLUMNS;
     *evidence = 0.0;
     for (size_t k = 0; k < tried && status == GONIO_OK; k++) {

@@ -105,14 +105,14 @@ static void find(gonio_context *context, const problem *p, size_t count, size_t 
                  double *remaining)
 {
     const gonio_i_design_problem given = {.context = context,
-                                            .f = p->f,
-                                            .rows = p->rows,
-                                            .components = p->k,
-                                            .covariance = p->covariance,
-                                            .loss = p->loss,
-                                            .allowed = p->allowed,
-                                            .variance = p->variance,
-                                            .count = count};
+                                          .f = p->f,
+                                          .rows = p->rows,
+                                          .components = p->k,
+                                          .covariance = p->covariance,
+                                          .loss = p->loss,
+                                          .allowed = p->allowed,
+                                          .variance = p->variance,
+                                          .count = count};
     assert_int_equal(gonio_i_design_find(&given, chosen, remaining), GONIO_OK);
 }
 
@@ -132,12 +132,12 @@ static void test_what_remains(void **state)
     for (uint64_t seed = 0; seed < 6; seed++) {
         const problem p = make_problem(70, 2 + seed, seed);
         size_t chosen[40];
-        double remaining[40];
+        double remaining[41];
         find(one_thread, &p, 40, chosen, remaining);
         for (size_t n = 1; n <= 40; n++) {
             const double expected = left_by(&p, chosen, n);
-            assert_true(fabs(remaining[n - 1] - expected) <= 1e-10 * expected);
-            assert_true(n == 1 || remaining[n - 1] <= remaining[n - 2]);
+            assert_true(fabs(remaining[n] - expected) <= 1e-10 * expected);
+            assert_true(n == 1 || remaining[n] <= remaining[n - 1]);
             assert_true(p.allowed[chosen[n - 1]]);
             assert_false(holds(chosen, n - 1, chosen[n - 1]));
         }
@@ -168,17 +168,18 @@ static void test_against_all_choices(void **state)
         for (size_t n = 1; n <= 4; n++) {
             size_t chosen[4];
             size_t trial[4];
-            double remaining[4];
+            double remaining[5];
             find(one_thread, &p, n, chosen, remaining);
             const double best = best_of_all(&p, trial, 0, n, 0);
-            assert_true(remaining[n - 1] >= best * (1.0 - 1e-9));
+            assert_true(remaining[n] >= best * (1.0 - 1e-9));
             /* One reading is the best; a few, after exchanges, nearly so. */
-            assert_true(remaining[n - 1] <= best * (n == 1 ? 1.0 + 1e-9 : 1.05));
+            assert_true(remaining[n] <= best * (n == 1 ? 1.0 + 1e-9 : 1.05));
         }
     }
 }
 
-/* No exchange of a reading of the last block for another row leaves less: blocks end at 5, 10, 20. */
+/* No exchange of a reading of the last block for another row leaves less: blocks end at 5, 10, 20.
+ */
 static void test_no_exchange_helps(void **state)
 {
     (void)state;
@@ -186,7 +187,7 @@ static void test_no_exchange_helps(void **state)
     for (uint64_t seed = 0; seed < 8; seed++) {
         const problem p = make_problem(60, 6, seed);
         size_t chosen[20];
-        double remaining[20];
+        double remaining[21];
         find(one_thread, &p, 20, chosen, remaining);
         for (size_t b = 0; b < 3; b++) {
             const size_t end = blocks[b][1];
@@ -196,7 +197,7 @@ static void test_no_exchange_helps(void **state)
                 for (size_t row = 0; row < p.rows; row++) {
                     if (p.allowed[row] && !holds(chosen, end, row)) {
                         trial[i] = row;
-                        assert_true(left_by(&p, trial, end) >= remaining[end - 1] * (1.0 - 1e-9));
+                        assert_true(left_by(&p, trial, end) >= remaining[end] * (1.0 - 1e-9));
                     }
                 }
                 trial[i] = chosen[i];
@@ -210,7 +211,7 @@ static void test_prefixes_and_threads(void **state)
     (void)state;
     const problem p = make_problem(80, 8, 3);
     size_t long_plan[40];
-    double remaining[40];
+    double remaining[41];
     find(one_thread, &p, 40, long_plan, remaining);
     for (size_t n = 5; n <= 20; n *= 2) {
         size_t chosen[20];
@@ -405,8 +406,8 @@ static void test_methods(void **state)
     size_t chosen[8];
     gonio_selection_report report;
     gonio_plan_rows(plan, basis, rows);
-    assert_int_equal(gonio_plan_select(one_thread, view.vectors, view.rows, view.components, 4, &options,
-                                       chosen, &report),
+    assert_int_equal(gonio_plan_select(one_thread, view.vectors, view.rows, view.components, 4,
+                                       &options, chosen, &report),
                      GONIO_OK);
     assert_memory_equal(rows, chosen, sizeof rows);
     assert_true(plan->condition_number == report.condition_number);

@@ -14,10 +14,11 @@
 enum { MOST = 60 };
 
 static const double ALPHA = 0.1;
+static const double PEAK = 0.0; /* what a given alpha goes with */
 
 static gonio_context *context;
-static gonio_basis *small;          /* bivariate, of which the priors are */
-static gonio_basis *basis;          /* sectored */
+static gonio_basis *small;      /* bivariate, of which the priors are */
+static gonio_basis *basis;      /* sectored */
 static gonio_i_prior *gaussian; /* without samples: h = 1 */
 static gonio_i_prior *mixture;
 
@@ -71,7 +72,8 @@ static double truth_at(const double *z, gonio_half_difference at)
     return g;
 }
 
-/* Whether a row's coordinates are those of its cell: not where a part of it is below the horizon. */
+/* Whether a row's coordinates are those of its cell: not where a part of it is below the horizon.
+ */
 static bool is_whole(size_t row)
 {
     int channel = 0;
@@ -185,7 +187,7 @@ static double covariance(gonio_half_difference a, gonio_half_difference b, doubl
     for (size_t j = 0; j < gaussian->components; j++) {
         sum += f[0][j] * f[1][j];
     }
-    return h * h * sum + alpha * alpha * gonio_i_smoothness(&x, &y);
+    return h * h * sum + alpha * alpha * gonio_i_remainder(&x, &y, PEAK);
 }
 
 static double mean_at(gonio_half_difference at)
@@ -271,7 +273,7 @@ static void test_leaving_one_out(void **state)
     double left[N];
     double variance[N];
     assert_int_equal(gonio_i_gaussian_begin(context, gaussian, &column, &e), GONIO_OK);
-    assert_int_equal(gonio_i_gaussian_solve(&e, ALPHA), GONIO_OK);
+    assert_int_equal(gonio_i_gaussian_solve(&e, ALPHA, PEAK), GONIO_OK);
     assert_int_equal(gonio_i_gaussian_leave_one_out(&e, left, variance), GONIO_OK);
     gonio_i_gaussian_end(&e);
     for (size_t i = 0; i < N; i++) {
@@ -325,8 +327,8 @@ static void test_the_evidence(void **state)
         }
         const double expected = log(density) - 0.5 * (logarithm + N * log(2.0 * M_PI));
         double evidence = 0.0;
-        assert_int_equal(
-            gonio_i_posterior_evidence(context, priors[p], &column, ALPHA, &evidence), GONIO_OK);
+        assert_int_equal(gonio_i_posterior_evidence(context, priors[p], &column, ALPHA, &evidence),
+                         GONIO_OK);
         assert_close(evidence, expected, 1e-6 * fabs(expected));
     }
     free(d.z);
@@ -516,9 +518,8 @@ static void test_what_is_refused(void **state)
     (void)state;
     static const struct {
         double noise, floor, saturation;
-    } cases[] = {{-1.0, 0.0, 0.0}, {NAN, 0.0, 0.0},      {INFINITY, 0.0, 0.0},
-                 {0.0, -1.0, 0.0}, {0.0, INFINITY, 0.0}, {0.0, 0.0, -1.0},
-                 {0.0, 0.0, NAN}};
+    } cases[] = {{-1.0, 0.0, 0.0},     {NAN, 0.0, 0.0},  {INFINITY, 0.0, 0.0}, {0.0, -1.0, 0.0},
+                 {0.0, INFINITY, 0.0}, {0.0, 0.0, -1.0}, {0.0, 0.0, NAN}};
     static const char *const lines[] = {"30,0,30,180,0.2,0.1,0.05"};
     char *folder = support_folder();
     gonio_readings *readings = read_lines(folder, lines, 1);

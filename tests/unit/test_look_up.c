@@ -64,11 +64,11 @@ static void test_look_up(void **state)
         const char *line;
         double value;
     } cases[] = {
-        {"30,0,50,40\n", 0.1},       {"30,100,50,140\n", 0.1}, /* turned: isotropic */
-        {"50,40,30,0\n", 0.1},                                 /* reciprocal */
-        {"30.003,0,50.003,40\n", 0.1},                         /* within 1e-4 radians */
-        {"30.1,0,50,40\n", -1.0},    {"30,0,50,41\n", -1.0},   {"20,0,70,200\n", 0.4},
-        {"70,200,20,0\n", 0.4},      {"45,10,45,190\n", 10.0}, {"0,0,45,0\n", -1.0},
+        {"30,0,50,40\n", 0.1},         {"30,100,50,140\n", 0.1}, /* turned: isotropic */
+        {"50,40,30,0\n", 0.1},                                   /* reciprocal */
+        {"30.003,0,50.003,40\n", 0.1},                           /* within 1e-4 radians */
+        {"30.1,0,50,40\n", -1.0},      {"30,0,50,41\n", -1.0},   {"20,0,70,200\n", 0.4},
+        {"70,200,20,0\n", 0.4},        {"45,10,45,190\n", 10.0}, {"0,0,45,0\n", -1.0},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         assert_close(looked_up(cases[k].line), cases[k].value, 0.0);
@@ -91,8 +91,8 @@ static void test_what_was_not_read_stays_so(void **state)
 static void test_spectra_are_looked_up_too(void **state)
 {
     (void)state;
-    gonio_readings *known = make("30,0,50,40,0.1,0.2\n10,0,20,0,0.3,0.4\n",
-                                 ",400nm_per_sr,500nm_per_sr");
+    gonio_readings *known =
+        make("30,0,50,40,0.1,0.2\n10,0,20,0,0.3,0.4\n", ",400nm_per_sr,500nm_per_sr");
     gonio_readings *plan = make("10,0,20,0\n", "");
     assert_int_equal(gonio_readings_look_up(NULL, plan, known), GONIO_OK);
     assert_int_equal(gonio_readings_channels(plan), 2);
@@ -114,7 +114,10 @@ static void test_errors_between_readings(void **state)
                              rgb);
     const bool left_out[3] = {false, false, true};
     const double pairs[][3] = {/* value, other, channel */
-                               {0.1, 0.11, 0}, {0.2, 0.2, 1}, {0.3, 0.2, 2}, {0.4, 0.4, 0},
+                               {0.1, 0.11, 0},
+                               {0.2, 0.2, 1},
+                               {0.3, 0.2, 2},
+                               {0.4, 0.4, 0},
                                {0.5, 0.6, 1}};
     double sums[5] = {0.0};
     for (size_t k = 0; k < 5; k++) {
@@ -149,8 +152,8 @@ static void test_readings_that_cannot_be_compared(void **state)
     gonio_context *context = support_context();
     gonio_readings *a = make(known_lines, rgb);
     gonio_readings *fewer = make("30,0,50,40,0.1,0.2,0.3\n", rgb);
-    gonio_readings *spectral = make("30,0,50,40,1\n20,0,70,200,1\n45,0,45,180,1\n",
-                                    ",400nm_per_sr");
+    gonio_readings *spectral =
+        make("30,0,50,40,1\n20,0,70,200,1\n45,0,45,180,1\n", ",400nm_per_sr");
     gonio_readings *dark = make("30,0,50,40,0,0,0\n", rgb);
     gonio_error error;
     size_t compared = 0;

@@ -45,18 +45,19 @@ typedef struct fixture {
 static fixture make(gonio_context *context, int kind)
 {
     fixture f = {.database = made_database(kinds[kind].representation, kinds[kind].channels),
-                 .basis = made_basis(context, kinds[kind].representation, kinds[kind].channels, SEED)};
+                 .basis =
+                     made_basis(context, kinds[kind].representation, kinds[kind].channels, SEED)};
     const gonio_basis_options options = {.mixtures = MADE_MIXTURES, .seed = SEED};
     f.view = gonio_basis_describe(f.basis);
     f.measured = f.view.columns - f.view.mixtures;
     f.h = malloc(f.view.columns * f.view.rows * sizeof *f.h);
     float *values = malloc(f.view.mixtures * f.view.rows * sizeof *values);
     assert_true(f.h != NULL && values != NULL);
-    assert_int_equal(
-        gonio_database_read_rows(f.database, NULL, 0, f.view.rows, NULL, 0, f.h), GONIO_OK);
+    assert_int_equal(gonio_database_read_rows(f.database, NULL, 0, f.view.rows, NULL, 0, f.h),
+                     GONIO_OK);
     gonio_i_mixtures *mixtures = NULL;
-    assert_int_equal(
-        gonio_i_mixtures_create(context, f.basis, f.database, &options, &mixtures), GONIO_OK);
+    assert_int_equal(gonio_i_mixtures_create(context, f.basis, f.database, &options, &mixtures),
+                     GONIO_OK);
     gonio_i_mixtures_fill(mixtures, 0, f.view.rows, values);
     for (size_t k = 0; k < f.view.mixtures * f.view.rows; k++) {
         f.h[f.measured * f.view.rows + k] = (double)values[k];
@@ -240,9 +241,9 @@ static void test_what_has_no_mixtures(void **state)
         const gonio_basis_options options = {.mixtures = 4, .without_mean = cases[k].without_mean};
         gonio_database *database = NULL;
         gonio_basis *basis = NULL;
-        assert_int_equal(gonio_database_create(context, made_paths, MADE_MATERIALS, &cases[k].kind,
-                                               &database),
-                         GONIO_OK);
+        assert_int_equal(
+            gonio_database_create(context, made_paths, MADE_MATERIALS, &cases[k].kind, &database),
+            GONIO_OK);
         assert_int_equal(gonio_basis_learn(context, database, &options, &basis),
                          GONIO_ERROR_ARGUMENT);
         assert_null(basis);
@@ -300,8 +301,8 @@ static void change_mixtures(const char *path, int64_t mixtures)
 static void test_a_damaged_number_of_mixtures(void **state)
 {
     (void)state;
-    static const int64_t wrong[] = {-1,        INT64_MAX, 1 << 21, MADE_MIXTURES - 1,
-                                    MADE_MIXTURES + 1, 0, INT64_MIN};
+    static const int64_t wrong[] = {-1, INT64_MAX, 1 << 21, MADE_MIXTURES - 1, MADE_MIXTURES + 1,
+                                    0,  INT64_MIN};
     char *folder = support_folder();
     char path[256];
     snprintf(path, sizeof path, "%s/basis.gonio", folder);

@@ -101,9 +101,9 @@ static void test_negative_values_may_be_taken_as_zero(void **state)
     const gonio_readings_options options = {.values_needed = true, .negative_to_zero = true};
     char *folder = support_folder();
     gonio_readings *readings = NULL;
-    assert_int_equal(made_readings(NULL, folder, "r.brdf", "1\n400\n0.1 0 0.2 0 -1e-5\n", &options,
-                                   &readings),
-                     GONIO_OK);
+    assert_int_equal(
+        made_readings(NULL, folder, "r.brdf", "1\n400\n0.1 0 0.2 0 -1e-5\n", &options, &readings),
+        GONIO_OK);
     assert_true(gonio_readings_value(readings, 0, 0) == 0.0);
     gonio_readings_free(&readings);
     support_remove(folder);
@@ -154,8 +154,8 @@ static void test_bad_spectral_columns(void **state)
     assert_non_null(strstr(support_message(), "400nm_per_sr '-1' is negative"));
     assert_int_equal(read_csv(context, "400nm_per_sr", "bright", &readings), GONIO_ERROR_FORMAT);
     /* What is not named by a wavelength is no column of values. */
-    static const char *const others[] = {"0nm_per_sr", "-400nm_per_sr", "400_per_sr", "nm_per_sr",
-                                         "infnm_per_sr", "1e9nm_per_sr"};
+    static const char *const others[] = {"0nm_per_sr", "-400nm_per_sr", "400_per_sr",
+                                         "nm_per_sr",  "infnm_per_sr",  "1e9nm_per_sr"};
     for (size_t k = 0; k < sizeof others / sizeof *others; k++) {
         assert_int_equal(read_csv(context, others[k], "1", &readings), GONIO_ERROR_FORMAT);
         assert_non_null(strstr(support_message(), "no column of values"));

@@ -114,14 +114,12 @@ static gonio_status compare_readings(tool *t, const char *reference_path,
     size_t compared = 0;
     gonio_status status = read_like(t, reference_path, path, &other);
     if (status == GONIO_OK) {
-        status =
-            gonio_compare_readings(t->context, reference, other, left_out, &error, &compared);
+        status = gonio_compare_readings(t->context, reference, other, left_out, &error, &compared);
     }
     gonio_readings_free(&other);
     if (status == GONIO_OK && o->json) {
-        json_array_append_new(results,
-                              json_pack("{s:s, s:I, s:o}", "file", path, "readings",
-                                        (json_int_t)compared, "all", error_json(&error)));
+        json_array_append_new(results, json_pack("{s:s, s:I, s:o}", "file", path, "readings",
+                                                 (json_int_t)compared, "all", error_json(&error)));
     } else if (status == GONIO_OK) {
         print_row(path, &error, NULL);
         printf("  %zu readings compared\n", compared);
@@ -205,9 +203,8 @@ static int run(tool *t, const options *o)
         }
         putchar('\n');
     }
-    const gonio_status status = readings
-                                    ? compare_all_readings(t, o, arguments, count, results)
-                                    : compare_all_tables(t, o, arguments, count, results);
+    const gonio_status status = readings ? compare_all_readings(t, o, arguments, count, results)
+                                         : compare_all_tables(t, o, arguments, count, results);
     if (status == GONIO_OK && o->json) {
         return tool_print_json(
             t, json_pack("{s:s, s:o}", "reference", arguments[0], "comparisons", results));

@@ -112,9 +112,11 @@ static int run(const tool *t, const char *folder)
         code = run_step(&steps[k]);
     }
     if (code == 0) {
-        printf("\nDone in %.0f s. %s holds basis.gonio, plan.csv, readings.csv, the reconstruction, a "
-               "MERL table\nthat renderers and BRDF viewers read, its deviation, and what was drawn.\n",
-               now() - start, folder);
+        printf(
+            "\nDone in %.0f s. %s holds basis.gonio, plan.csv, readings.csv, the reconstruction, a "
+            "MERL table\nthat renderers and BRDF viewers read, its deviation, and what was "
+            "drawn.\n",
+            now() - start, folder);
         say_where_the_page_is(folder);
     }
     return code;

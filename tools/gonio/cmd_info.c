@@ -186,17 +186,16 @@ static json_t *basis_json(const char *path, const gonio_basis *basis)
                      !view.without_mean, "loadings", view.loadings != NULL, "representation",
                      representation_of(&view), "channels",
                      view.channels == GONIO_JOINT ? "joint" : "separate", "components",
-                     (json_int_t)view.components, "cells", (json_int_t)view.cells,
-                     "mixtures", (json_int_t)view.mixtures, "explained_variance", gonio_basis_cumulative_variance(basis, view.components),
-                     "materials", names, "fingerprint", fingerprint, "program", view.program,
-                     "command", view.command);
+                     (json_int_t)view.components, "cells", (json_int_t)view.cells, "mixtures",
+                     (json_int_t)view.mixtures, "explained_variance",
+                     gonio_basis_cumulative_variance(basis, view.components), "materials", names,
+                     "fingerprint", fingerprint, "program", view.program, "command", view.command);
 }
 
 static void print_basis(const char *path, const gonio_basis *basis)
 {
     const gonio_basis_view view = gonio_basis_describe(basis);
-    printf("%s: gonio basis, %s, %s channels\n", path,
-           representation_of(&view),
+    printf("%s: gonio basis, %s, %s channels\n", path, representation_of(&view),
            view.channels == GONIO_JOINT ? "joint" : "separate");
     printf("  mapping      %s, %s mean%s\n", mapping_name(&view),
            view.without_mean ? "without" : "with", view.loadings == NULL ? ", no loadings" : "");

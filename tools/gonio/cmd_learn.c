@@ -178,7 +178,8 @@ int cmd_learn(int argc, const char **argv)
     const struct poptOption table[] = {
         {"output", 'o', POPT_ARG_STRING, &o.output, 0, "The basis file to write", "BASIS"},
         {"basis", 'K', POPT_ARG_INT, &o.components, 0,
-         "How many components to keep (default: 300; 45 without mixtures; with --no-mean all; never "
+         "How many components to keep (default: 300; 45 without mixtures; with --no-mean all; "
+         "never "
          "more than there are)",
          "K"},
         {"grid", '\0', POPT_ARG_STRING, &o.representation, 0,

@@ -21,12 +21,11 @@ static int report(const tool *t, const options *o, double now, const gonio_plan 
 {
     if (o->json) {
         return tool_print_json(
-            t, json_pack("{s:b, s:f, s:s?, s:I, s:o}", "target_met", plan == NULL,
-                         "expected_e6_percent", now, "plan", plan != NULL ? o->output : NULL,
-                         "readings", (json_int_t)(plan != NULL ? plan->count : 0),
-                         "expected_then_percent",
-                         plan != NULL ? tool_json_number(plan->expected[plan->count - 1])
-                                      : json_null()));
+            t, json_pack(
+                   "{s:b, s:f, s:s?, s:I, s:o}", "target_met", plan == NULL, "expected_e6_percent",
+                   now, "plan", plan != NULL ? o->output : NULL, "readings",
+                   (json_int_t)(plan != NULL ? plan->count : 0), "expected_then_percent",
+                   plan != NULL ? tool_json_number(plan->expected[plan->count - 1]) : json_null()));
     }
     if (!tool_quiet && plan == NULL) {
         printf("expected error (E6) %.2f %%: the target is met, nothing more to read\n", now);
@@ -97,12 +96,12 @@ static int check(const tool *t, const options *o, const char *const *inputs, siz
         code = tool_check_count(t, "-n", o->count, 1);
     }
     if (code == 0 && tool_metric(o->metric) < 0) {
-        code = tool_usage_error(t, "--metric: '%s' is none of e6, cube-root, log-relative",
-                                o->metric);
+        code =
+            tool_usage_error(t, "--metric: '%s' is none of e6, cube-root, log-relative", o->metric);
     }
     if (code == 0 && o->target != NULL && tool_percent(o->target) < 0.0) {
-        code = tool_usage_error(t, "--target-error: '%s' is no error in per cent above 0",
-                                o->target);
+        code =
+            tool_usage_error(t, "--target-error: '%s' is no error in per cent above 0", o->target);
     }
     if (code == 0 && (!(o->noise >= 0.0) || !(o->floor >= 0.0) || !(o->saturation >= 0.0))) {
         code = tool_usage_error(t, "--noise, --floor and --saturation cannot be negative");
@@ -142,12 +141,13 @@ int cmd_next(int argc, const char **argv)
         {"json", '\0', POPT_ARG_NONE, &o.json, 0, "Print the result as JSON", NULL},
         TOOL_OPTIONS};
     tool t;
-    int code = tool_begin(&t, argc, argv, table, "[OPTION...] [BASIS] READINGS -o PLAN",
-                          "Without BASIS, the basis of the built-in materials serves. What was read "
-                          "tells what the material is like; the proposed directions are those that "
-                          "leave the least expected error of such materials.\n"
-                          "Example: gonio next merl.gonio readings.csv -n 5 --target-error 3% "
-                          "-o more.csv");
+    int code =
+        tool_begin(&t, argc, argv, table, "[OPTION...] [BASIS] READINGS -o PLAN",
+                   "Without BASIS, the basis of the built-in materials serves. What was read "
+                   "tells what the material is like; the proposed directions are those that "
+                   "leave the least expected error of such materials.\n"
+                   "Example: gonio next merl.gonio readings.csv -n 5 --target-error 3% "
+                   "-o more.csv");
     if (code < 0) {
         code = run(&t, &o);
     }

@@ -97,10 +97,12 @@ static int check(const tool *t, const options *o, size_t count, const char **arg
         code = tool_check_count(t, "--restarts", o->restarts, 1);
     }
     if (code == 0 && tool_metric(o->metric) < 0) {
-        code = tool_usage_error(t, "--metric: '%s' is none of e6, cube-root, log-relative", o->metric);
+        code =
+            tool_usage_error(t, "--metric: '%s' is none of e6, cube-root, log-relative", o->metric);
     }
     if (code == 0 && o->target != NULL && o->target_error < 0.0) {
-        code = tool_usage_error(t, "--target-error: '%s' is no error in per cent above 0", o->target);
+        code =
+            tool_usage_error(t, "--target-error: '%s' is no error in per cent above 0", o->target);
     }
     if (code == 0 && o->candidates != NULL) {
         code = tool_check_output(t, o->output, &o->candidates, 1);
@@ -133,8 +135,7 @@ static int run(tool *t, options *o)
 
 int cmd_plan(int argc, const char **argv)
 {
-    options o = {
-        .start = "random", .restarts = 5, .phi_d = 90.0, .metric = "e6"};
+    options o = {.start = "random", .restarts = 5, .phi_d = 90.0, .metric = "e6"};
     const struct poptOption table[] = {
         {"output", 'o', POPT_ARG_STRING, &o.output, 0, "The plan to write (CSV)", "PLAN"},
         {"number", 'n', POPT_ARG_INT, &o.count, 0,

@@ -29,12 +29,11 @@ static void report(const gonio_reconstruction *r, const char *output, json_t *re
 {
     if (results != NULL && r->field != NULL) {
         json_array_append_new(
-            results,
-            json_pack("{s:s, s:I, s:I, s:f, s:f, s:I, s:f, s:s?}", "output", output, "channels",
-                      (json_int_t)r->columns, "readings", (json_int_t)r->readings,
-                      "expected_e6_percent", r->predicted_e6, "residual_log", r->residual,
-                      "outlying", (json_int_t)r->outlying, "remainder_log", r->smoothness,
-                      "suspicion", r->suspicion));
+            results, json_pack("{s:s, s:I, s:I, s:f, s:f, s:I, s:f, s:s?}", "output", output,
+                               "channels", (json_int_t)r->columns, "readings",
+                               (json_int_t)r->readings, "expected_e6_percent", r->predicted_e6,
+                               "residual_log", r->residual, "outlying", (json_int_t)r->outlying,
+                               "remainder_log", r->smoothness, "suspicion", r->suspicion));
     } else if (!tool_quiet && results == NULL && r->field != NULL) {
         printf("%s: from %zu readings in %zu channels; expected error (E6) %.2f %%, residual %.4f "
                "(log units)%s",
@@ -108,7 +107,8 @@ static gonio_status reconstruct_one(tool *t, const options *o, const gonio_basis
     gonio_material *material = NULL;
     gonio_status status = gonio_reconstruct(t->context, basis, readings, &how, &made);
     if (status == GONIO_OK && o->at == NULL) {
-        status = gonio_reconstruction_material(t->context, basis, made, "reconstruction", &material);
+        status =
+            gonio_reconstruction_material(t->context, basis, made, "reconstruction", &material);
     }
     if (status == GONIO_OK && material != NULL) {
         status = gonio_material_write_merl(t->context, material, output);
@@ -304,8 +304,8 @@ int cmd_reconstruct(int argc, const char **argv)
         {"at", '\0', POPT_ARG_STRING, &o.at, 0,
          "Predict readings at the directions of this file, as CSV, in place of a table (posterior)",
          "FILE"},
-        {"believe", '\0', POPT_ARG_NONE, &o.believe, 0,
-         "Do not look for wrong units or angles", NULL},
+        {"believe", '\0', POPT_ARG_NONE, &o.believe, 0, "Do not look for wrong units or angles",
+         NULL},
         {"average-repeats", '\0', POPT_ARG_NONE, &o.average_repeats, 0,
          "Accept directions that were read more than once", NULL},
         {"negative-to-zero", '\0', POPT_ARG_NONE, &o.negative_to_zero, 0,

@@ -355,10 +355,9 @@ static gonio_status make_builtin(tool *t, const char *path, bool paper)
     }
     gonio_status status = learn_atlas(t, paper, &basis);
     if (status == GONIO_OK) {
-        status = gonio_basis_write(t->context, basis,
-                                   paper ? "gonio learn atlas: --grid bivariate"
-                                         : "gonio learn atlas:",
-                                   path);
+        status = gonio_basis_write(
+            t->context, basis,
+            paper ? "gonio learn atlas: --grid bivariate" : "gonio learn atlas:", path);
     }
     gonio_basis_free(&basis);
     return status;
@@ -373,8 +372,8 @@ gonio_status tool_builtin_basis(tool *t, bool paper, char **path)
                    "with 'gonio learn atlas: -o FILE' and give it as BASIS");
         return GONIO_ERROR_IO;
     }
-    const int length = asprintf(path, "%s/atlas-%s%s.gonio", folder, gonio_version(),
-                                paper ? "-bivariate" : "");
+    const int length =
+        asprintf(path, "%s/atlas-%s%s.gonio", folder, gonio_version(), paper ? "-bivariate" : "");
     free(folder);
     if (length < 0) {
         return GONIO_ERROR_MEMORY;
