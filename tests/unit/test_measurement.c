@@ -70,7 +70,7 @@ static gonio_readings *make_plan(const fixture *f, bool backwards)
 static void measure(gonio_readings *readings, const fixture *f, double noise, double floor,
                     uint64_t seed)
 {
-    const gonio_instrument_options options = {noise, floor, seed};
+    const gonio_instrument_options options = {noise, floor, seed, 0.0};
     assert_int_equal(gonio_measure(NULL, readings, f->table, &options), GONIO_OK);
 }
 
@@ -185,8 +185,11 @@ static void test_readings_are_written_and_read(void **state)
 static void test_negative_noise_is_refused(void **state)
 {
     const fixture *f = *state;
-    static const gonio_instrument_options bad[] = {
-        {-0.1, 0.0, 0}, {0.0, -0.1, 0}, {NAN, 0.0, 0}, {0.0, INFINITY, 0}};
+    static const gonio_instrument_options bad[] = {{-0.1, 0.0, 0, 0.0},
+                                                   {0.0, -0.1, 0, 0.0},
+                                                   {NAN, 0.0, 0, 0.0},
+                                                   {0.0, INFINITY, 0, 0.0},
+                                                   {0.0, 0.0, 0, -0.1}};
     gonio_readings *readings = make_plan(f, false);
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
         assert_int_equal(gonio_measure(NULL, readings, f->table, &bad[k]), GONIO_ERROR_ARGUMENT);
