@@ -7,9 +7,9 @@
 
 #include "trial.h"
 
-/* One piece: an experiment, and which part of it. */
+/* One piece: what kind it is, and which of them. */
 typedef struct part {
-    gonio_i_experiment experiment;
+    int kind; /* in the table below */
     size_t split;
     size_t index; /* of the grid's components, the method, the chosen size, the left-out material */
 } part;
@@ -264,20 +264,27 @@ static gonio_status test_size(gonio_context *context, const gonio_i_study *study
     return status;
 }
 
+/* All materials but one; NULL when out of memory. */
+static size_t *list_others(gonio_context *context, const gonio_i_study *study, size_t material)
+{
+    size_t *others = gonio_i_allocate(context, study->collection.count, sizeof *others);
+    for (size_t m = 0, n = 0; others != NULL && m < study->collection.count; m++) {
+        if (m != material) {
+            others[n++] = m;
+        }
+    }
+    return others;
+}
+
 static gonio_status compute_left_out(const gonio_i_study *study, gonio_context *context,
                                      const part *p, json_t *result)
 {
     const size_t material = study->left_out[p->index];
     double condition[GONIO_I_CHOSEN];
     gonio_error errors[GONIO_I_LEFT_OUT_SERIES];
-    size_t *others = gonio_i_allocate(context, study->collection.count, sizeof *others);
+    size_t *others = list_others(context, study, material);
     if (others == NULL) {
         return GONIO_ERROR_MEMORY;
-    }
-    for (size_t m = 0, n = 0; m < study->collection.count; m++) {
-        if (m != material) {
-            others[n++] = m;
-        }
     }
     gonio_status status =
         gonio_i_digest_compare(context, study->collection.digest[material],
@@ -293,6 +300,31 @@ static gonio_status compute_left_out(const gonio_i_study *study, gonio_context *
         }
         json_object_set_new(result, "condition", conditions);
         json_object_set_new(result, "errors", errors_json(errors, GONIO_I_LEFT_OUT_SERIES));
+    }
+    return status;
+}
+
+/* The method that the paper quotes beside its own. */
+static gonio_status compute_quoted(const gonio_i_study *study, gonio_context *context,
+                                   const part *p, json_t *result)
+{
+    size_t material = study->quoted[p->index].material;
+    const size_t count = study->collection.count - 1;
+    double condition = NAN;
+    gonio_error error;
+    size_t *others = list_others(context, study, material);
+    if (others == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    const gonio_i_split split = {
+        .basis = others, .basis_count = count, .test = &material, .test_count = 1};
+    const gonio_status status =
+        gonio_i_trial_method(context, &study->collection, gonio_i_quoted_method(),
+                             gonio_i_quoted_size(count), &split, study->seed, &condition, &error);
+    free(others);
+    if (status == GONIO_OK) {
+        json_object_set_new(result, "condition", number(condition));
+        json_object_set_new(result, "error", error_json(&error));
     }
     return status;
 }
@@ -332,12 +364,37 @@ static double grid_cost(const gonio_i_study *study, const part *p)
     return cost;
 }
 
-/* A random choice costs nothing, a method of its own much. */
+/* Methods of the full grid. Those that learn the same cost the same, so that for each split they
+ * follow each other and the second finds the basis that the first has left on the shelf. */
+static const double JOINT_COST = 40.0;
+static const double SEPARATE_COST = 15.0;
+
+static bool is_of_full_grid(const gonio_i_study *study, const part *p)
+{
+    (void)study;
+    return gonio_i_method_at(p->index)->representation == GONIO_FULL;
+}
+
+static bool is_always(const gonio_i_study *study, const part *p)
+{
+    (void)study;
+    (void)p;
+    return true;
+}
+
+static double quoted_cost(const gonio_i_study *study, const part *p)
+{
+    (void)study;
+    (void)p;
+    return JOINT_COST;
+}
+
+/* A random choice costs nothing. */
 static double method_cost(const gonio_i_study *study, const part *p)
 {
     const gonio_i_method_entry *method = gonio_i_method_at(p->index);
-    if (method->representation == GONIO_FULL) {
-        return 120.0;
+    if (is_of_full_grid(study, p)) {
+        return method->channels == GONIO_JOINT ? JOINT_COST : SEPARATE_COST;
     }
     return strcmp(method->plan, "random") == 0
                ? 0.1
@@ -354,12 +411,29 @@ static double left_out_cost(const gonio_i_study *study, const part *p)
     return cost;
 }
 
+/* ---- the kinds of pieces ---- */
+
+typedef struct kind {
+    gonio_i_experiment experiment;
+    bool by_split;
+    size_t (*count)(const gonio_i_study *study); /* for each split; NULL for one */
+    char *(*name)(const gonio_i_study *study, const part *p);
+    double (*cost)(const gonio_i_study *study, const part *p);
+    gonio_status (*compute)(const gonio_i_study *study, gonio_context *context, const part *p,
+                            json_t *result);
+    bool (*one_at_a_time)(const gonio_i_study *study, const part *p); /* NULL for no */
+} kind;
+
+enum { KINDS = 7 };
+
+static const kind kinds[KINDS];
+
 /* ---- names ---- */
 
 static char *plain_name(const gonio_i_study *study, const part *p)
 {
     (void)study;
-    return strdup(gonio_experiment_name((int)p->experiment));
+    return strdup(gonio_experiment_name((int)kinds[p->kind].experiment));
 }
 
 static char *grid_name(const gonio_i_study *study, const part *p)
@@ -385,66 +459,78 @@ static char *left_out_name(const gonio_i_study *study, const part *p)
                           gonio_i_name_of(&study->collection, study->left_out[p->index]));
 }
 
-/* ---- the table of experiments ---- */
+static char *quoted_name(const gonio_i_study *study, const part *p)
+{
+    return gonio_i_format("fig5-%s-%s", gonio_i_quoted_method()->name,
+                          gonio_i_name_of(&study->collection, study->quoted[p->index].material));
+}
 
-typedef struct kind {
-    char *(*name)(const gonio_i_study *study, const part *p);
-    double (*cost)(const gonio_i_study *study, const part *p);
-    gonio_status (*compute)(const gonio_i_study *study, gonio_context *context, const part *p,
-                            json_t *result);
-} kind;
+/* ---- how many ---- */
 
-static const kind kinds[GONIO_I_EXPERIMENTS] = {
-    [GONIO_I_SPECTRUM] = {plain_name, spectrum_cost, compute_spectrum},
-    [GONIO_I_CONVERGENCE] = {plain_name, shown_cost, compute_convergence},
-    [GONIO_I_GRID] = {grid_name, grid_cost, compute_grid},
-    [GONIO_I_METHODS] = {method_name, method_cost, compute_method},
-    [GONIO_I_DIRECTIONS] = {directions_name, shown_cost, compute_directions},
-    [GONIO_I_LEFT_OUT] = {left_out_name, left_out_cost, compute_left_out},
+static size_t grid_count(const gonio_i_study *study)
+{
+    return study->grid_components;
+}
+
+static size_t chosen_count(const gonio_i_study *study)
+{
+    (void)study;
+    return GONIO_I_CHOSEN;
+}
+
+static size_t left_out_count(const gonio_i_study *study)
+{
+    return study->left_out_count;
+}
+
+static size_t quoted_count(const gonio_i_study *study)
+{
+    return study->quoted_count;
+}
+
+/* ---- the table ---- */
+
+static const kind kinds[KINDS] = {
+    {GONIO_I_SPECTRUM, false, NULL, plain_name, spectrum_cost, compute_spectrum, NULL},
+    {GONIO_I_CONVERGENCE, false, NULL, plain_name, shown_cost, compute_convergence, NULL},
+    {GONIO_I_GRID, true, grid_count, grid_name, grid_cost, compute_grid, NULL},
+    {GONIO_I_METHODS, true, gonio_i_methods, method_name, method_cost, compute_method,
+     is_of_full_grid},
+    {GONIO_I_DIRECTIONS, false, chosen_count, directions_name, shown_cost, compute_directions,
+     NULL},
+    {GONIO_I_LEFT_OUT, false, left_out_count, left_out_name, left_out_cost, compute_left_out, NULL},
+    {GONIO_I_LEFT_OUT, false, quoted_count, quoted_name, quoted_cost, compute_quoted, is_always},
 };
 
-/* How many parts an experiment has: `indices` for each of `splits`. */
-static size_t splits_of(const gonio_i_study *study, int experiment)
+static size_t splits_of(const gonio_i_study *study, int k)
 {
-    return experiment == GONIO_I_GRID || experiment == GONIO_I_METHODS ? study->splits.count : 1;
+    return kinds[k].by_split ? study->splits.count : 1;
 }
 
-static size_t indices_of(const gonio_i_study *study, int experiment)
+static size_t indices_of(const gonio_i_study *study, int k)
 {
-    switch (experiment) {
-    case GONIO_I_GRID:
-        return study->grid_components;
-    case GONIO_I_METHODS:
-        return gonio_i_methods(study);
-    case GONIO_I_DIRECTIONS:
-        return GONIO_I_CHOSEN;
-    case GONIO_I_LEFT_OUT:
-        return study->left_out_count;
-    default:
-        return 1;
-    }
+    return kinds[k].count != NULL ? kinds[k].count(study) : 1;
 }
 
-static size_t parts_of(const gonio_i_study *study, int experiment)
+static size_t parts_of(const gonio_i_study *study, int k)
 {
-    return study->wanted[experiment] ? splits_of(study, experiment) * indices_of(study, experiment)
-                                     : 0;
+    return study->wanted[kinds[k].experiment] ? splits_of(study, k) * indices_of(study, k) : 0;
 }
 
 static gonio_status list_parts(gonio_context *context, plan_of_work *work)
 {
     size_t count = 0;
-    for (int e = 0; e < GONIO_I_EXPERIMENTS; e++) {
-        count += parts_of(work->study, e);
+    for (int k = 0; k < KINDS; k++) {
+        count += parts_of(work->study, k);
     }
     work->part = gonio_i_allocate(context, count, sizeof *work->part);
     if (work->part == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    for (int e = 0; e < GONIO_I_EXPERIMENTS; e++) {
-        const size_t indices = indices_of(work->study, e);
-        for (size_t k = 0; k < parts_of(work->study, e); k++) {
-            work->part[work->count++] = (part){(gonio_i_experiment)e, k / indices, k % indices};
+    for (int k = 0; k < KINDS; k++) {
+        const size_t indices = indices_of(work->study, k);
+        for (size_t n = 0; n < parts_of(work->study, k); n++) {
+            work->part[work->count++] = (part){k, n / indices, n % indices};
         }
     }
     return GONIO_OK;
@@ -456,14 +542,21 @@ static char *name_of(void *user, size_t piece)
 {
     const plan_of_work *work = user;
     const part *p = &work->part[piece];
-    return kinds[p->experiment].name(work->study, p);
+    return kinds[p->kind].name(work->study, p);
 }
 
 static double cost_of(void *user, size_t piece)
 {
     const plan_of_work *work = user;
     const part *p = &work->part[piece];
-    return kinds[p->experiment].cost(work->study, p);
+    return kinds[p->kind].cost(work->study, p);
+}
+
+static bool is_one_at_a_time(void *user, size_t piece)
+{
+    const plan_of_work *work = user;
+    const part *p = &work->part[piece];
+    return kinds[p->kind].one_at_a_time != NULL && kinds[p->kind].one_at_a_time(work->study, p);
 }
 
 static gonio_status compute(void *user, gonio_context *context, size_t piece, json_t **result)
@@ -471,7 +564,7 @@ static gonio_status compute(void *user, gonio_context *context, size_t piece, js
     const plan_of_work *work = user;
     const part *p = &work->part[piece];
     json_t *made = json_object();
-    const gonio_status status = kinds[p->experiment].compute(work->study, context, p, made);
+    const gonio_status status = kinds[p->kind].compute(work->study, context, p, made);
     if (status != GONIO_OK) {
         json_decref(made);
         return status;
@@ -490,47 +583,42 @@ void gonio_i_results_free(gonio_i_results *results)
     json_decref(results->methods);
     json_decref(results->directions);
     json_decref(results->left_out);
+    json_decref(results->quoted);
     *results = (gonio_i_results){0};
 }
 
-/* [index] of [split] of one experiment, from the flat list in the order of the parts. */
-static json_t *nest(const gonio_i_study *study, int experiment, json_t **flat)
+/* [split][index] of one kind, from the flat list in the order of the parts; [index] where there are
+ * no splits, and one result where there is one. */
+static json_t *nest(const gonio_i_study *study, int k, json_t **flat)
 {
-    const size_t indices = indices_of(study, experiment);
+    const size_t indices = indices_of(study, k);
+    if (kinds[k].count == NULL) {
+        return json_incref(flat[0]);
+    }
     json_t *outer = json_array();
-    for (size_t s = 0; s < splits_of(study, experiment); s++) {
-        json_t *inner = json_array();
-        for (size_t k = 0; k < indices; k++) {
-            json_array_append(inner, flat[s * indices + k]);
+    for (size_t s = 0; s < splits_of(study, k); s++) {
+        json_t *inner = kinds[k].by_split ? json_array() : json_incref(outer);
+        for (size_t n = 0; n < indices; n++) {
+            json_array_append(inner, flat[s * indices + n]);
         }
-        json_array_append_new(outer, inner);
+        if (kinds[k].by_split) {
+            json_array_append(outer, inner);
+        }
+        json_decref(inner);
     }
     return outer;
 }
 
-/* The first of the outer array. */
-static json_t *first_of(json_t *outer)
-{
-    json_t *inner = json_incref(json_array_get(outer, 0));
-    json_decref(outer);
-    return inner;
-}
-
 static void sort_results(const gonio_i_study *study, json_t **flat, gonio_i_results *results)
 {
-    json_t **const place[GONIO_I_EXPERIMENTS] = {&results->spectrum,   &results->convergence,
-                                                 &results->grid,       &results->methods,
-                                                 &results->directions, &results->left_out};
-    for (int e = 0; e < GONIO_I_EXPERIMENTS; e++) {
-        if (!study->wanted[e]) {
-            continue;
+    json_t **const place[KINDS] = {&results->spectrum, &results->convergence, &results->grid,
+                                   &results->methods,  &results->directions,  &results->left_out,
+                                   &results->quoted};
+    for (int k = 0; k < KINDS; k++) {
+        if (study->wanted[kinds[k].experiment]) {
+            *place[k] = nest(study, k, flat);
+            flat += parts_of(study, k);
         }
-        json_t *nested = nest(study, e, flat);
-        const bool by_split = e == GONIO_I_GRID || e == GONIO_I_METHODS;
-        const bool single = e == GONIO_I_SPECTRUM || e == GONIO_I_CONVERGENCE;
-        nested = by_split ? nested : first_of(nested);
-        *place[e] = single ? first_of(nested) : nested;
-        flat += parts_of(study, e);
     }
 }
 
@@ -550,7 +638,8 @@ gonio_status gonio_i_run_experiments(gonio_context *context, const gonio_i_study
                                         .user = &work,
                                         .name = name_of,
                                         .cost = cost_of,
-                                        .compute = compute};
+                                        .compute = compute,
+                                        .one_at_a_time = is_one_at_a_time};
         status = gonio_i_pieces_run(context, pieces, &described, flat);
     }
     if (status == GONIO_OK) {

@@ -28,6 +28,8 @@ typedef struct gonio_i_results {
     json_t *directions;
     /* [left out]: {"condition": [chosen], "errors": [series]} */
     json_t *left_out;
+    /* [quoted]: {"condition": number, "error": [..]} of the quoted method */
+    json_t *quoted;
 } gonio_i_results;
 
 /* Runs the pieces that are missing, all experiments in one go. The results are to be freed in any

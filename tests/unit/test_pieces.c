@@ -118,7 +118,7 @@ static gonio_status run(gonio_context *context, const char *folder, squares *s,
 {
     gonio_i_pieces *pieces = NULL;
     json_t *who = identity(1);
-    const gonio_i_work work = {"squares", PIECES, s, name_of, cost_of, compute};
+    const gonio_i_work work = {"squares", PIECES, s, name_of, cost_of, compute, NULL};
     gonio_status status = gonio_i_pieces_open(context, folder, who, team, &pieces);
     json_decref(who);
     if (status == GONIO_OK) {
