@@ -97,46 +97,70 @@ static gonio_status compute_spectrum(const gonio_i_study *study, gonio_context *
 
 /* ---- Fig. 2(b) and Fig. 4: plans from all materials ---- */
 
-static gonio_status plan_for_all(gonio_context *context, const gonio_i_study *study,
-                                 gonio_i_size size, gonio_plan **plan)
+static gonio_status plan_for_all(gonio_context *context, const gonio_basis *basis,
+                                 gonio_i_size size, int starts, uint64_t seed, gonio_plan **plan)
 {
-    gonio_basis *basis = NULL;
-    const gonio_basis_options learning = {.components = size.components};
     gonio_plan_options planning;
     gonio_plan_options_default(&planning);
+    planning.components = size.components;
     planning.count = size.samples;
-    planning.restarts = GONIO_I_STARTS;
-    planning.seed = study->seed;
-    gonio_status status = gonio_basis_learn(context, study->collection.database, &learning, &basis);
-    if (status == GONIO_OK) {
-        status = gonio_plan_create(context, basis, &planning, plan);
-    }
-    gonio_basis_free(&basis);
-    return status;
+    planning.restarts = starts;
+    planning.seed = seed;
+    return gonio_plan_create(context, basis, &planning, plan);
 }
 
+static gonio_status learn_from_all(gonio_context *context, const gonio_i_study *study,
+                                   gonio_i_size size, gonio_basis **basis)
+{
+    const gonio_basis_options learning = {.components = size.components};
+    return gonio_basis_learn(context, study->collection.database, &learning, basis);
+}
+
+/* The condition numbers of a plan's swaps, and the rows that it ends with. */
+static gonio_status record_start(gonio_context *context, const gonio_basis *basis,
+                                 const gonio_plan *plan, json_t *starts, json_t *rows)
+{
+    size_t *row = gonio_i_allocate(context, plan->count, sizeof *row);
+    if (row == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    gonio_plan_rows(plan, basis, row);
+    json_t *steps = json_array();
+    json_t *chosen = json_array();
+    for (size_t k = 0; k < plan->steps; k++) {
+        json_array_append_new(steps, number(plan->history[k].condition_number));
+    }
+    for (size_t k = 0; k < plan->count; k++) {
+        json_array_append_new(chosen, json_integer((json_int_t)row[k]));
+    }
+    json_array_append_new(starts, steps);
+    json_array_append_new(rows, chosen);
+    free(row);
+    return GONIO_OK;
+}
+
+/* Each start is a plan of its own, since of several a plan keeps the rows of the best. */
 static gonio_status compute_convergence(const gonio_i_study *study, gonio_context *context,
                                         const part *p, json_t *result)
 {
     (void)p;
-    gonio_plan *plan = NULL;
-    const gonio_status status = plan_for_all(context, study, study->chosen[0], &plan);
-    if (status != GONIO_OK) {
-        return status;
-    }
     json_t *starts = json_array();
-    json_t *steps = NULL;
+    json_t *rows = json_array();
+    gonio_basis *basis = NULL;
     json_object_set_new(result, "starts", starts);
-    for (size_t k = 0; k < plan->steps; k++) {
-        const gonio_plan_step *step = &plan->history[k];
-        if (steps == NULL || step->restart != plan->history[k - 1].restart) {
-            steps = json_array();
-            json_array_append_new(starts, steps);
+    json_object_set_new(result, "rows", rows);
+    gonio_status status = learn_from_all(context, study, study->chosen[0], &basis);
+    for (int k = 0; k < GONIO_I_STARTS && status == GONIO_OK; k++) {
+        gonio_plan *plan = NULL;
+        status =
+            plan_for_all(context, basis, study->chosen[0], 1, study->seed + (uint64_t)k, &plan);
+        if (status == GONIO_OK) {
+            status = record_start(context, basis, plan, starts, rows);
         }
-        json_array_append_new(steps, number(step->condition_number));
+        gonio_plan_free(&plan);
     }
-    gonio_plan_free(&plan);
-    return GONIO_OK;
+    gonio_basis_free(&basis);
+    return status;
 }
 
 static json_t *entry_json(const gonio_plan_entry *entry)
@@ -150,7 +174,13 @@ static gonio_status compute_directions(const gonio_i_study *study, gonio_context
                                        const part *p, json_t *result)
 {
     gonio_plan *plan = NULL;
-    const gonio_status status = plan_for_all(context, study, study->chosen[p->index], &plan);
+    gonio_basis *basis = NULL;
+    const gonio_i_size size = study->chosen[p->index];
+    gonio_status status = learn_from_all(context, study, size, &basis);
+    if (status == GONIO_OK) {
+        status = plan_for_all(context, basis, size, GONIO_I_STARTS, study->seed, &plan);
+    }
+    gonio_basis_free(&basis);
     if (status != GONIO_OK) {
         return status;
     }

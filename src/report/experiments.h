@@ -17,7 +17,7 @@ enum {
 typedef struct gonio_i_results {
     /* {"all": [variances], "splits": [[variances], ...]} */
     json_t *spectrum;
-    /* {"starts": [[condition numbers], ...]} */
+    /* {"starts": [[condition numbers], ...], "rows": [[rows in the end], ...]} */
     json_t *convergence;
     /* [split][K]: {"condition": [by L], "errors": [by L][test], "all": [test]}; null for L < K */
     json_t *grid;
