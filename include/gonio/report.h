@@ -46,12 +46,13 @@ GONIO_API const char *gonio_experiment_name(int index);
  * this with the same arguments and a folder that all see.
  *
  * Memory: about 4 MB a material, and 10 MB a thread; while a method of the full grid is compared
- * (fig3b, not in a quick run), 2.5 GB for 80 materials to learn from.
+ * (fig3b, fig5, not in a quick run), 3 GB for 100 materials, since that is done one at a time, and
+ * 1.3 GB of scratch space in $TMPDIR or /tmp.
  *
  * Errors: _ARGUMENT for an unknown experiment, fewer than 4 materials, or a folder that is not
  * empty; _DATA for materials that cannot be used, all of them named, and splits that do not fit;
- * _FORMAT for another kind of splits file; _MISMATCH for the folder of another run; _IO; _MEMORY;
- * _CANCELLED. */
+ * _FORMAT for another kind of splits file; _MISMATCH for the folder of another run, or of another
+ * build's; _IO; _MEMORY; _CANCELLED. */
 GONIO_API gonio_status gonio_reproduce(gonio_context *context, const char *const *paths,
                                        size_t count, const char *folder,
                                        const gonio_reproduce_options *options);

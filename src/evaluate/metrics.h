@@ -24,7 +24,8 @@ gonio_error gonio_i_error_of(const gonio_i_error_sums *sums, double values);
 /* w of the log-relative error, given c_i c_o. */
 static inline double gonio_i_ratio_weight(double cosines)
 {
-    return fmin(fmax(cosines, 0.01), 1.0);
+    const double least = cosines > 0.01 ? cosines : 0.01;
+    return least < 1.0 ? least : 1.0;
 }
 
 #endif

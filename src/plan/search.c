@@ -17,6 +17,9 @@
 /* A swap has to lower kappa by more than this share: less is rounding. */
 static const double least_gain = 1e-10;
 
+/* Values that are kept of all rows in the eigenbasis: 32 MB. */
+enum { MOST_TURNED = 1 << 22 };
+
 static double seconds(clockid_t clock)
 {
     struct timespec t;
@@ -62,6 +65,7 @@ static gonio_status decompose(gonio_i_search *s)
     const gonio_i_selection_problem *p = s->problem;
     const size_t k = p->components;
     memcpy(s->q, s->gram, k * k * sizeof *s->q);
+    s->decompositions++;
     gonio_status status = gonio_i_eigen(p->context, s->q, k, true, s->d);
     if (status == GONIO_OK) {
         status = gonio_i_product_transposed(p->context, s->x, p->count, k, s->q, k, s->y, k);
@@ -131,13 +135,29 @@ static gonio_i_exchange exchange_of(const gonio_i_search *s, size_t position, si
     return (gonio_i_exchange){s->d, s->y + position * k, z, k};
 }
 
+/* A row in the eigenbasis of G: made once for each G and kept, or made in z where all rows would be
+ * too much to keep. */
+static const double *turned(const gonio_i_search *s, size_t row, double *z)
+{
+    const size_t k = s->problem->components;
+    double *made = s->turned != NULL ? s->turned + row * k : z;
+    if (s->turned == NULL || s->turned_for[row] != s->decompositions) {
+        rotate(k, s->columns, gonio_i_row(s->problem, row), made);
+    }
+    if (s->turned != NULL) {
+        s->turned_for[row] = s->decompositions;
+    }
+    return made;
+}
+
 /* Whether a swap lowers kappa, exactly. */
 static bool wins(const gonio_i_search *s, size_t position, size_t row, double *z)
 {
     if (s->taken[row]) {
         return false;
     }
-    const gonio_i_exchange exchange = exchange_of(s, position, row, z);
+    const size_t k = s->problem->components;
+    const gonio_i_exchange exchange = {s->d, s->y + position * k, turned(s, row, z), k};
     return gonio_i_exchange_beats(&exchange, s->condition_number * (1.0 - least_gain));
 }
 
@@ -169,9 +189,16 @@ static size_t first_winner_at(gonio_i_search *s, size_t position, size_t from, s
                               thread);
 }
 
-/* Some steps of the way around, by all threads. */
+/* Some steps of the way around, by all threads. (One thread is no parallel region of one, which
+ * inside another region costs more than the step.) */
 static void take_steps(gonio_i_search *s, size_t position, size_t from, size_t first, size_t count)
 {
+    if (s->threads == 1) {
+        for (size_t step = first; step < first + count; step++) {
+            s->winners[step] = first_winner_at(s, position, from, step, 0);
+        }
+        return;
+    }
     double since = 0.0;
 #pragma omp parallel num_threads(s->threads) if (count > 1)
     {
@@ -241,22 +268,31 @@ static void prepare_ahead(gonio_i_search *s, size_t first, size_t apart,
     }
 }
 
+static void set_filter_after(gonio_i_search *s, const gonio_i_exchange *swap)
+{
+    set_filter(s, gonio_i_exchange_eigenvalue(swap, 0),
+               gonio_i_exchange_eigenvalue(swap, swap->n - 2),
+               gonio_i_exchange_eigenvalue(swap, swap->n - 1));
+}
+
 /* Sets the filter and decomposes G after a swap. Where there are several threads, one decomposes;
  * the eigenvalues that the filter needs are found without. */
 static gonio_status decompose_and_prepare(gonio_i_search *s, const gonio_i_exchange *swap)
 {
+    if (s->threads == 1) {
+        set_filter_after(s, swap);
+        return decompose(s);
+    }
     gonio_status status = GONIO_OK;
     _Atomic bool filtered = false;
     _Atomic bool decomposed = false;
     double since = 0.0;
-#pragma omp parallel num_threads(s->threads) if (s->threads > 1)
+#pragma omp parallel num_threads(s->threads)
     {
         const int thread = omp_get_thread_num();
         const int others = omp_get_num_threads() - 1;
         if (thread == others) {
-            set_filter(s, gonio_i_exchange_eigenvalue(swap, 0),
-                       gonio_i_exchange_eigenvalue(swap, swap->n - 2),
-                       gonio_i_exchange_eigenvalue(swap, swap->n - 1));
+            set_filter_after(s, swap);
             filtered = true;
         }
         if (thread == 0) {
@@ -364,6 +400,19 @@ gonio_status gonio_i_search_descend(gonio_i_search *s, int restart, gonio_i_sele
     return status;
 }
 
+/* Room for all rows in the eigenbasis, unless they are many; false when out of memory. */
+static bool allocate_turned(gonio_i_search *s)
+{
+    const size_t rows = s->problem->rows;
+    const size_t k = s->problem->components;
+    if (rows > MOST_TURNED / k) {
+        return true;
+    }
+    s->turned = gonio_i_allocate(s->problem->context, rows * k, sizeof *s->turned);
+    s->turned_for = gonio_i_allocate(s->problem->context, rows, sizeof *s->turned_for);
+    return s->turned != NULL && s->turned_for != NULL;
+}
+
 static bool allocate_workers(gonio_i_search *s)
 {
     gonio_context *context = s->problem->context;
@@ -401,8 +450,8 @@ bool gonio_i_search_allocate(const gonio_i_selection_problem *problem, const gon
         .winners = gonio_i_allocate(context, gonio_i_panels_chunks(panels) + 1, sizeof *s->winners),
     };
     return gonio_i_filter_allocate(problem, panels, threads, &s->filter) && allocate_workers(s) &&
-           s->chosen != NULL && s->taken != NULL && s->x != NULL && s->y != NULL &&
-           s->gram != NULL && s->q != NULL && s->columns != NULL && s->d != NULL &&
+           allocate_turned(s) && s->chosen != NULL && s->taken != NULL && s->x != NULL &&
+           s->y != NULL && s->gram != NULL && s->q != NULL && s->columns != NULL && s->d != NULL &&
            s->old_d != NULL && s->old_y != NULL && s->winners != NULL;
 }
 
@@ -424,5 +473,7 @@ void gonio_i_search_free(gonio_i_search *s)
     free(s->old_d);
     free(s->old_y);
     free(s->winners);
+    free(s->turned);
+    free(s->turned_for);
     gonio_i_filter_free(&s->filter);
 }

@@ -36,8 +36,11 @@ typedef struct gonio_i_search {
     double *q;            /* [K][K]: the eigenvectors of G as rows */
     double *columns;      /* [K][K]: and as columns */
     double *d;            /* [K] eigenvalues, ascending */
-    double *old_d;        /* [K] before a swap */
-    double *old_y;        /* [K] of the row that went out */
+    double *turned;       /* [rows][K]: rows in the eigenbasis of G; NULL if they are too many */
+    uint64_t *turned_for; /* [rows]: for which decomposition of G */
+    uint64_t decompositions;
+    double *old_d; /* [K] before a swap */
+    double *old_y; /* [K] of the row that went out */
     double condition_number;
     gonio_i_filter filter;
     gonio_i_search_worker *workers; /* [threads] */

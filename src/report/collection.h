@@ -4,6 +4,7 @@
 
 #include "../core/core.h"
 #include "../evaluate/digest.h"
+#include "shelf.h"
 
 typedef struct gonio_i_collection {
     size_t count;
@@ -11,6 +12,7 @@ typedef struct gonio_i_collection {
     gonio_i_digest **digest;
     double **mean;            /* gonio_i_digest_mean of each: what a bivariate reading sees */
     gonio_database *database; /* bivariate, joint; in the same order */
+    gonio_i_shelf *shelf;     /* other matrices and bases of them, as they are needed */
 } gonio_i_collection;
 
 /* Reads materials, several at a time. Those that cannot be read, have no data, or have the name or

@@ -1,320 +1,18 @@
 /* The paper's experiments as pieces of work: see experiments.h. */
 #include "experiments.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "methods.h"
+#include "parts.h"
 #include "renderings.h"
-#include "trial.h"
-
-/* One piece: an experiment, and which part of it. */
-typedef struct part {
-    gonio_i_experiment experiment;
-    size_t split;
-    size_t index; /* of the grid's components, the method, the chosen size, the left-out material */
-} part;
 
 typedef struct plan_of_work {
     const gonio_i_study *study;
     size_t count;
-    part *part; /* [count] */
+    gonio_i_part *part; /* [count] */
 } plan_of_work;
-
-/* ---- JSON ---- */
-
-static json_t *number(double value)
-{
-    return isfinite(value) ? json_real(value) : json_null();
-}
-
-double gonio_i_json_number(const json_t *value)
-{
-    return json_is_number(value) ? json_number_value(value) : NAN;
-}
-
-static json_t *error_json(const gonio_error *error)
-{
-    json_t *list = json_array();
-    json_array_append_new(list, number(error->e6));
-    json_array_append_new(list, number(error->cube_root));
-    json_array_append_new(list, number(error->log_relative));
-    return list;
-}
-
-gonio_error gonio_i_json_error(const json_t *value)
-{
-    return (gonio_error){gonio_i_json_number(json_array_get(value, 0)),
-                         gonio_i_json_number(json_array_get(value, 1)),
-                         gonio_i_json_number(json_array_get(value, 2))};
-}
-
-static json_t *errors_json(const gonio_error *errors, size_t count)
-{
-    json_t *list = json_array();
-    for (size_t k = 0; k < count; k++) {
-        json_array_append_new(list, error_json(&errors[k]));
-    }
-    return list;
-}
-
-/* ---- Fig. 2(a) ---- */
-
-static gonio_status add_variances(gonio_context *context, const gonio_i_study *study,
-                                  const size_t *subset, size_t count, json_t *list)
-{
-    gonio_basis *basis = NULL;
-    const gonio_basis_options options = {.components = 1, .subset = subset, .subset_count = count};
-    const gonio_status status =
-        gonio_basis_learn(context, study->collection.database, &options, &basis);
-    if (status != GONIO_OK) {
-        return status;
-    }
-    const gonio_basis_view view = gonio_basis_describe(basis);
-    for (size_t k = 0; k < view.variance_count; k++) {
-        json_array_append_new(list, number(view.variances[k]));
-    }
-    gonio_basis_free(&basis);
-    return GONIO_OK;
-}
-
-static gonio_status compute_spectrum(const gonio_i_study *study, gonio_context *context,
-                                     const part *p, json_t *result)
-{
-    (void)p;
-    json_t *all = json_array();
-    json_t *splits = json_array();
-    json_object_set_new(result, "all", all);
-    json_object_set_new(result, "splits", splits);
-    gonio_status status = add_variances(context, study, NULL, 0, all);
-    for (size_t s = 0; s < study->splits.count && status == GONIO_OK; s++) {
-        const gonio_i_split *split = &study->splits.split[s];
-        json_t *list = json_array();
-        json_array_append_new(splits, list);
-        status = add_variances(context, study, split->basis, split->basis_count, list);
-    }
-    return status;
-}
-
-/* ---- Fig. 2(b) and Fig. 4: plans from all materials ---- */
-
-static gonio_status plan_for_all(gonio_context *context, const gonio_i_study *study,
-                                 gonio_i_size size, gonio_plan **plan)
-{
-    gonio_basis *basis = NULL;
-    const gonio_basis_options learning = {.components = size.components};
-    gonio_plan_options planning;
-    gonio_plan_options_default(&planning);
-    planning.count = size.samples;
-    planning.restarts = GONIO_I_STARTS;
-    planning.seed = study->seed;
-    gonio_status status = gonio_basis_learn(context, study->collection.database, &learning, &basis);
-    if (status == GONIO_OK) {
-        status = gonio_plan_create(context, basis, &planning, plan);
-    }
-    gonio_basis_free(&basis);
-    return status;
-}
-
-static gonio_status compute_convergence(const gonio_i_study *study, gonio_context *context,
-                                        const part *p, json_t *result)
-{
-    (void)p;
-    gonio_plan *plan = NULL;
-    const gonio_status status = plan_for_all(context, study, study->chosen[0], &plan);
-    if (status != GONIO_OK) {
-        return status;
-    }
-    json_t *starts = json_array();
-    json_t *steps = NULL;
-    json_object_set_new(result, "starts", starts);
-    for (size_t k = 0; k < plan->steps; k++) {
-        const gonio_plan_step *step = &plan->history[k];
-        if (steps == NULL || step->restart != plan->history[k - 1].restart) {
-            steps = json_array();
-            json_array_append_new(starts, steps);
-        }
-        json_array_append_new(steps, number(step->condition_number));
-    }
-    gonio_plan_free(&plan);
-    return GONIO_OK;
-}
-
-static json_t *entry_json(const gonio_plan_entry *entry)
-{
-    return json_pack("[i, i, f, f, f, f]", (int)entry->cell, entry->channel,
-                     entry->pair.incident.theta, entry->pair.incident.phi,
-                     entry->pair.outgoing.theta, entry->pair.outgoing.phi);
-}
-
-static gonio_status compute_directions(const gonio_i_study *study, gonio_context *context,
-                                       const part *p, json_t *result)
-{
-    gonio_plan *plan = NULL;
-    const gonio_status status = plan_for_all(context, study, study->chosen[p->index], &plan);
-    if (status != GONIO_OK) {
-        return status;
-    }
-    json_t *entries = json_array();
-    for (size_t k = 0; k < plan->count; k++) {
-        json_array_append_new(entries, entry_json(&plan->entries[k]));
-    }
-    json_object_set_new(result, "condition", number(plan->condition_number));
-    json_object_set_new(result, "entries", entries);
-    gonio_plan_free(&plan);
-    return GONIO_OK;
-}
-
-/* ---- Fig. 3(a) ---- */
-
-static gonio_status compute_samples(gonio_context *context, const gonio_i_study *study,
-                                    const gonio_i_trial *trial, uint64_t seed, gonio_error *errors,
-                                    json_t *result)
-{
-    gonio_status status = GONIO_OK;
-    json_t *conditions = json_array();
-    json_t *by_samples = json_array();
-    json_object_set_new(result, "condition", conditions);
-    json_object_set_new(result, "errors", by_samples);
-    for (size_t l = 0; l < study->grid_samples && status == GONIO_OK; l++) {
-        double condition = NAN;
-        const bool fits = study->grid_sample[l] >= trial->view.components;
-        if (fits) {
-            status = gonio_i_trial_plan(context, trial, "condition", study->grid_sample[l], seed,
-                                        &condition, errors);
-        }
-        if (status == GONIO_OK) {
-            json_array_append_new(conditions, number(condition));
-            json_array_append_new(by_samples,
-                                  fits ? errors_json(errors, trial->tests) : json_null());
-            status = gonio_i_progress(context, "", 0.0);
-        }
-    }
-    return status;
-}
-
-static gonio_status compute_grid(const gonio_i_study *study, gonio_context *context, const part *p,
-                                 json_t *result)
-{
-    const gonio_i_split *split = &study->splits.split[p->split];
-    gonio_i_trial trial;
-    gonio_error *errors = gonio_i_allocate(context, split->test_count, sizeof *errors);
-    if (errors == NULL) {
-        return GONIO_ERROR_MEMORY;
-    }
-    gonio_status status = gonio_i_trial_begin(context, &study->collection, split->basis,
-                                              split->basis_count, study->grid_component[p->index],
-                                              split->test, split->test_count, &trial);
-    if (status == GONIO_OK) {
-        status = compute_samples(context, study, &trial, study->seed + p->split, errors, result);
-    }
-    if (status == GONIO_OK) {
-        status = gonio_i_trial_all_rows(context, &trial, errors);
-    }
-    if (status == GONIO_OK) {
-        json_object_set_new(result, "all", errors_json(errors, split->test_count));
-    }
-    gonio_i_trial_end(&trial);
-    free(errors);
-    return status;
-}
-
-/* ---- Fig. 3(b) ---- */
-
-static gonio_status compute_method(const gonio_i_study *study, gonio_context *context,
-                                   const part *p, json_t *result)
-{
-    const gonio_i_split *split = &study->splits.split[p->split];
-    const gonio_i_method_entry *method = gonio_i_method_at(p->index);
-    double condition = NAN;
-    gonio_error *errors = gonio_i_allocate(context, split->test_count, sizeof *errors);
-    if (errors == NULL) {
-        return GONIO_ERROR_MEMORY;
-    }
-    const gonio_status status = gonio_i_trial_method(context, &study->collection, method,
-                                                     gonio_i_method_size(study, method), split,
-                                                     study->seed + p->split, &condition, errors);
-    if (status == GONIO_OK) {
-        json_object_set_new(result, "condition", number(condition));
-        json_object_set_new(result, "errors", errors_json(errors, split->test_count));
-    }
-    free(errors);
-    return status;
-}
-
-/* ---- Fig. 5 ---- */
-
-/* One chosen size, and with the last of them all samples too. */
-static gonio_status test_size(gonio_context *context, const gonio_i_study *study,
-                              const size_t *others, size_t material, size_t chosen,
-                              double *condition, gonio_error *errors)
-{
-    const gonio_i_size size = study->chosen[chosen];
-    gonio_i_trial trial;
-    gonio_status status =
-        gonio_i_trial_begin(context, &study->collection, others, study->collection.count - 1,
-                            size.components, &material, 1, &trial);
-    if (status == GONIO_OK) {
-        status = gonio_i_trial_plan(context, &trial, "condition", size.samples, study->seed,
-                                    &condition[chosen], &errors[chosen]);
-    }
-    if (status == GONIO_OK && chosen == GONIO_I_CHOSEN - 1) {
-        status = gonio_i_trial_all_rows(context, &trial, &errors[GONIO_I_ALL_SAMPLES]);
-    }
-    gonio_i_trial_end(&trial);
-    return status;
-}
-
-static gonio_status compute_left_out(const gonio_i_study *study, gonio_context *context,
-                                     const part *p, json_t *result)
-{
-    const size_t material = study->left_out[p->index];
-    double condition[GONIO_I_CHOSEN];
-    gonio_error errors[GONIO_I_LEFT_OUT_SERIES];
-    size_t *others = gonio_i_allocate(context, study->collection.count, sizeof *others);
-    if (others == NULL) {
-        return GONIO_ERROR_MEMORY;
-    }
-    for (size_t m = 0, n = 0; m < study->collection.count; m++) {
-        if (m != material) {
-            others[n++] = m;
-        }
-    }
-    gonio_status status =
-        gonio_i_digest_compare(context, study->collection.digest[material],
-                               study->collection.mean[material], &errors[GONIO_I_BIVARIATE_ITSELF]);
-    for (size_t k = 0; k < GONIO_I_CHOSEN && status == GONIO_OK; k++) {
-        status = test_size(context, study, others, material, k, condition, errors);
-    }
-    free(others);
-    if (status == GONIO_OK) {
-        json_t *conditions = json_array();
-        for (size_t k = 0; k < GONIO_I_CHOSEN; k++) {
-            json_array_append_new(conditions, number(condition[k]));
-        }
-        json_object_set_new(result, "condition", conditions);
-        json_object_set_new(result, "errors", errors_json(errors, GONIO_I_LEFT_OUT_SERIES));
-    }
-    return status;
-}
-
-/* ---- Fig. 6 and Fig. 7 ---- */
-
-static gonio_status compute_rendering(const gonio_i_study *study, gonio_context *context,
-                                      const part *p, json_t *result)
-{
-    return gonio_i_compute_rendering(study, context, p->experiment, p->index, result);
-}
-
-static double rendering_cost(const gonio_i_study *study, const part *p)
-{
-    return gonio_i_rendering_cost(study, p->experiment, p->index);
-}
-
-static char *rendering_name(const gonio_i_study *study, const part *p)
-{
-    return gonio_i_rendering_name(study, p->experiment, p->index);
-}
 
 /* ---- costs: seconds, roughly ---- */
 
@@ -330,18 +28,18 @@ static double size_cost(gonio_i_size size)
     return plan_cost(size.components, size.samples);
 }
 
-static double spectrum_cost(const gonio_i_study *study, const part *p)
+static double spectrum_cost(const gonio_i_study *study, const gonio_i_part *p)
 {
     (void)p;
     return 0.05 * (double)(1 + study->splits.count);
 }
 
-static double shown_cost(const gonio_i_study *study, const part *p)
+static double shown_cost(const gonio_i_study *study, const gonio_i_part *p)
 {
     return 0.05 + GONIO_I_STARTS * size_cost(study->chosen[p->index]);
 }
 
-static double grid_cost(const gonio_i_study *study, const part *p)
+static double grid_cost(const gonio_i_study *study, const gonio_i_part *p)
 {
     const double tests = (double)study->splits.split[p->split].test_count;
     double cost = 0.1;
@@ -351,19 +49,44 @@ static double grid_cost(const gonio_i_study *study, const part *p)
     return cost;
 }
 
-/* A random choice costs nothing, a method of its own much. */
-static double method_cost(const gonio_i_study *study, const part *p)
+/* Methods of the full grid. Those that learn the same cost the same, so that for each split they
+ * follow each other and the second finds the basis that the first has left on the shelf. */
+static const double JOINT_COST = 40.0;
+static const double SEPARATE_COST = 15.0;
+
+static bool is_of_full_grid(const gonio_i_study *study, const gonio_i_part *p)
+{
+    (void)study;
+    return gonio_i_method_at(p->index)->representation == GONIO_FULL;
+}
+
+static bool is_always(const gonio_i_study *study, const gonio_i_part *p)
+{
+    (void)study;
+    (void)p;
+    return true;
+}
+
+static double quoted_cost(const gonio_i_study *study, const gonio_i_part *p)
+{
+    (void)study;
+    (void)p;
+    return JOINT_COST;
+}
+
+/* A random choice costs nothing. */
+static double method_cost(const gonio_i_study *study, const gonio_i_part *p)
 {
     const gonio_i_method_entry *method = gonio_i_method_at(p->index);
-    if (method->representation == GONIO_FULL) {
-        return 120.0;
+    if (is_of_full_grid(study, p)) {
+        return method->channels == GONIO_JOINT ? JOINT_COST : SEPARATE_COST;
     }
     return strcmp(method->plan, "random") == 0
                ? 0.1
                : 0.1 + size_cost(gonio_i_method_size(study, method));
 }
 
-static double left_out_cost(const gonio_i_study *study, const part *p)
+static double left_out_cost(const gonio_i_study *study, const gonio_i_part *p)
 {
     (void)p;
     double cost = 0.2;
@@ -373,102 +96,158 @@ static double left_out_cost(const gonio_i_study *study, const part *p)
     return cost;
 }
 
+/* ---- the kinds of pieces ---- */
+
+typedef struct kind {
+    gonio_i_experiment experiment;
+    bool by_split;
+    size_t (*count)(const gonio_i_study *study); /* for each split; NULL for one */
+    char *(*name)(const gonio_i_study *study, const gonio_i_part *p);
+    double (*cost)(const gonio_i_study *study, const gonio_i_part *p);
+    gonio_i_compute *compute;
+    bool (*one_at_a_time)(const gonio_i_study *study, const gonio_i_part *p); /* NULL for no */
+} kind;
+
+enum { KINDS = 9 };
+
+static const kind kinds[KINDS];
+
 /* ---- names ---- */
 
-static char *plain_name(const gonio_i_study *study, const part *p)
+static char *plain_name(const gonio_i_study *study, const gonio_i_part *p)
 {
     (void)study;
-    return strdup(gonio_experiment_name((int)p->experiment));
+    return strdup(gonio_experiment_name((int)kinds[p->kind].experiment));
 }
 
-static char *grid_name(const gonio_i_study *study, const part *p)
+static char *grid_name(const gonio_i_study *study, const gonio_i_part *p)
 {
     return gonio_i_format("fig3a-split-%02zu-basis-%zu", p->split + 1,
                           study->grid_component[p->index]);
 }
 
-static char *method_name(const gonio_i_study *study, const part *p)
+static char *method_name(const gonio_i_study *study, const gonio_i_part *p)
 {
     (void)study;
     return gonio_i_format("fig3b-%s-split-%02zu", gonio_i_method_at(p->index)->name, p->split + 1);
 }
 
-static char *directions_name(const gonio_i_study *study, const part *p)
+static char *directions_name(const gonio_i_study *study, const gonio_i_part *p)
 {
     return gonio_i_format("fig4-samples-%zu", study->chosen[p->index].samples);
 }
 
-static char *left_out_name(const gonio_i_study *study, const part *p)
+static char *left_out_name(const gonio_i_study *study, const gonio_i_part *p)
 {
     return gonio_i_format("fig5-%s",
                           gonio_i_name_of(&study->collection, study->left_out[p->index]));
 }
 
-/* ---- the table of experiments ---- */
+static char *quoted_name(const gonio_i_study *study, const gonio_i_part *p)
+{
+    return gonio_i_format("fig5-%s-%s", gonio_i_quoted_method()->name,
+                          gonio_i_name_of(&study->collection, study->quoted[p->index].material));
+}
 
-typedef struct kind {
-    char *(*name)(const gonio_i_study *study, const part *p);
-    double (*cost)(const gonio_i_study *study, const part *p);
-    gonio_status (*compute)(const gonio_i_study *study, gonio_context *context, const part *p,
-                            json_t *result);
-} kind;
+/* ---- Fig. 6 and Fig. 7 ---- */
 
-static const kind kinds[GONIO_I_EXPERIMENTS] = {
-    [GONIO_I_SPECTRUM] = {plain_name, spectrum_cost, compute_spectrum},
-    [GONIO_I_CONVERGENCE] = {plain_name, shown_cost, compute_convergence},
-    [GONIO_I_GRID] = {grid_name, grid_cost, compute_grid},
-    [GONIO_I_METHODS] = {method_name, method_cost, compute_method},
-    [GONIO_I_DIRECTIONS] = {directions_name, shown_cost, compute_directions},
-    [GONIO_I_LEFT_OUT] = {left_out_name, left_out_cost, compute_left_out},
-    [GONIO_I_RENDERED] = {rendering_name, rendering_cost, compute_rendering},
-    [GONIO_I_LIT] = {rendering_name, rendering_cost, compute_rendering},
+static double rendering_cost(const gonio_i_study *study, const gonio_i_part *p)
+{
+    return gonio_i_rendering_cost(study, kinds[p->kind].experiment, p->index);
+}
+
+static char *rendering_name(const gonio_i_study *study, const gonio_i_part *p)
+{
+    return gonio_i_rendering_name(study, kinds[p->kind].experiment, p->index);
+}
+
+static gonio_status compute_rendering(const gonio_i_study *study, gonio_context *context,
+                                      const gonio_i_part *p, json_t *result)
+{
+    return gonio_i_compute_rendering(study, context, kinds[p->kind].experiment, p->index, result);
+}
+
+static size_t rendered_count(const gonio_i_study *study)
+{
+    return gonio_i_renderings(study, GONIO_I_RENDERED);
+}
+
+static size_t lit_count(const gonio_i_study *study)
+{
+    return gonio_i_renderings(study, GONIO_I_LIT);
+}
+
+/* ---- how many ---- */
+
+static size_t grid_count(const gonio_i_study *study)
+{
+    return study->grid_components;
+}
+
+static size_t chosen_count(const gonio_i_study *study)
+{
+    (void)study;
+    return GONIO_I_CHOSEN;
+}
+
+static size_t left_out_count(const gonio_i_study *study)
+{
+    return study->left_out_count;
+}
+
+static size_t quoted_count(const gonio_i_study *study)
+{
+    return study->quoted_count;
+}
+
+/* ---- the table ---- */
+
+static const kind kinds[KINDS] = {
+    {GONIO_I_SPECTRUM, false, NULL, plain_name, spectrum_cost, gonio_i_compute_spectrum, NULL},
+    {GONIO_I_CONVERGENCE, false, NULL, plain_name, shown_cost, gonio_i_compute_convergence, NULL},
+    {GONIO_I_GRID, true, grid_count, grid_name, grid_cost, gonio_i_compute_grid, NULL},
+    {GONIO_I_METHODS, true, gonio_i_methods, method_name, method_cost, gonio_i_compute_method,
+     is_of_full_grid},
+    {GONIO_I_DIRECTIONS, false, chosen_count, directions_name, shown_cost,
+     gonio_i_compute_directions, NULL},
+    {GONIO_I_LEFT_OUT, false, left_out_count, left_out_name, left_out_cost,
+     gonio_i_compute_left_out, NULL},
+    {GONIO_I_LEFT_OUT, false, quoted_count, quoted_name, quoted_cost, gonio_i_compute_quoted,
+     is_always},
+    {GONIO_I_RENDERED, false, rendered_count, rendering_name, rendering_cost, compute_rendering,
+     is_always},
+    {GONIO_I_LIT, false, lit_count, rendering_name, rendering_cost, compute_rendering, is_always},
 };
 
-/* How many parts an experiment has: `indices` for each of `splits`. */
-static size_t splits_of(const gonio_i_study *study, int experiment)
+static size_t splits_of(const gonio_i_study *study, int k)
 {
-    return experiment == GONIO_I_GRID || experiment == GONIO_I_METHODS ? study->splits.count : 1;
+    return kinds[k].by_split ? study->splits.count : 1;
 }
 
-static size_t indices_of(const gonio_i_study *study, int experiment)
+static size_t indices_of(const gonio_i_study *study, int k)
 {
-    switch (experiment) {
-    case GONIO_I_GRID:
-        return study->grid_components;
-    case GONIO_I_METHODS:
-        return gonio_i_methods(study);
-    case GONIO_I_DIRECTIONS:
-        return GONIO_I_CHOSEN;
-    case GONIO_I_LEFT_OUT:
-        return study->left_out_count;
-    case GONIO_I_RENDERED:
-    case GONIO_I_LIT:
-        return gonio_i_renderings(study, (gonio_i_experiment)experiment);
-    default:
-        return 1;
-    }
+    return kinds[k].count != NULL ? kinds[k].count(study) : 1;
 }
 
-static size_t parts_of(const gonio_i_study *study, int experiment)
+static size_t parts_of(const gonio_i_study *study, int k)
 {
-    return study->wanted[experiment] ? splits_of(study, experiment) * indices_of(study, experiment)
-                                     : 0;
+    return study->wanted[kinds[k].experiment] ? splits_of(study, k) * indices_of(study, k) : 0;
 }
 
 static gonio_status list_parts(gonio_context *context, plan_of_work *work)
 {
     size_t count = 0;
-    for (int e = 0; e < GONIO_I_EXPERIMENTS; e++) {
-        count += parts_of(work->study, e);
+    for (int k = 0; k < KINDS; k++) {
+        count += parts_of(work->study, k);
     }
     work->part = gonio_i_allocate(context, count, sizeof *work->part);
     if (work->part == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    for (int e = 0; e < GONIO_I_EXPERIMENTS; e++) {
-        const size_t indices = indices_of(work->study, e);
-        for (size_t k = 0; k < parts_of(work->study, e); k++) {
-            work->part[work->count++] = (part){(gonio_i_experiment)e, k / indices, k % indices};
+    for (int k = 0; k < KINDS; k++) {
+        const size_t indices = indices_of(work->study, k);
+        for (size_t n = 0; n < parts_of(work->study, k); n++) {
+            work->part[work->count++] = (gonio_i_part){k, n / indices, n % indices};
         }
     }
     return GONIO_OK;
@@ -479,23 +258,30 @@ static gonio_status list_parts(gonio_context *context, plan_of_work *work)
 static char *name_of(void *user, size_t piece)
 {
     const plan_of_work *work = user;
-    const part *p = &work->part[piece];
-    return kinds[p->experiment].name(work->study, p);
+    const gonio_i_part *p = &work->part[piece];
+    return kinds[p->kind].name(work->study, p);
 }
 
 static double cost_of(void *user, size_t piece)
 {
     const plan_of_work *work = user;
-    const part *p = &work->part[piece];
-    return kinds[p->experiment].cost(work->study, p);
+    const gonio_i_part *p = &work->part[piece];
+    return kinds[p->kind].cost(work->study, p);
+}
+
+static bool is_one_at_a_time(void *user, size_t piece)
+{
+    const plan_of_work *work = user;
+    const gonio_i_part *p = &work->part[piece];
+    return kinds[p->kind].one_at_a_time != NULL && kinds[p->kind].one_at_a_time(work->study, p);
 }
 
 static gonio_status compute(void *user, gonio_context *context, size_t piece, json_t **result)
 {
     const plan_of_work *work = user;
-    const part *p = &work->part[piece];
+    const gonio_i_part *p = &work->part[piece];
     json_t *made = json_object();
-    const gonio_status status = kinds[p->experiment].compute(work->study, context, p, made);
+    const gonio_status status = kinds[p->kind].compute(work->study, context, p, made);
     if (status != GONIO_OK) {
         json_decref(made);
         return status;
@@ -514,49 +300,44 @@ void gonio_i_results_free(gonio_i_results *results)
     json_decref(results->methods);
     json_decref(results->directions);
     json_decref(results->left_out);
+    json_decref(results->quoted);
     json_decref(results->rendered);
     json_decref(results->lit);
     *results = (gonio_i_results){0};
 }
 
-/* [index] of [split] of one experiment, from the flat list in the order of the parts. */
-static json_t *nest(const gonio_i_study *study, int experiment, json_t **flat)
+/* [split][index] of one kind, from the flat list in the order of the parts; [index] where there are
+ * no splits, and one result where there is one. */
+static json_t *nest(const gonio_i_study *study, int k, json_t **flat)
 {
-    const size_t indices = indices_of(study, experiment);
+    const size_t indices = indices_of(study, k);
+    if (kinds[k].count == NULL) {
+        return json_incref(flat[0]);
+    }
     json_t *outer = json_array();
-    for (size_t s = 0; s < splits_of(study, experiment); s++) {
-        json_t *inner = json_array();
-        for (size_t k = 0; k < indices; k++) {
-            json_array_append(inner, flat[s * indices + k]);
+    for (size_t s = 0; s < splits_of(study, k); s++) {
+        json_t *inner = kinds[k].by_split ? json_array() : json_incref(outer);
+        for (size_t n = 0; n < indices; n++) {
+            json_array_append(inner, flat[s * indices + n]);
         }
-        json_array_append_new(outer, inner);
+        if (kinds[k].by_split) {
+            json_array_append(outer, inner);
+        }
+        json_decref(inner);
     }
     return outer;
 }
 
-/* The first of the outer array. */
-static json_t *first_of(json_t *outer)
-{
-    json_t *inner = json_incref(json_array_get(outer, 0));
-    json_decref(outer);
-    return inner;
-}
-
 static void sort_results(const gonio_i_study *study, json_t **flat, gonio_i_results *results)
 {
-    json_t **const place[GONIO_I_EXPERIMENTS] = {
-        &results->spectrum,   &results->convergence, &results->grid,     &results->methods,
-        &results->directions, &results->left_out,    &results->rendered, &results->lit};
-    for (int e = 0; e < GONIO_I_EXPERIMENTS; e++) {
-        if (!study->wanted[e]) {
-            continue;
+    json_t **const place[KINDS] = {&results->spectrum, &results->convergence, &results->grid,
+                                   &results->methods,  &results->directions,  &results->left_out,
+                                   &results->quoted,   &results->rendered,    &results->lit};
+    for (int k = 0; k < KINDS; k++) {
+        if (study->wanted[kinds[k].experiment]) {
+            *place[k] = nest(study, k, flat);
+            flat += parts_of(study, k);
         }
-        json_t *nested = nest(study, e, flat);
-        const bool by_split = e == GONIO_I_GRID || e == GONIO_I_METHODS;
-        const bool single = e == GONIO_I_SPECTRUM || e == GONIO_I_CONVERGENCE;
-        nested = by_split ? nested : first_of(nested);
-        *place[e] = single ? first_of(nested) : nested;
-        flat += parts_of(study, e);
     }
 }
 
@@ -576,7 +357,8 @@ gonio_status gonio_i_run_experiments(gonio_context *context, const gonio_i_study
                                         .user = &work,
                                         .name = name_of,
                                         .cost = cost_of,
-                                        .compute = compute};
+                                        .compute = compute,
+                                        .one_at_a_time = is_one_at_a_time};
         status = gonio_i_pieces_run(context, pieces, &described, flat);
     }
     if (status == GONIO_OK) {

@@ -17,7 +17,7 @@ enum {
 typedef struct gonio_i_results {
     /* {"all": [variances], "splits": [[variances], ...]} */
     json_t *spectrum;
-    /* {"starts": [[condition numbers], ...]} */
+    /* {"starts": [[condition numbers], ...], "rows": [[rows in the end], ...]} */
     json_t *convergence;
     /* [split][K]: {"condition": [by L], "errors": [by L][test], "all": [test]}; null for L < K */
     json_t *grid;
@@ -28,6 +28,8 @@ typedef struct gonio_i_results {
     json_t *directions;
     /* [left out]: {"condition": [chosen], "errors": [series]} */
     json_t *left_out;
+    /* [quoted]: {"condition": number, "error": [..]} of the quoted method */
+    json_t *quoted;
     /* [row x method], see renderings.h */
     json_t *rendered;
     json_t *lit;

@@ -170,6 +170,10 @@ gonio_status gonio_i_find(gonio_context *context, const gonio_i_study *study,
     if (status == GONIO_OK && results->left_out != NULL) {
         status = find_left_out(context, study, results->left_out, findings);
     }
+    for (size_t q = 0; q < json_array_size(results->quoted); q++) {
+        findings->quoted[q] =
+            gonio_i_json_error(json_object_get(json_array_get(results->quoted, q), "error"));
+    }
     return status;
 }
 

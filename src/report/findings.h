@@ -20,6 +20,7 @@ typedef struct gonio_i_findings {
     double *method_condition;  /* [methods] */
     gonio_error *left_out;     /* [left out][GONIO_I_LEFT_OUT_SERIES] */
     gonio_error left_out_mean[GONIO_I_LEFT_OUT_SERIES];
+    gonio_error quoted[GONIO_I_QUOTED]; /* [study->quoted_count] of the quoted method */
 } gonio_i_findings;
 
 /* To be freed in any case. Errors: _MEMORY. */

@@ -27,7 +27,8 @@ static const gonio_i_method_entry methods[] = {
      .without_mean = true,
      .plan = "matusik",
      .chosen = GONIO_I_OWN_SIZE,
-     .size = {0, 800}},
+     .size = {0, 800},
+     .quoted = true},
     {.name = "nielsen-40", .label = "Nielsen et al.", RELATIVE("nielsen", 40)},
     {.name = "frost-40", .label = "FROST", RELATIVE("frost", 40)},
 };
@@ -54,17 +55,40 @@ static size_t most_components(const gonio_i_method_entry *method, size_t materia
     return method->without_mean ? materials : materials - 1;
 }
 
+/* The size of its own for a basis of so many materials. */
+static gonio_i_size own_size(const gonio_i_method_entry *method, size_t materials)
+{
+    gonio_i_size size = method->size;
+    const bool square = size.components == size.samples;
+    const size_t most = most_components(method, materials);
+    size.components = size.components == 0 || size.components > most ? most : size.components;
+    size.samples = square ? size.components : size.samples;
+    return size;
+}
+
 gonio_i_size gonio_i_method_size(const gonio_i_study *study, const gonio_i_method_entry *method)
 {
     if (method->chosen != GONIO_I_OWN_SIZE) {
         return study->chosen[method->chosen];
     }
-    gonio_i_size size = method->size;
-    const bool square = size.components == size.samples;
-    for (size_t s = 0; s < study->splits.count; s++) {
-        const size_t most = most_components(method, study->splits.split[s].basis_count);
-        size.components = size.components == 0 || size.components > most ? most : size.components;
+    size_t least = study->splits.split[0].basis_count;
+    for (size_t s = 1; s < study->splits.count; s++) {
+        const size_t count = study->splits.split[s].basis_count;
+        least = count < least ? count : least;
     }
-    size.samples = square ? size.components : size.samples;
-    return size;
+    return own_size(method, least);
+}
+
+const gonio_i_method_entry *gonio_i_quoted_method(void)
+{
+    size_t m = 0;
+    while (!methods[m].quoted) {
+        m++;
+    }
+    return &methods[m];
+}
+
+gonio_i_size gonio_i_quoted_size(size_t materials)
+{
+    return own_size(gonio_i_quoted_method(), materials);
 }

@@ -17,6 +17,7 @@ typedef struct gonio_i_method_entry {
     const char *plan;  /* gonio_plan_method_name; reconstructed by what belongs to it */
     int chosen;        /* the size is the study's chosen[]; or GONIO_I_OWN_SIZE */
     gonio_i_size size; /* then; 0 components: as many as materials */
+    bool quoted;       /* its errors for single materials are quoted by the paper; for one method */
 } gonio_i_method_entry;
 
 /* How many of them a study compares: a quick one none that learns on the full grid. */
@@ -25,5 +26,10 @@ const gonio_i_method_entry *gonio_i_method_at(size_t index);
 
 /* K and L of a method, no more than the materials of a split allow. */
 gonio_i_size gonio_i_method_size(const gonio_i_study *study, const gonio_i_method_entry *method);
+
+/* The method that the paper quotes beside its own, and its size for a basis of so many materials.
+ */
+const gonio_i_method_entry *gonio_i_quoted_method(void);
+gonio_i_size gonio_i_quoted_size(size_t materials);
 
 #endif

@@ -172,6 +172,32 @@ static void put_methods(const page *p)
     fputc('\n', p->f);
 }
 
+/* The materials whose errors the paper quotes, from bases of all others. */
+static void put_quoted(const page *p)
+{
+    const gonio_i_study *s = p->study;
+    if (s->quoted_count == 0) {
+        return;
+    }
+    const gonio_i_size own = s->chosen[GONIO_I_CHOSEN - 1];
+    const gonio_i_size size = gonio_i_quoted_size(s->collection.count - 1);
+    const char *label = gonio_i_quoted_method()->label;
+    fprintf(p->f,
+            "| E6 %% of | paper, 170 | here, %zu | %s, 800, as the paper quotes | %s, %zu of "
+            "%zu materials, run here |\n| --- | --- | --- | --- | --- |\n",
+            own.samples, label, label, size.samples, size.components);
+    for (size_t q = 0; q < s->quoted_count; q++) {
+        const gonio_i_quoted *quoted = &gonio_i_quoted_materials[s->quoted[q].quote];
+        const size_t at = s->quoted[q].left_out * GONIO_I_LEFT_OUT_SERIES + GONIO_I_CHOSEN - 1;
+        fprintf(p->f, "| %s | %.1f |", quoted->material, quoted->paper);
+        put_number(p->f, p->findings->left_out[at].e6, 2);
+        fprintf(p->f, " %.1f |", quoted->matusik);
+        put_number(p->f, p->findings->quoted[q].e6, 2);
+        fputc('\n', p->f);
+    }
+    fputc('\n', p->f);
+}
+
 static void put_left_out(const page *p)
 {
     const gonio_i_study *s = p->study;
@@ -190,6 +216,7 @@ static void put_left_out(const page *p)
         put_error(p->f, p->findings->left_out_mean[series]);
     }
     fputs("\nEach material: `tables/fig5.csv`.\n\n", p->f);
+    put_quoted(p);
 }
 
 static void put_rendered(const page *p)
@@ -348,8 +375,13 @@ static json_t *left_out_json(const gonio_i_study *study, const gonio_i_findings 
         json_object_set_new(materials, gonio_i_name_of(&study->collection, study->left_out[k]),
                             series_json(study, findings->left_out + k * GONIO_I_LEFT_OUT_SERIES));
     }
-    return json_pack("{s:o, s:o}", "mean", series_json(study, findings->left_out_mean), "materials",
-                     materials);
+    json_t *quoted = json_object();
+    for (size_t q = 0; q < study->quoted_count; q++) {
+        json_object_set_new(quoted, gonio_i_name_of(&study->collection, study->quoted[q].material),
+                            error_json(findings->quoted[q]));
+    }
+    return json_pack("{s:o, s:o, s:o}", "mean", series_json(study, findings->left_out_mean),
+                     "materials", materials, gonio_i_quoted_method()->name, quoted);
 }
 
 static json_t *cumulative_json(const gonio_i_findings *findings)

@@ -132,6 +132,8 @@ typedef struct job {
     size_t piece;
     char *name;
     double cost;
+    bool one_at_a_time;
+    bool begun;
 } job;
 
 typedef struct run {
@@ -142,6 +144,7 @@ typedef struct run {
     job **todo;
     size_t count;      /* of todo */
     double cost, done; /* of todo: all, finished */
+    bool occupied;     /* by a piece of which there is one at a time */
     gonio_status status;
 } run;
 
@@ -165,7 +168,8 @@ static gonio_status list_jobs(run *r)
     const gonio_i_work *work = r->work;
     for (size_t k = 0; k < work->count; k++) {
         r->job[k] = (job){k, work->name(work->user, k),
-                          work->cost != NULL ? work->cost(work->user, k) : 1.0};
+                          work->cost != NULL ? work->cost(work->user, k) : 1.0,
+                          work->one_at_a_time != NULL && work->one_at_a_time(work->user, k), false};
         if (r->job[k].name == NULL) {
             return gonio_i_fail(r->context, GONIO_ERROR_MEMORY, "%s: out of memory", work->title);
         }
@@ -259,26 +263,36 @@ static void note_end(run *r, gonio_context *team, const job *j, gonio_status sta
         if (r->status == GONIO_OK) {
             r->status = status;
         }
+        r->occupied = r->occupied && !j->one_at_a_time;
     }
 }
 
-static bool goes_on(run *r)
+/* The next piece for a thread; NULL if there is none. What is left of those of which there is one
+ * at a time falls to the thread that is doing one. */
+static const job *next_job(run *r)
 {
-    bool fine = false;
+    job *next = NULL;
 #pragma omp critical(gonio_pieces)
-    fine = r->status == GONIO_OK;
-    return fine;
+    {
+        for (size_t k = 0; k < r->count && next == NULL && r->status == GONIO_OK; k++) {
+            job *j = r->todo[k];
+            next = j->begun || (j->one_at_a_time && r->occupied) ? NULL : j;
+        }
+        if (next != NULL) {
+            next->begun = true;
+            r->occupied = r->occupied || next->one_at_a_time;
+        }
+    }
+    return next;
 }
 
 static gonio_status do_jobs(run *r, int threads)
 {
     gonio_context *team = gonio_i_team_begin(r->context);
     r->status = r->count > 0 ? tell(r, team) : GONIO_OK;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
-    for (size_t k = 0; k < r->count; k++) {
-        if (goes_on(r)) {
-            note_end(r, team, r->todo[k], do_job(r, team, r->todo[k]));
-        }
+#pragma omp parallel num_threads(threads)
+    for (const job *j = next_job(r); j != NULL; j = next_job(r)) {
+        note_end(r, team, j, do_job(r, team, j));
     }
     gonio_i_team_end(team, r->context);
     return r->status;

@@ -29,6 +29,9 @@ typedef struct gonio_i_work {
     /* Computes a piece under a context of one thread: a new JSON object or array. It must depend on
      * the run's identity and the piece's name alone. */
     gonio_status (*compute)(void *user, gonio_context *context, size_t piece, json_t **result);
+    /* Whether a process does this piece only while it does no other such piece, because they need
+     * much memory. NULL if there are none. */
+    bool (*one_at_a_time)(void *user, size_t piece);
 } gonio_i_work;
 
 /* Makes a run's folder, or takes up an existing one of the same identity (a JSON object; borrowed).

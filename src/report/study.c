@@ -125,6 +125,17 @@ static void choose_sizes(gonio_i_study *study)
     choose_grid(study, most);
 }
 
+/* What the paper says of a material; -1 if nothing. */
+static int find_quote(const char *name)
+{
+    for (int q = 0; q < GONIO_I_QUOTED; q++) {
+        if (strcmp(name, gonio_i_quoted_materials[q].material) == 0) {
+            return q;
+        }
+    }
+    return -1;
+}
+
 /* All; of a quick run, some that are spread over all and those that the paper quotes. */
 static gonio_status choose_left_out(gonio_context *context, gonio_i_study *study)
 {
@@ -137,12 +148,13 @@ static gonio_status choose_left_out(gonio_context *context, gonio_i_study *study
         return GONIO_ERROR_MEMORY;
     }
     for (size_t m = 0; m < count; m++) {
-        bool wanted = m % step == 0;
-        for (size_t q = 0; q < GONIO_I_QUOTED; q++) {
-            wanted = wanted || strcmp(gonio_i_name_of(&study->collection, m),
-                                      gonio_i_quoted_materials[q].material) == 0;
+        const int quote = find_quote(gonio_i_name_of(&study->collection, m));
+        if (quote >= 0 && !study->quick) {
+            study->quoted[study->quoted_count].material = m;
+            study->quoted[study->quoted_count].left_out = study->left_out_count;
+            study->quoted[study->quoted_count++].quote = quote;
         }
-        if (wanted) {
+        if (m % step == 0 || quote >= 0) {
             study->left_out[study->left_out_count++] = m;
         }
     }
@@ -215,9 +227,9 @@ json_t *gonio_i_study_identity(const gonio_i_study *study)
         json_object_set_new(materials, gonio_i_name_of(&study->collection, m),
                             json_string(fingerprint));
     }
-    return json_pack("{s:o, s:o, s:I, s:b, s:o, s:o}", "materials", materials, "splits",
-                     gonio_i_splits_json(&study->collection, &study->splits), "seed",
-                     (json_int_t)study->seed, "quick", study->quick, "components",
+    return json_pack("{s:s, s:o, s:o, s:I, s:b, s:o, s:o}", "build", GONIO_FINGERPRINT, "materials",
+                     materials, "splits", gonio_i_splits_json(&study->collection, &study->splits),
+                     "seed", (json_int_t)study->seed, "quick", study->quick, "components",
                      sizes(study->grid_component, study->grid_components), "samples",
                      sizes(study->grid_sample, study->grid_samples));
 }

@@ -45,6 +45,12 @@ typedef struct gonio_i_study {
     size_t grid_sample[GONIO_I_MOST_GRID];    /* [grid_samples], ascending */
     size_t left_out_count;
     size_t *left_out; /* materials that are left out, one at a time; ascending */
+    size_t quoted_count;
+    struct {
+        size_t material;
+        size_t left_out;      /* the same, in left_out */
+        int quote;            /* in gonio_i_quoted_materials */
+    } quoted[GONIO_I_QUOTED]; /* left out for the quoted method too, which a quick run does not */
 } gonio_i_study;
 
 /* The sizes of the paper, and what it quotes: a material, its E6 by Matusik et al. with 800 samples
@@ -64,7 +70,8 @@ gonio_status gonio_i_study_create(gonio_context *context, const char *const *pat
                                   const gonio_reproduce_options *options, gonio_i_study *study);
 void gonio_i_study_free(gonio_i_study *study);
 
-/* Which run this is: materials with fingerprints, splits, sizes, seed. */
+/* Which run this is: the build, by the sources that its numbers come from; materials with
+ * fingerprints, splits, sizes, seed. */
 json_t *gonio_i_study_identity(const gonio_i_study *study);
 
 #endif

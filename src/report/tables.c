@@ -238,6 +238,15 @@ static void put_left_out(const tables *t, FILE *f)
             put_error(f, t->findings->left_out[k * GONIO_I_LEFT_OUT_SERIES + s]);
         }
     }
+    const gonio_i_size size = gonio_i_quoted_size(t->study->collection.count - 1);
+    for (size_t q = 0; q < t->study->quoted_count; q++) {
+        put_name(f, t->study, t->study->quoted[q].material);
+        fprintf(f, "%s,%zu,", gonio_i_quoted_method()->name, size.components);
+        gonio_i_put_number(f, gonio_i_json_number(json_object_get(
+                                  json_array_get(t->results->quoted, q), "condition")));
+        fputc(',', f);
+        put_error(f, t->findings->quoted[q]);
+    }
 }
 
 static void put_rendered(const tables *t, FILE *f)

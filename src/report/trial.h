@@ -33,7 +33,7 @@ gonio_status gonio_i_trial_plan(gonio_context *context, const gonio_i_trial *tri
                                 const char *method, size_t samples, uint64_t seed,
                                 double *condition, gonio_error *errors);
 
-/* errors[split->test_count] of a method on a split. */
+/* errors[split->test_count] of a method on a split; by tables for all but the paper's basis. */
 gonio_status gonio_i_trial_method(gonio_context *context, const gonio_i_collection *collection,
                                   const gonio_i_method_entry *method, gonio_i_size size,
                                   const gonio_i_split *split, uint64_t seed, double *condition,
@@ -53,7 +53,8 @@ gonio_status gonio_i_trial_seen(gonio_context *context, const gonio_i_collection
                                 gonio_error *errors);
 
 /* The same for any basis, by way of whole tables: what the others do for the paper's basis, slower.
- * Bases of the full grid are large, so that one such trial runs at a time. */
+ * Bases of the full grid are large, and the collection's shelf has room for one: for one thread at
+ * a time. */
 gonio_status gonio_i_trial_tables(gonio_context *context, const gonio_i_collection *collection,
                                   const gonio_i_method_entry *method, gonio_i_size size,
                                   const gonio_i_split *split, uint64_t seed, double *condition,

@@ -104,6 +104,12 @@ fi
     expect_fail 2 "--seed: -1 is too small" reproduce $materials --seed -1 -o no
     expect_fail 2 'no output: give -o FOLDER' reproduce $materials
 }
+# Pieces of another build are not mixed with this one's.
+cp -r out older
+sed -i 's/"build": "[0-9a-f]*"/"build": "0123456789abcdef"/' older/run.json
+# shellcheck disable=SC2086
+expect_fail 1 'older holds another run: identity.build is "0123456789abcdef" there and ' \
+    reproduce $materials --quick -o older
 mkdir full
 : >full/something
 # shellcheck disable=SC2086
@@ -129,6 +135,22 @@ rm db/broken.binary db/tree.binary
 expect_ok reproduce db --quick --only fig2a -o clean
 checks=$((checks + 1))
 diff -r skipped clean >/dev/null || failed 'leaving out bad materials differs from not having them'
+
+# ---- the materials that the paper quotes ----
+
+mkdir quoted
+cp db/*.binary quoted
+expect_ok convert atlas:gold-polished quoted/gold-paint.binary
+run reproduce quoted --only fig5 -o whole || failed 'the whole Fig. 5' "$(cat "$root/work/stderr")"
+expect_true 'the quoted method is run and kept' test -s whole/pieces/fig5-matusik-800-gold-paint.json
+expect_true 'for the quoted materials alone' test "$(find whole/pieces -name 'fig5-matusik*' | wc -l)" -eq 1
+expect_true 'and is in the table' grep -q '^"\?gold-paint"\?,matusik-800,4,' whole/tables/fig5.csv
+expect_true 'and beside what the paper quotes' grep -q '^| gold-paint | 2.9 | .* | 3.2 | [0-9.]* |$' whole/report.md
+cp -r whole gone_on
+rm gone_on/pieces/fig5-matusik* gone_on/report.md gone_on/tables/fig5.csv
+expect_ok reproduce quoted --only fig5 -o gone_on
+checks=$((checks + 1))
+diff -r whole gone_on >/dev/null || failed 'going on with the quoted method leaves other files'
 
 # splits FILE TEXT
 splits() { printf '{"splits": [{"basis": [%s], "test": [%s]}]}\n' "$2" "$3" >"$1"; }

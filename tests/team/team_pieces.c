@@ -48,7 +48,7 @@ static gonio_status run(gonio_context *context, const char *folder, const gonio_
     json_t *results[PIECES] = {0};
     gonio_i_pieces *pieces = NULL;
     json_t *identity = json_pack("{s:s}", "test", "team");
-    const gonio_i_work work = {"thirds", PIECES, t, name_of, cost_of, compute};
+    const gonio_i_work work = {"thirds", PIECES, t, name_of, cost_of, compute, NULL};
     gonio_status status = gonio_i_pieces_open(context, folder, identity, team, &pieces);
     if (status == GONIO_OK) {
         status = gonio_i_pieces_run(context, pieces, &work, team->rank == 0 ? results : NULL);

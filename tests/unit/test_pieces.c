@@ -23,6 +23,8 @@ typedef struct squares {
     int total;
     int failing;                      /* this piece fails; -1 for none */
     const char *(*naming)(int piece); /* NULL for "square-N" */
+    bool large; /* every third is one of those of which there is one at a time */
+    int large_now, most_large;
 } squares;
 
 static char *name_of(void *user, size_t piece)
@@ -37,9 +39,31 @@ static double cost_of(void *user, size_t piece)
     return (double)(1 + piece % 5);
 }
 
+static bool is_large(void *user, size_t piece)
+{
+    const squares *s = user;
+    return s->large && piece % 3 == 0;
+}
+
+/* Takes a while, so that others of its kind would be noticed. */
+static void be_large(squares *s)
+{
+#pragma omp critical(large)
+    {
+        s->large_now++;
+        s->most_large = s->large_now > s->most_large ? s->large_now : s->most_large;
+    }
+    usleep(10000);
+#pragma omp critical(large)
+    s->large_now--;
+}
+
 static gonio_status compute(void *user, gonio_context *context, size_t piece, json_t **result)
 {
     squares *s = user;
+    if (is_large(user, piece)) {
+        be_large(s);
+    }
     assert_int_equal(gonio_context_threads(context), 1);
 #pragma omp critical
     {
@@ -118,7 +142,7 @@ static gonio_status run(gonio_context *context, const char *folder, squares *s,
 {
     gonio_i_pieces *pieces = NULL;
     json_t *who = identity(1);
-    const gonio_i_work work = {"squares", PIECES, s, name_of, cost_of, compute};
+    const gonio_i_work work = {"squares", PIECES, s, name_of, cost_of, compute, is_large};
     gonio_status status = gonio_i_pieces_open(context, folder, who, team, &pieces);
     json_decref(who);
     if (status == GONIO_OK) {
@@ -249,6 +273,19 @@ static void test_results_come_back_exactly(void **state)
     assert_int_equal(run(f->context, f->out, &s, NULL, NULL), GONIO_OK);
     assert_int_equal(s.total, PIECES); /* nothing is computed twice */
     assert_int_equal(f->heard.errors + f->heard.warnings + f->heard.notes, 0);
+}
+
+static void test_large_pieces_one_at_a_time(void **state)
+{
+    fixture *f = *state;
+    listener heard;
+    squares s = {.failing = -1, .large = true};
+    gonio_context *context = listen(&heard, 4);
+    assert_int_equal(run(context, f->out, &s, NULL, NULL), GONIO_OK);
+    gonio_context_free(&context);
+    assert_int_equal(s.total, PIECES);
+    assert_int_equal(s.most_large, 1);
+    assert_same_bytes(f);
 }
 
 static void test_progress_is_by_cost(void **state)
@@ -527,6 +564,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(test_results_come_back_exactly),
         TEST(test_progress_is_by_cost),
+        TEST(test_large_pieces_one_at_a_time),
         TEST(test_a_stopped_run_goes_on),
         TEST(test_a_failing_piece),
         TEST(test_damaged_pieces_are_not_believed),

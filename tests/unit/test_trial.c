@@ -15,14 +15,18 @@ static const char *const paths[] = {"atlas:gold-polished", "atlas:oak-sawn",    
 
 enum { PATHS = sizeof paths / sizeof *paths };
 
+/* One thread: on a busy machine several that wait for each other take many times as long. */
+static gonio_context *context;
 static gonio_i_collection collection;
 static gonio_i_splits splits;
 
 static int set_up(void **state)
 {
     (void)state;
-    assert_int_equal(gonio_i_collect(NULL, paths, PATHS, false, &collection), GONIO_OK);
-    assert_int_equal(gonio_i_splits_make(NULL, &collection, 10, 3, &splits), GONIO_OK);
+    const gonio_context_options options = {.threads = 1};
+    assert_int_equal(gonio_context_create(&context, &options), GONIO_OK);
+    assert_int_equal(gonio_i_collect(context, paths, PATHS, false, &collection), GONIO_OK);
+    assert_int_equal(gonio_i_splits_make(context, &collection, 10, 3, &splits), GONIO_OK);
     return 0;
 }
 
@@ -31,6 +35,7 @@ static int tear_down(void **state)
     (void)state;
     gonio_i_splits_free(&splits);
     gonio_i_collection_free(&collection);
+    gonio_context_free(&context);
     return 0;
 }
 
@@ -63,8 +68,8 @@ static void test_digests_and_tables_agree(void **state)
         for (int k = 0; k < 2; k++) {
             errors[k] = calloc(split->test_count, sizeof **errors);
             assert_int_equal((k == 0 ? gonio_i_trial_method
-                                     : gonio_i_trial_tables)(NULL, &collection, method, size, split,
-                                                             1, &condition[k], errors[k]),
+                                     : gonio_i_trial_tables)(context, &collection, method, size,
+                                                             split, 1, &condition[k], errors[k]),
                              GONIO_OK);
         }
         assert_close(condition[0], condition[1], 1e-9);
@@ -90,7 +95,7 @@ static void test_other_bases(void **state)
         method.representation = k == 0 ? GONIO_BIVARIATE : GONIO_FULL;
         method.channels = k == 2 ? GONIO_JOINT : GONIO_SEPARATE;
         assert_int_equal(
-            gonio_i_trial_method(NULL, &collection, &method, size, split, 1, &condition, errors),
+            gonio_i_trial_method(context, &collection, &method, size, split, 1, &condition, errors),
             GONIO_OK);
         assert_true(condition >= 1.0);
         for (size_t t = 0; t < split->test_count; t++) {
@@ -116,7 +121,7 @@ static void test_compared_methods(void **state)
         assert_true(size.components <= split->basis_count);
         assert_true(size.samples >= size.components);
         assert_int_equal(
-            gonio_i_trial_method(NULL, &collection, method, size, split, 1, &condition, errors),
+            gonio_i_trial_method(context, &collection, method, size, split, 1, &condition, errors),
             GONIO_OK);
         assert_true(condition >= 1.0);
         for (size_t t = 0; t < split->test_count; t++) {
@@ -124,6 +129,60 @@ static void test_compared_methods(void **state)
         }
     }
     free(errors);
+}
+
+/* One after the other on what is left on the shelf, or each on an empty one; and a basis of other
+ * materials is another one. */
+static void test_what_is_shared_changes_nothing(void **state)
+{
+    (void)state;
+    const gonio_i_study full = {.splits = splits};
+    const size_t last = gonio_i_methods(&full) - 1;
+    gonio_error errors[2][PATHS];
+    for (int alone = 0; alone < 2; alone++) {
+        for (size_t m = last - 1; m <= last; m++) {
+            const gonio_i_method_entry *method = gonio_i_method_at(m);
+            const size_t s = alone ? 0 : last - m; /* at last split 0 in both cases */
+            double condition = NAN;
+            if (alone) {
+                gonio_i_shelf_clear(collection.shelf);
+            }
+            assert_int_equal(gonio_i_trial_method(context, &collection, method,
+                                                  gonio_i_method_size(&full, method),
+                                                  &splits.split[s], 1, &condition, errors[alone]),
+                             GONIO_OK);
+        }
+    }
+    assert_memory_equal(errors[0], errors[1], splits.split[0].test_count * sizeof(gonio_error));
+}
+
+/* The shelf learns only what it does not have. */
+static void test_shelf(void **state)
+{
+    (void)state;
+    gonio_i_shelf shelf = {0};
+    const size_t subsets[2][3] = {{0, 1, 2}, {0, 1, 3}};
+    const gonio_database_options how = {0};
+    gonio_basis_options options = {.components = 2, .subset = subsets[0], .subset_count = 3};
+    const gonio_basis *basis[4];
+    uint64_t fingerprint[4];
+    for (int k = 0; k < 4; k++) {
+        options.subset = subsets[k / 2 % 2];
+        options.without_mean = k == 3;
+        assert_int_equal(
+            gonio_i_shelf_learn(context, &shelf, paths, PATHS, &how, &options, &basis[k]),
+            GONIO_OK);
+        fingerprint[k] = gonio_basis_describe(basis[k]).checksum;
+        assert_int_equal(gonio_basis_describe(basis[k]).without_mean, k == 3);
+        if (k == 1) {
+            assert_ptr_equal(basis[0], basis[1]);
+        }
+    }
+    assert_true(fingerprint[0] == fingerprint[1]);
+    assert_true(fingerprint[1] != fingerprint[2]);
+    assert_true(fingerprint[2] != fingerprint[3]);
+    gonio_i_shelf_clear(&shelf);
+    assert_null(shelf.basis);
 }
 
 /* Least squares from all rows is V'(b - m). */
@@ -134,20 +193,20 @@ static void test_all_rows(void **state)
     gonio_i_trial trial;
     gonio_error by_product = {0};
     gonio_error by_solving = {0};
-    assert_int_equal(gonio_i_trial_begin(NULL, &collection, split->basis, split->basis_count, 4,
+    assert_int_equal(gonio_i_trial_begin(context, &collection, split->basis, split->basis_count, 4,
                                          split->test, 1, &trial),
                      GONIO_OK);
     size_t *rows = calloc(trial.view.rows, sizeof *rows);
     for (size_t k = 0; k < trial.view.rows; k++) {
         rows[k] = k;
     }
-    assert_int_equal(gonio_i_trial_all_rows(NULL, &trial, &by_product), GONIO_OK);
-    assert_int_equal(gonio_i_trial_rows(NULL, &trial, rows, trial.view.rows, &by_solving),
+    assert_int_equal(gonio_i_trial_all_rows(context, &trial, &by_product), GONIO_OK);
+    assert_int_equal(gonio_i_trial_rows(context, &trial, rows, trial.view.rows, &by_solving),
                      GONIO_OK);
     assert_same_error(by_product, by_solving);
     rows[3] = rows[0];
     rows[2] = rows[0];
-    assert_int_equal(gonio_i_trial_rows(NULL, &trial, rows, 4, &by_solving), GONIO_OK);
+    assert_int_equal(gonio_i_trial_rows(context, &trial, rows, 4, &by_solving), GONIO_OK);
     assert_true(isnan(by_solving.e6)); /* two independent rows for four components */
     free(rows);
     gonio_i_trial_end(&trial);
@@ -175,7 +234,7 @@ static void test_splits_are_splits(void **state)
     }
     assert_true(differ);
     gonio_i_splits again;
-    assert_int_equal(gonio_i_splits_make(NULL, &collection, 10, 3, &again), GONIO_OK);
+    assert_int_equal(gonio_i_splits_make(context, &collection, 10, 3, &again), GONIO_OK);
     for (size_t s = 0; s < splits.count; s++) {
         assert_memory_equal(again.split[s].test, splits.split[s].test, 2 * sizeof(size_t));
     }
@@ -185,8 +244,12 @@ static void test_splits_are_splits(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_digests_and_tables_agree), cmocka_unit_test(test_other_bases),
-        cmocka_unit_test(test_compared_methods),         cmocka_unit_test(test_all_rows),
+        cmocka_unit_test(test_digests_and_tables_agree),
+        cmocka_unit_test(test_other_bases),
+        cmocka_unit_test(test_compared_methods),
+        cmocka_unit_test(test_all_rows),
+        cmocka_unit_test(test_what_is_shared_changes_nothing),
+        cmocka_unit_test(test_shelf),
         cmocka_unit_test(test_splits_are_splits),
     };
     return cmocka_run_group_tests_name("trial", tests, set_up, tear_down);

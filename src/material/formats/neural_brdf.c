@@ -99,7 +99,8 @@ static void store_row(int theta_h, int theta_d, double y[GONIO_CHANNELS][PADDED]
     double value[PHI];
     for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
         for (int p = 0; p < PHI; p++) {
-            value[p] = fmin(fmax(y[channel][p], 0.0), largest);
+            const double positive = y[channel][p] > 0.0 ? y[channel][p] : 0.0;
+            value[p] = positive < largest ? positive : largest;
         }
         gonio_i_expm1(PHI, value, value);
         double *row = rho + channel * GONIO_SLAB_BINS + (size_t)theta_d * PHI;
