@@ -104,7 +104,15 @@ static gonio_status read_wavelengths(numbers *n, gonio_i_csv *csv, size_t *count
     for (size_t k = 0; k < *count && status == GONIO_OK && done; k++) {
         char name[48];
         status = read_number(n, &number);
+        if (status == GONIO_OK && !(number > 0.0 && number < 1e6)) {
+            return gonio_i_fail(n->context, GONIO_ERROR_FORMAT, "%s:%zu: %g is no wavelength in nm",
+                                n->path, n->line, number);
+        }
         snprintf(name, sizeof name, "%.10gnm_per_sr", number);
+        if (status == GONIO_OK && gonio_i_csv_column(csv, name) >= 0) {
+            return gonio_i_fail(n->context, GONIO_ERROR_FORMAT, "%s:%zu: %g nm occurs twice",
+                                n->path, n->line, number);
+        }
         done = gonio_i_csv_add_column(csv, name);
     }
     return status == GONIO_OK && !done ? GONIO_ERROR_MEMORY : status;

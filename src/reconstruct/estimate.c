@@ -32,7 +32,7 @@ gonio_status gonio_i_estimate_check(gonio_context *context, const gonio_basis *b
     const gonio_basis_view view = gonio_basis_describe(basis);
     const gonio_status status = check(context, &view, options);
     if (status == GONIO_OK && view.channels == GONIO_JOINT &&
-        gonio_readings_channels(readings) != GONIO_CHANNELS) {
+        gonio_readings_describe(readings).wavelengths > 0) {
         return gonio_i_fail(context, GONIO_ERROR_MISMATCH,
                             "spectral readings need a basis of separate channels (gonio learn "
                             "--channels separate)");

@@ -23,6 +23,9 @@ enum {
     MOST_COLUMNS_TRIED = 8, /* columns that it is chosen by */
 };
 
+/* alpha while wrong readings are looked for: found only afterwards, they would pass for a remainder. */
+static const double SETTLING = 0.12;
+
 /* Readings are wrong more often than Gaussians say: what is left out is scored by Student's t with
  * this many degrees of freedom. */
 static const double FREEDOM = 4.0;
@@ -79,6 +82,13 @@ static gonio_status score_column(gonio_context *context, const gonio_i_prior *pr
     gonio_status status = thin(context, column, &thinned);
     if (status == GONIO_OK) {
         status = gonio_i_gaussian_begin(context, prior, &thinned, &e);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_gaussian_solve(&e, SETTLING, 0.0);
+    }
+    if (status == GONIO_OK) {
+        size_t outlying = 0;
+        status = gonio_i_gaussian_settle(&e, &outlying);
     }
     if (status == GONIO_OK) {
         status = add_scores(&e, score);

@@ -250,8 +250,11 @@ static int info_readings(const tool *t, const char *path, json_t *results)
     const gonio_readings_view view = gonio_readings_describe(readings);
     size_t measured = 0;
     for (size_t k = 0; k < view.count; k++) {
-        const double *v = view.reading[k].value;
-        measured += !isnan(v[0]) || !isnan(v[1]) || !isnan(v[2]);
+        bool any = false;
+        for (size_t c = 0; c < gonio_readings_channels(readings); c++) {
+            any = any || !isnan(gonio_readings_value(readings, k, c));
+        }
+        measured += any;
     }
     char basis[20] = "not stated";
     if (view.basis != 0) {

@@ -1,9 +1,12 @@
 /* gonio learn: a basis from measured materials. */
 #include "paths.h"
 
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+enum { UNSET = INT_MIN };
 
 typedef struct options {
     const char *output;
@@ -13,7 +16,7 @@ typedef struct options {
     const char *without;
     int no_mean;
     int components;
-    int mixtures; /* -1: as the rest suggests */
+    int mixtures; /* UNSET: as the rest suggests */
     long seed;
     int json;
 } options;
@@ -91,7 +94,7 @@ static size_t mixtures_of(const options *o, const gonio_database_options *how)
 {
     const bool usual = how->representation == GONIO_SECTORED && how->mapping == GONIO_LOG &&
                        how->channels == GONIO_SEPARATE && !o->no_mean;
-    return o->mixtures >= 0 ? (size_t)o->mixtures : usual ? GONIO_DEFAULT_MIXTURES : 0;
+    return o->mixtures != UNSET ? (size_t)o->mixtures : usual ? GONIO_DEFAULT_MIXTURES : 0;
 }
 
 static int learn(tool *t, const options *o, const tool_paths *list,
@@ -151,7 +154,7 @@ static int run(tool *t, const options *o)
         code = tool_check_count(t, "--basis", o->components, o->components == 0 ? 0 : 1);
     }
     if (code == 0) {
-        code = o->mixtures >= 0 ? tool_check_count(t, "--mixtures", o->mixtures, 0) : 0;
+        code = o->mixtures != UNSET ? tool_check_count(t, "--mixtures", o->mixtures, 0) : 0;
     }
     if (code == 0) {
         code = choose_kind(t, o, &how);
@@ -174,7 +177,7 @@ static int run(tool *t, const options *o)
 
 int cmd_learn(int argc, const char **argv)
 {
-    options o = {.representation = "sectored", .mapping = "log", .mixtures = -1};
+    options o = {.representation = "sectored", .mapping = "log", .mixtures = UNSET};
     const struct poptOption table[] = {
         {"output", 'o', POPT_ARG_STRING, &o.output, 0, "The basis file to write", "BASIS"},
         {"basis", 'K', POPT_ARG_INT, &o.components, 0,

@@ -1,12 +1,13 @@
 /* gonio plan: where to measure. */
 #include "aims.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_FOR_TARGET = 300 };
+enum { MOST_FOR_TARGET = 300, UNSET = INT_MIN };
 
 typedef struct options {
     const char *output;
@@ -113,7 +114,7 @@ static int check(const tool *t, const options *o, size_t count, const char **arg
 static int run(tool *t, options *o)
 {
     size_t count = 0;
-    o->count = o->count != 0 ? o->count : o->target != NULL ? MOST_FOR_TARGET : 80;
+    o->count = o->count != UNSET ? o->count : o->target != NULL ? MOST_FOR_TARGET : 80;
     o->target_error = o->target != NULL ? tool_percent(o->target) : 0.0;
     const char **arguments = tool_arguments(t, &count);
     const int code = check(t, o, count, arguments);
@@ -135,7 +136,8 @@ static int run(tool *t, options *o)
 
 int cmd_plan(int argc, const char **argv)
 {
-    options o = {.start = "random", .restarts = 5, .phi_d = 90.0, .metric = "e6"};
+    options o = {
+        .count = UNSET, .start = "random", .restarts = 5, .phi_d = 90.0, .metric = "e6"};
     const struct poptOption table[] = {
         {"output", 'o', POPT_ARG_STRING, &o.output, 0, "The plan to write (CSV)", "PLAN"},
         {"number", 'n', POPT_ARG_INT, &o.count, 0,

@@ -24,9 +24,15 @@ typedef struct options {
     int json;
 } options;
 
-/* Says what was made: a line, or an object appended to `results`. */
+/* Says what was made: a line, or an object appended to `results`; and what is suspicious. */
 static void report(const gonio_reconstruction *r, const char *output, json_t *results)
 {
+    if (r->suspicion != NULL && !tool_quiet) {
+        fprintf(stderr,
+                "gonio reconstruct: note: %s: the readings are far likelier if %s (--believe: do "
+                "not look)\n",
+                output, r->suspicion);
+    }
     if (results != NULL && r->field != NULL) {
         json_array_append_new(
             results, json_pack("{s:s, s:I, s:I, s:f, s:f, s:I, s:f, s:s?}", "output", output,

@@ -1,0 +1,162 @@
+#!/bin/bash
+# The default chain on a few built-in materials: sectors and mixtures, the plan of least expected
+# error, the posterior; readings at other directions, spectra, wrong units, bad input.
+. "$(dirname "$0")/lib.sh"
+
+materials='atlas:gold-polished atlas:red-glossy-plastic atlas:burgundy-velvet atlas:oak-sawn
+    atlas:steel-brushed'
+new=atlas:white-emulsion-paint
+# shellcheck disable=SC2086
+expect_output '64 components from 5 materials on 75848 cells' \
+    learn $materials --mixtures 50 --seed 2 -o b.gonio
+expect_output 'sectored, separate channels' info b.gonio
+
+# ---- learn, plan, measure, reconstruct, compare ----
+
+expect_output 'p.csv: 10 readings, in order of use; expected error (E6) ' plan b.gonio -n 10 -o p.csv
+expect_output 'method       expected-error' info p.csv
+expect_ok measure p.csv $new -o r.csv
+expect_output 'from 10 readings in 3 channels; expected error (E6) ' \
+    reconstruct b.gonio r.csv -o out.binary
+expect_ok reconstruct b.gonio r.csv --method posterior --threads 1 -q -o one.binary
+expect_same out.binary one.binary
+error() { "$GONIO" compare "$@" | sed -n '2s/^[^ ]* *\([0-9]*\)\..*/\1/p'; }
+expect_true 'a new paint is within 10 per cent' test "$(error $new out.binary)" -lt 10
+
+# The first of a longer plan are the shorter plan.
+expect_ok plan b.gonio -n 40 -o p40.csv
+directions() { grep -v '^#' "$1" | head -n "$2"; }
+expect_same <(directions p.csv 11) <(directions p40.csv 11)
+expect_ok plan b.gonio -n 40 --threads 1 -o same.csv
+expect_same <(directions same.csv 41) <(directions p40.csv 41)
+
+# As few readings as reach an error.
+expect_ok plan b.gonio --target-error 5% -o target.csv
+count=$(grep -vc '^[#t]' target.csv)
+expect_same <(directions target.csv 6) <(directions p.csv 6)
+expect_output "target.csv: $count readings" plan b.gonio --target-error 5 -o target.csv
+for metric in e6 cube-root log-relative; do
+    expect_ok plan b.gonio -n 5 --metric $metric -o metric.csv
+done
+
+# ---- at the directions of a file; deviations ----
+
+expect_ok measure p40.csv $new -o all.csv
+expect_ok reconstruct b.gonio r.csv --at all.csv -o at.csv
+expect_true 'as many directions as asked for' test "$(grep -vc '^[#t]' at.csv)" -eq 40
+expect_output '40 readings compared' compare all.csv at.csv
+expect_output '30 readings compared' compare all.csv at.csv --without p.csv
+expect_true 'predictions are within 15 per cent' test "$(error all.csv at.csv --without p.csv)" -lt 15
+expect_ok measure p.csv all.csv -o looked-up.csv
+expect_output '0.000     0.000    0.0000' compare r.csv looked-up.csv
+expect_ok reconstruct b.gonio r.csv --deviation deviation.binary -o again.binary
+expect_same out.binary again.binary
+expect_output 'valid bins   1096216 of 1096216' info deviation.binary
+rm again.binary one.binary deviation.binary
+
+# ---- choosing among directions ----
+
+expect_ok plan b.gonio --candidates all.csv -n 7 -o chosen.csv
+expect_ok measure chosen.csv all.csv -o chosen-readings.csv
+expect_ok reconstruct b.gonio chosen-readings.csv -o chosen.binary
+
+# ---- spectra ----
+
+{
+    printf '# a paint\n3\n450 550 650\n'
+    grep -v '^[#t]' all.csv | awk -F, '{ d = 3.14159265358979 / 180
+        printf "%.9f %.9f %.9f %.9f %s %s %s\n", $1 * d, $2 * d, $3 * d, $4 * d, $8, $7, $6 }'
+} >paint.brdf
+expect_output 'gonio readings, 40 directions, 40 measured' info paint.brdf
+expect_ok plan b.gonio --candidates paint.brdf -n 6 -o spectral.csv
+expect_ok measure spectral.csv paint.brdf -o spectral-readings.csv
+expect_output 'from 6 readings in 3 channels' \
+    reconstruct b.gonio spectral-readings.csv --at paint.brdf -o spectral-at.csv
+expect_output '34 readings compared' compare paint.brdf spectral-at.csv --without spectral.csv
+expect_output 'from 40 readings in 3 channels' reconstruct b.gonio paint.brdf -o paint.binary
+
+# ---- readings that are not what they say ----
+
+# changed AWK: the readings with each line of values changed.
+changed() {
+    awk -F, -v OFS=, "/^[#t]/ { print; next } { d = 3.14159265358979 / 180; $1; print }" all.csv
+}
+changed '$6 *= 100; $7 *= 100; $8 *= 100' >percent.csv
+changed 'c = cos($3 * d); $6 *= c; $7 *= c; $8 *= c' >cosine.csv
+changed '$1 *= d; $2 *= d; $3 *= d; $4 *= d' >radians.csv
+changed '$1 = 90 - $1; $3 = 90 - $3' >elevation.csv
+suspect() { # FILE PART
+    expect_ok reconstruct b.gonio "$1" -o suspect.binary
+    expect_true "$1: '$2'" grep -q "note: .*$2" "$root/work/stderr"
+    expect_output "\"suspicion\": \"" reconstruct b.gonio "$1" --json -o suspect.binary
+    expect_ok reconstruct b.gonio "$1" --believe -o suspect.binary
+    expect_true "$1: --believe is silent" test ! -s "$root/work/stderr"
+}
+suspect percent.csv 'the values are in per cent'
+suspect cosine.csv 'the values include the cosine'
+suspect radians.csv 'the angles are in radians'
+suspect elevation.csv 'theta is measured from the surface'
+expect_output '"suspicion": null' reconstruct b.gonio all.csv --json -o suspect.binary
+expect_true 'good readings are not suspicious' test ! -s "$root/work/stderr"
+
+# ---- bad input ----
+
+learned='learn atlas:oak-sawn atlas:red-cotton -o x.gonio'
+# shellcheck disable=SC2086
+{
+    expect_fail 2 '--mixtures: -5 is too small' $learned --mixtures -5
+    expect_fail 2 'invalid numeric value' $learned --mixtures many
+    expect_fail 2 'invalid numeric value' $learned --seed one
+    expect_fail 2 'mixtures are for the log mapping' $learned --mixtures 5 --mapping relative
+    expect_fail 2 'mixtures are for the log mapping' $learned --mixtures 5 --no-mean
+    expect_fail 2 'mixtures are for the log mapping' $learned --mixtures 5 --grid full
+}
+planned='plan b.gonio -n 4 -o x.csv'
+# shellcheck disable=SC2086
+{
+    expect_fail 2 "--metric: 'best' is none of e6, cube-root, log-relative" $planned --metric best
+    for target in 0 -1 nan inf 3x % '5%%'; do
+        expect_fail 2 "--target-error: '$target' is no error in per cent" \
+            $planned --target-error $target
+    done
+    expect_fail 2 'above the target of 0.01 %' $planned --target-error 0.01
+    expect_fail 1 'missing.csv: cannot read' $planned --candidates missing.csv
+    expect_fail 1 'binary data' $planned --candidates out.binary
+    expect_fail 2 'is an input' plan b.gonio -n 4 --candidates all.csv -o all.csv
+    expect_fail 2 '41 readings asked for, but there are only 40 directions' \
+        plan b.gonio -n 41 --candidates all.csv -o x.csv
+}
+expect_fail 2 '-n: 0 is too small' plan b.gonio -n 0 --target-error 3 -o x.csv
+for share in -1 101 nan; do
+    expect_fail 2 '--outliers is a share in per cent' measure p.csv $new --outliers $share -o x.csv
+done
+expect_fail 1 'has no reading at these directions' measure p40.csv r.csv -o x.csv
+made='reconstruct b.gonio r.csv -o x.binary'
+# shellcheck disable=SC2086
+{
+    for option in --noise --floor --saturation; do
+        expect_fail 2 'cannot be negative' $made $option -1
+        expect_fail 2 'cannot be negative' $made $option nan
+        expect_fail 2 'invalid numeric value' $made $option much
+    done
+    expect_fail 2 'numbers from 0' $made --noise inf
+    expect_fail 1 'missing.csv: cannot read' $made --at missing.csv
+    expect_fail 2 '--deviation and -o name the same file' $made --deviation x.binary
+    expect_fail 2 'r.csv is an input' $made --deviation r.csv
+}
+expect_fail 2 'is an input' reconstruct b.gonio r.csv --at all.csv -o all.csv
+mkdir folder
+expect_fail 2 '--at and --deviation take one READINGS' \
+    reconstruct b.gonio r.csv all.csv --at p.csv -o folder
+expect_fail 2 '--without is for readings' compare out.binary out.binary --without p.csv
+expect_fail 1 'missing.csv: cannot read' compare all.csv at.csv --without missing.csv
+expect_fail 1 'nothing to compare' compare all.csv at.csv --without all.csv
+expect_fail 1 'has no reading at these directions' compare all.csv r.csv
+printf '2\n400 500\n0.1 0 0.2 0 1\n' >cut.brdf
+expect_fail 1 'ends within a reading' reconstruct b.gonio cut.brdf -o x.binary
+# shellcheck disable=SC2086
+expect_ok learn $materials --grid bivariate -o joint.gonio
+expect_fail 1 'spectral readings need a basis of separate channels' \
+    reconstruct joint.gonio paint.brdf --method posterior -o x.binary
+
+finish
