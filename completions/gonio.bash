@@ -8,17 +8,19 @@ _gonio_options()
     case $1 in
         info)        echo "--json $common" ;;
         convert)     echo "$common" ;;
-        learn)       echo "--output --basis --grid --channels --mapping --no-mean --without --json -o -K" \
-                          "$common" ;;
-        plan)        echo "--output --number --basis --method --start --restarts --seed --phi-d --history" \
-                          "--json -o -n -K $common" ;;
-        measure)     echo "--output --noise --floor --seed -o $common" ;;
-        reconstruct) echo "--output --basis --method --eta --all-channels --average-repeats --negative-to-zero" \
-                          "--other-basis --json -o -K $common" ;;
+        learn)       echo "--output --basis --grid --channels --mixtures --seed --mapping --no-mean --without" \
+                          "--json -o -K $common" ;;
+        plan)        echo "--output --number --target-error --candidates --metric --basis --method --start" \
+                          "--restarts --seed --phi-d --history --json -o -n -K $common" ;;
+        next)        echo "--output --number --target-error --candidates --metric --noise --floor --saturation" \
+                          "--json -o -n $common" ;;
+        measure)     echo "--output --noise --floor --outliers --seed -o $common" ;;
+        reconstruct) echo "--output --basis --method --eta --noise --floor --saturation --deviation --at --believe" \
+                          "--all-channels --average-repeats --negative-to-zero --other-basis --json -o -K $common" ;;
         render)      echo "--output --mesh --environment --turn --show-environment --repair --light --light-at" \
                           "--view --fov --size --samples --seed --key --compare --columns --labels" \
                           "--differences -o -m -e $common" ;;
-        compare)     echo "--verbose --render --json -v $common" ;;
+        compare)     echo "--verbose --render --without --json -v $common" ;;
         reproduce)   echo "--output --quick --only --splits --seed --skip-bad -o $common" ;;
         report)      echo "--output --readings --deviation -o $common" ;;
         demo)        echo "--output -o $common" ;;
@@ -29,16 +31,19 @@ _gonio_options()
 _gonio_values()
 {
     case $1 in
-        --grid)     echo "bivariate full" ;;
+        --grid)     echo "sectored bivariate full" ;;
         --channels) echo "joint separate" ;;
+        --metric)   echo "e6 cube-root log-relative" ;;
         --only)     echo "fig2a fig2b fig3a fig3b fig4 fig5 fig6 fig7" ;;
         --mapping)  echo "log relative" ;;
-        --method)   [[ $2 == reconstruct ]] && echo "least-squares ridge" ||
-                        echo "condition random matusik nielsen frost" ;;
+        --method)   [[ $2 == reconstruct ]] && echo "posterior least-squares ridge" ||
+                        echo "expected-error condition random matusik nielsen frost" ;;
         --environment|-e) echo "studio sky furnace" ;;
         --light)    echo "directional point" ;;
         --start)    echo "random qr volume" ;;
-        --basis|--number|--restarts|--seed|--phi-d|--eta|--noise|--floor|--threads|--without|-K|-n|\
+        --without)  [[ $2 == learn ]] && echo "" || return 1 ;; # names, or a file
+        --basis|--number|--restarts|--seed|--phi-d|--eta|--noise|--floor|--threads|-K|-n|\
+        --mixtures|--target-error|--outliers|--saturation|\
         --turn|--light-at|--view|--fov|--size|--samples|--key|--columns|--labels) echo "" ;;
         *)          return 1 ;;
     esac
@@ -56,7 +61,7 @@ _gonio()
     COMPREPLY=()
 
     if [[ $COMP_CWORD -eq 1 ]]; then
-        mapfile -t COMPREPLY < <(compgen -W "info convert learn plan measure reconstruct compare \
+        mapfile -t COMPREPLY < <(compgen -W "info convert learn plan next measure reconstruct compare \
                                              report render reproduce demo help --help --version" -- "$current")
         return
     fi
