@@ -23,7 +23,8 @@ enum {
     MOST_COLUMNS_TRIED = 8, /* columns that it is chosen by */
 };
 
-/* alpha while wrong readings are looked for: found only afterwards, they would pass for a remainder. */
+/* alpha while wrong readings are looked for: found only afterwards, they would pass for a
+ * remainder. */
 static const double SETTLING = 0.12;
 
 /* Readings are wrong more often than Gaussians say: what is left out is scored by Student's t with

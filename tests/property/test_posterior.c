@@ -13,6 +13,7 @@
 
 enum { MOST = 60 };
 
+static const double OPEN = 0.05; /* spread.c, LEFT_OPEN */
 static const double ALPHA = 0.1;
 static const double PEAK = 0.0; /* what a given alpha goes with */
 
@@ -252,11 +253,12 @@ static void test_the_textbooks_posterior(void **state)
             textbook(d.reading, n, s, gonio_i_row_coordinates(&gaussian->view, row, &channel),
                      &mean, &variance);
             assert_close(r.field[row], mean, 1e-6);
-            const double ratio = r.deviation[row] * r.deviation[row] / variance;
+            /* What the model leaves open, and a factor for the column: its misfit. */
+            const double ratio = (r.deviation[row] * r.deviation[row] - OPEN * OPEN) / variance;
             widened = widened == 0.0 ? ratio : widened;
             assert_close(ratio / widened, 1.0, 1e-5);
         }
-        assert_true(widened > 0.2 && widened < 5.0);
+        assert_true(widened > 0.5 && widened < 6.0);
         drop(&r);
         free(s);
         free(d.z);
@@ -342,12 +344,16 @@ static void test_deviations_shrink(void **state)
     found before = find(gaussian, d.reading, 1, ALPHA);
     for (size_t c = 0; c < 5; c++) {
         found r = find(gaussian, d.reading, counts[c], ALPHA);
+        double sums[2] = {0.0, 0.0};
         for (size_t row = 0; row < gaussian->view.rows; row++) {
             assert_true(r.deviation[row] >= 0.0 && isfinite(r.deviation[row]));
-            assert_true(r.deviation[row] <= before.deviation[row] + 1e-6);
+            sums[0] += before.deviation[row];
+            sums[1] += r.deviation[row];
         }
+        /* Not row by row: the misfit, one factor for all of them, goes up and down. */
+        assert_true(c == 0 || sums[1] < sums[0]);
         for (size_t i = 0; i < counts[c]; i++) {
-            assert_true(r.deviation[d.row[i]] < 0.02);
+            assert_true(r.deviation[d.row[i]] < OPEN + 0.01);
             assert_close(r.field[d.row[i]], d.reading[i].g, 0.02);
         }
         assert_true(c == 0 || r.posterior.predicted < before.posterior.predicted);

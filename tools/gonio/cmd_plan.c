@@ -136,8 +136,7 @@ static int run(tool *t, options *o)
 
 int cmd_plan(int argc, const char **argv)
 {
-    options o = {
-        .count = UNSET, .start = "random", .restarts = 5, .phi_d = 90.0, .metric = "e6"};
+    options o = {.count = UNSET, .start = "random", .restarts = 5, .phi_d = 90.0, .metric = "e6"};
     const struct poptOption table[] = {
         {"output", 'o', POPT_ARG_STRING, &o.output, 0, "The plan to write (CSV)", "PLAN"},
         {"number", 'n', POPT_ARG_INT, &o.count, 0,

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 typedef struct options {
     const char *output;
@@ -92,11 +93,11 @@ static gonio_status write_more(tool *t, const options *o, const gonio_basis *bas
     if (status == GONIO_OK && at != NULL) {
         status = gonio_reconstruction_predict_readings(t->context, basis, made, at);
     }
-    if (status == GONIO_OK && at != NULL) {
-        status = gonio_readings_write(t->context, at, t->command_line, o->output);
-    }
     if (status == GONIO_OK && deviation != NULL) {
         status = gonio_material_write_merl(t->context, deviation, o->deviation);
+    }
+    if (status == GONIO_OK && at != NULL) {
+        status = gonio_readings_write(t->context, at, t->command_line, o->output);
     }
     gonio_material_free(&deviation);
     gonio_readings_free(&at);
@@ -116,11 +117,14 @@ static gonio_status reconstruct_one(tool *t, const options *o, const gonio_basis
         status =
             gonio_reconstruction_material(t->context, basis, made, "reconstruction", &material);
     }
-    if (status == GONIO_OK && material != NULL) {
-        status = gonio_material_write_merl(t->context, material, output);
-    }
     if (status == GONIO_OK) {
         status = write_more(t, o, basis, made);
+    }
+    if (status == GONIO_OK && material != NULL) {
+        status = gonio_material_write_merl(t->context, material, output);
+        if (status != GONIO_OK && o->deviation != NULL) {
+            unlink(o->deviation); /* both outputs or none */
+        }
     }
     if (status == GONIO_OK) {
         report(made, output, results);
