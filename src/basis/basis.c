@@ -134,7 +134,7 @@ static void search_axis(gonio_context *context, const axis *a, nearest *cells, s
 gonio_status gonio_i_basis_map_cells(gonio_context *context, gonio_basis *basis)
 {
     const size_t all = (size_t)gonio_grid_cells(basis->representation);
-    const size_t depth = all / GONIO_CELLS;
+    const size_t depth = all > GONIO_CELLS ? all / GONIO_CELLS : 1;
     const axis axes[] = {{depth, 1, true},
                          {GONIO_THETA_D_BINS, depth, false},
                          {GONIO_THETA_H_BINS, GONIO_THETA_D_BINS * depth, false}};

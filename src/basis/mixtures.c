@@ -113,7 +113,8 @@ static double stretched(const gonio_i_mixtures *m, const half *h, size_t row)
     const size_t each = m->basis->channels == GONIO_JOINT ? GONIO_CHANNELS : 1;
     const int32_t cell = m->basis->cell[row / each];
     const int32_t slab = gonio_grid_cells(m->basis->representation) / GONIO_THETA_H_BINS;
-    const double at = ((double)(cell / slab) + 0.5) / sqrt(h->width) - 0.5;
+    const int theta_h = cell / slab;
+    const double at = (theta_h + 0.5) / sqrt(h->width) - 0.5;
     const double inside = fmin(fmax(at, 0.0), GONIO_THETA_H_BINS - 1.0);
     const int low = (int)fmin(inside, GONIO_THETA_H_BINS - 2.0);
     double value[2];

@@ -7,6 +7,8 @@
 
 #include "estimate.h"
 
+/* A factor of pi alone is not among the hypotheses: materials differ by more than that. */
+
 /* How much likelier a mistake has to make the readings: e^30. */
 static const double CONVINCING = 30.0;
 
@@ -43,8 +45,6 @@ static const struct hypothesis {
 } hypotheses[] = {
     {{.factor = 1.0, .by_cosine = true},
      "the values include the cosine of theta_o; divide them by it"},
-    {{.factor = 1.0 / M_PI},
-     "the values are reflectance factors, pi times the BRDF; divide them by pi"},
     {{.factor = 0.01}, "the values are in per cent; divide them by 100"},
     {{.factor = 0.01 / M_PI},
      "the values are reflectance factors in per cent; divide them by 100 pi"},
