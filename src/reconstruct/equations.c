@@ -8,8 +8,11 @@
 #include "../linalg/linalg.h"
 
 /* Deviations from which on a reading is taken to be wrong, in units of what is usual among the
- * readings, or of the model's own if that is more; of a Gaussian one in 3 million is. */
-static const double OUTLYING = 5.0;
+ * readings, or of the model's own if that is more; of a Gaussian one in 16,000 is. */
+static const double OUTLYING = 4.0;
+
+/* A contradicted reading's variance, in squares of its difference: it has hardly a say. */
+static const double WIDENING = 100.0;
 
 enum { MOST_ROUNDS = 20 };
 
@@ -304,7 +307,7 @@ static bool judge_readings(gonio_i_gaussian *e, const judgement *j)
             break;
         }
         j->outlying[worst] = true;
-        e->variance[worst] = j->difference[worst] * j->difference[worst];
+        e->variance[worst] = WIDENING * j->difference[worst] * j->difference[worst];
     }
     return found > 0;
 }
