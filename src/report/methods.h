@@ -13,10 +13,10 @@ typedef struct gonio_i_method_entry {
     gonio_representation representation;
     gonio_channel_model channels;
     gonio_mapping mapping;
+    int chosen; /* the size is the study's chosen[]; or GONIO_I_OWN_SIZE */
     bool without_mean;
     bool quoted;       /* its errors for single materials are quoted by the paper; for one method */
     const char *plan;  /* gonio_plan_method_name; reconstructed by what belongs to it */
-    int chosen;        /* the size is the study's chosen[]; or GONIO_I_OWN_SIZE */
     gonio_i_size size; /* then; 0 components: as many as materials */
 } gonio_i_method_entry;
 
