@@ -10,7 +10,14 @@
 #include "sheet.h"
 #include "trial.h"
 
-enum { SIDE = 128, MOST_ROWS = 8, MOST_COLUMNS = 6, QUICK_MATERIALS = 2, PIXEL_DIGITS = 32 };
+enum {
+    SIDE = 128,
+    QUICK_SIDE = 64,
+    MOST_ROWS = 8,
+    MOST_COLUMNS = 6,
+    QUICK_MATERIALS = 2,
+    PIXEL_DIGITS = 32
+};
 
 /* ---- which pictures ---- */
 
@@ -110,6 +117,12 @@ double gonio_i_rendering_cost(const gonio_i_study *study, gonio_i_experiment exp
     return l.method[index % l.columns]->representation == GONIO_FULL ? 130.0 : 3.0;
 }
 
+/* Of the pictures, in pixels. */
+static int side_of(const gonio_i_study *study)
+{
+    return study->quick ? QUICK_SIDE : SIDE;
+}
+
 /* ---- images as text ---- */
 
 static json_t *image_json(const gonio_image *image)
@@ -126,14 +139,16 @@ static json_t *image_json(const gonio_image *image)
     return json;
 }
 
-static gonio_status image_from(gonio_context *context, const json_t *json, gonio_image **image)
+static gonio_status image_from(gonio_context *context, const json_t *json, int side,
+                               gonio_image **image)
 {
     const char *text = json_string_value(json);
-    if (text == NULL || json_string_length(json) != (size_t)SIDE * SIDE * PIXEL_DIGITS) {
+    if (text == NULL || json_string_length(json) != (size_t)side * (size_t)side * PIXEL_DIGITS) {
         return gonio_i_fail(context, GONIO_ERROR_FORMAT, "a rendering that was kept is damaged");
     }
-    const gonio_status status = gonio_image_create(context, SIDE, SIDE, image);
-    for (size_t k = 0; status == GONIO_OK && k < (size_t)SIDE * SIDE * GONIO_IMAGE_CHANNELS; k++) {
+    const gonio_status status = gonio_image_create(context, side, side, image);
+    for (size_t k = 0; status == GONIO_OK && k < (size_t)side * (size_t)side * GONIO_IMAGE_CHANNELS;
+         k++) {
         char digits[9] = "";
         memcpy(digits, text + 8 * k, 8);
         const uint32_t bits = (uint32_t)strtoul(digits, NULL, 16);
@@ -146,6 +161,7 @@ static gonio_status image_from(gonio_context *context, const json_t *json, gonio
 
 typedef struct showing {
     gonio_context *context;
+    const gonio_i_study *study;
     const char *light;
     json_t *result;
 } showing;
@@ -178,11 +194,11 @@ static gonio_status show(void *user, const gonio_material *original, const gonio
     gonio_image *image = NULL;
     gonio_status status = GONIO_OK;
     gonio_render_options_default(&options);
-    options.width = options.height = SIDE;
+    options.width = options.height = side_of(s->study);
     if (s->light != NULL) {
         status = gonio_environment_open(s->context, s->light, false, &environment);
         options.environment = environment;
-        options.samples = 256;
+        options.samples = s->study->quick ? 64 : 256;
     }
     if (status == GONIO_OK) {
         status = gonio_reference_create(s->context, original, &options, &reference);
@@ -216,7 +232,7 @@ gonio_status gonio_i_compute_rendering(const gonio_i_study *study, gonio_context
             split.basis[n++] = m;
         }
     }
-    showing s = {context, l.light[index / l.columns], result};
+    showing s = {context, study, l.light[index / l.columns], result};
     const gonio_i_viewer viewer = {show, &s};
     double condition = NAN;
     gonio_error error;
@@ -250,11 +266,13 @@ static gonio_status fill(gonio_context *context, const gonio_i_study *study, con
         const json_t *piece = json_array_get(pieces, k);
         const size_t at = k / l->columns * (l->columns + 1) + k % l->columns + 1;
         if (k % l->columns == 0) {
-            status = image_from(context, json_object_get(piece, "original"), &p->image[at - 1]);
+            status = image_from(context, json_object_get(piece, "original"), side_of(study),
+                                &p->image[at - 1]);
             p->cell[at - 1] = (gonio_sheet_cell){p->image[at - 1], NAN};
         }
         if (status == GONIO_OK) {
-            status = image_from(context, json_object_get(piece, "image"), &p->image[at]);
+            status =
+                image_from(context, json_object_get(piece, "image"), side_of(study), &p->image[at]);
             p->cell[at] = (gonio_sheet_cell){
                 p->image[at], gonio_i_json_number(json_object_get(piece, "e6_percent"))};
         }
