@@ -22,6 +22,14 @@ static const double PRIOR_READINGS = 5.0;
 /* A variance that leaves a reading no say. */
 static const double NO_SAY = 1e6;
 
+/* Readings at which half the database's covariance is kept. */
+static const double HALF_KEPT = 5.0;
+
+double gonio_i_kernel_width(size_t n)
+{
+    return sqrt((double)n / ((double)n + HALF_KEPT));
+}
+
 static gonio_status allocate(gonio_i_gaussian *e)
 {
     gonio_context *c = e->context;
@@ -37,13 +45,14 @@ static gonio_status allocate(gonio_i_gaussian *e)
     e->smooth = gonio_i_allocate(c, n * n, sizeof *e->smooth);
     e->peaked = gonio_i_allocate(c, n * n, sizeof *e->peaked);
     e->lower = gonio_i_allocate(c, n * n, sizeof *e->lower);
+    e->white = gonio_i_allocate(c, e->prior->samples * n, sizeof *e->white);
     e->weight = gonio_i_allocate(c, e->prior->samples, sizeof *e->weight);
     e->centre = gonio_i_allocate(c, e->components, sizeof *e->centre);
     e->rest = gonio_i_allocate(c, n, sizeof *e->rest);
     e->solved = gonio_i_allocate(c, n, sizeof *e->solved);
     const bool done = e->f && e->place && e->y && e->variance && e->bound && e->left_out &&
-                      e->seen && e->gram && e->smooth && e->peaked && e->lower && e->weight &&
-                      e->centre && e->rest && e->solved;
+                      e->seen && e->gram && e->smooth && e->peaked && e->lower && e->white &&
+                      e->weight && e->centre && e->rest && e->solved;
     return done ? GONIO_OK : GONIO_ERROR_MEMORY;
 }
 
@@ -60,6 +69,7 @@ void gonio_i_gaussian_end(gonio_i_gaussian *e)
     free(e->smooth);
     free(e->peaked);
     free(e->lower);
+    free(e->white);
     free(e->weight);
     free(e->centre);
     free(e->rest);
@@ -67,19 +77,15 @@ void gonio_i_gaussian_end(gonio_i_gaussian *e)
     *e = (gonio_i_gaussian){0};
 }
 
-/* F F' and a F z_j. */
+/* F F' and F z_j. */
 static gonio_status see_samples(gonio_i_gaussian *e)
 {
-    const double a = sqrt(1.0 - e->h * e->h);
     const size_t values = e->prior->samples * e->n;
     gonio_status status = gonio_i_product_transposed(e->context, e->f, e->n, e->components, e->f,
                                                      e->n, e->gram, e->n);
     if (status == GONIO_OK && values > 0) {
         status = gonio_i_product_transposed(e->context, e->prior->sample, e->prior->samples,
                                             e->components, e->f, e->n, e->seen, e->n);
-    }
-    for (size_t i = 0; i < values; i++) {
-        e->seen[i] *= a;
     }
     return status;
 }
@@ -91,8 +97,7 @@ gonio_status gonio_i_gaussian_begin(gonio_context *context, const gonio_i_prior 
                             .prior = prior,
                             .n = column->count,
                             .components = prior->components,
-                            .misfit = 1.0,
-                            .h = prior->samples > 0 ? GONIO_I_KERNEL_WIDTH : 1.0};
+                            .misfit = 1.0};
     const gonio_status status = allocate(e);
     if (status != GONIO_OK) {
         return status;
@@ -121,9 +126,10 @@ gonio_status gonio_i_gaussian_begin(gonio_context *context, const gonio_i_prior 
 static gonio_status factorise(gonio_i_gaussian *e, double *logarithm)
 {
     const size_t n = e->n;
+    const gonio_i_model m = e->model;
     for (size_t i = 0; i < n * n; i++) {
-        const double k = e->smooth[i] + e->peak * e->peak * e->peaked[i];
-        e->lower[i] = e->h * e->h * e->gram[i] + e->alpha * e->alpha * k;
+        const double k = e->smooth[i] + m.peak * m.peak * e->peaked[i];
+        e->lower[i] = m.h * m.h * e->gram[i] + m.alpha * m.alpha * k;
     }
     for (size_t i = 0; i < n; i++) {
         e->lower[i * n + i] += e->left_out[i] ? NO_SAY : e->variance[i];
@@ -134,15 +140,6 @@ static gonio_status factorise(gonio_i_gaussian *e, double *logarithm)
         *logarithm += log(e->lower[i * n + i]);
     }
     return status;
-}
-
-static double square_distance(const double *a, const double *b, size_t n)
-{
-    double sum = 0.0;
-    for (size_t i = 0; i < n; i++) {
-        sum += (a[i] - b[i]) * (a[i] - b[i]);
-    }
-    return sum;
 }
 
 /* weight: from logarithms to numbers that add up to 1; returns the logarithm of their sum. */
@@ -163,22 +160,40 @@ static double normalise(double *weight, size_t count)
     return most + log(sum);
 }
 
-/* q and z; returns in e->evidence the logarithm of sum_j share_j exp(-|...|^2/2). */
-static gonio_status weigh_samples(gonio_i_gaussian *e)
+static double square_sum(const double *a, size_t n)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        sum += a[i] * a[i];
+    }
+    return sum;
+}
+
+static double shrink(const gonio_i_model *model)
+{
+    return sqrt(1.0 - model->h * model->h);
+}
+
+/* ln q_j, but for what makes them add up to 1. */
+static double log_weight(const gonio_i_gaussian *e, size_t j)
+{
+    return log(e->prior->share[j]) - 0.5 * square_sum(e->white + j * e->n, e->n);
+}
+
+/* q and z; and in e->evidence the logarithm of sum_j share_j exp(-|...|^2/2). */
+static void weigh_samples(gonio_i_gaussian *e)
 {
     const size_t n = e->n;
     const size_t samples = e->prior->samples;
-    double *seen = gonio_i_allocate(e->context, (samples + 1) * n, sizeof *seen);
-    if (seen == NULL) {
-        return GONIO_ERROR_MEMORY;
-    }
-    const double a = sqrt(1.0 - e->h * e->h);
-    double *y = seen + samples * n;
-    memcpy(seen, e->seen, samples * n * sizeof *seen);
-    memcpy(y, e->y, n * sizeof *y);
-    gonio_i_divide_triangle(seen, samples + 1, n, e->lower);
+    const double a = shrink(&e->model);
     for (size_t j = 0; j < samples; j++) {
-        e->weight[j] = log(e->prior->share[j]) - 0.5 * square_distance(y, seen + j * n, n);
+        for (size_t i = 0; i < n; i++) {
+            e->white[j * n + i] = e->y[i] - a * e->seen[j * n + i];
+        }
+    }
+    gonio_i_divide_triangle(e->white, samples, n, e->lower);
+    for (size_t j = 0; j < samples; j++) {
+        e->weight[j] = log_weight(e, j);
     }
     e->evidence = normalise(e->weight, samples);
     for (size_t j = 0; j < samples; j++) {
@@ -186,24 +201,23 @@ static gonio_status weigh_samples(gonio_i_gaussian *e)
             e->centre[k] += a * e->weight[j] * e->prior->sample[j * e->components + k];
         }
     }
-    free(seen);
-    return GONIO_OK;
 }
 
-gonio_status gonio_i_gaussian_solve(gonio_i_gaussian *e, double alpha, double peak)
+gonio_status gonio_i_gaussian_solve(gonio_i_gaussian *e, const gonio_i_model *model)
 {
     double logarithm = 0.0;
-    e->alpha = alpha;
-    e->peak = peak;
-    gonio_status status = factorise(e, &logarithm);
-    memset(e->centre, 0, e->components * sizeof *e->centre);
-    if (status == GONIO_OK && e->prior->samples > 0) {
-        status = weigh_samples(e);
+    e->model = *model;
+    if (e->prior->samples == 0) {
+        e->model.h = 1.0;
     }
+    const gonio_status status = factorise(e, &logarithm);
     if (status != GONIO_OK) {
         return status;
     }
-    double square = 0.0;
+    memset(e->centre, 0, e->components * sizeof *e->centre);
+    if (e->prior->samples > 0) {
+        weigh_samples(e);
+    }
     for (size_t i = 0; i < e->n; i++) {
         e->rest[i] = e->y[i];
         for (size_t k = 0; k < e->components; k++) {
@@ -212,19 +226,15 @@ gonio_status gonio_i_gaussian_solve(gonio_i_gaussian *e, double alpha, double pe
         e->solved[i] = e->rest[i];
     }
     gonio_i_divide_triangle(e->solved, 1, e->n, e->lower);
-    for (size_t i = 0; i < e->n; i++) {
-        square += e->solved[i] * e->solved[i];
-    }
+    const double square = square_sum(e->solved, e->n);
     gonio_i_divide_lower(e->solved, 1, e->n, e->lower);
     const double mixed = e->prior->samples > 0 ? e->evidence : -0.5 * square;
     e->evidence = mixed - logarithm - 0.5 * (double)e->n * log(2.0 * M_PI);
     return GONIO_OK;
 }
 
-/* Of a Gaussian without one of its values: the difference (S^-1 r)_i / (S^-1)_ii of variance
- * 1/(S^-1)_ii (Sundararajan and Keerthi 2001). */
-gonio_status gonio_i_gaussian_leave_one_out(const gonio_i_gaussian *e, double *difference,
-                                            double *variance)
+/* (S^-1)_ii. */
+static gonio_status invert_diagonal(const gonio_i_gaussian *e, double *diagonal)
 {
     const size_t n = e->n;
     double *inverse = gonio_i_allocate(e->context, n * n, sizeof *inverse);
@@ -236,15 +246,64 @@ gonio_status gonio_i_gaussian_leave_one_out(const gonio_i_gaussian *e, double *d
     }
     gonio_i_divide_triangle(inverse, n, n, e->lower);
     for (size_t i = 0; i < n; i++) {
-        double sum = 0.0;
-        for (size_t k = 0; k < n; k++) {
-            sum += inverse[i * n + k] * inverse[i * n + k];
-        }
-        variance[i] = 1.0 / sum;
-        difference[i] = e->solved[i] / sum;
+        diagonal[i] = square_sum(inverse + i * n, n);
     }
     free(inverse);
     return GONIO_OK;
+}
+
+/* Sample j's difference at reading i is d_j = (S^-1 (y - a F z_j))_i v, v = 1/(S^-1)_ii; without
+ * that reading its weight would be q_j / N(d_j; 0, v), but for what makes them add up to 1. */
+static gonio_status mix_differences(const gonio_i_gaussian *e, double *difference, double *variance)
+{
+    const size_t n = e->n;
+    const size_t samples = e->prior->samples;
+    double *solved = gonio_i_allocate(e->context, samples * n, sizeof *solved);
+    double *whole = gonio_i_allocate(e->context, samples, sizeof *whole);
+    double *weight = gonio_i_allocate(e->context, samples, sizeof *weight);
+    const bool done = solved != NULL && whole != NULL && weight != NULL;
+    if (done) {
+        memcpy(solved, e->white, samples * n * sizeof *solved);
+        gonio_i_divide_lower(solved, samples, n, e->lower);
+    }
+    for (size_t j = 0; j < samples && done; j++) {
+        whole[j] = log_weight(e, j);
+    }
+    for (size_t i = 0; i < n && done; i++) {
+        const double v = variance[i];
+        double mean = 0.0;
+        double square = 0.0;
+        for (size_t j = 0; j < samples; j++) {
+            const double d = solved[j * n + i] * v;
+            weight[j] = whole[j] + 0.5 * d * d / v;
+        }
+        normalise(weight, samples);
+        for (size_t j = 0; j < samples; j++) {
+            const double d = solved[j * n + i] * v;
+            mean += weight[j] * d;
+            square += weight[j] * d * d;
+        }
+        difference[i] = mean;
+        variance[i] = v + fmax(square - mean * mean, 0.0);
+    }
+    free(solved);
+    free(whole);
+    free(weight);
+    return done ? GONIO_OK : GONIO_ERROR_MEMORY;
+}
+
+/* Of a Gaussian without one of its values: the difference (S^-1 r)_i / (S^-1)_ii of variance
+ * 1/(S^-1)_ii (Sundararajan and Keerthi 2001). */
+gonio_status gonio_i_gaussian_leave_one_out(const gonio_i_gaussian *e, double *difference,
+                                            double *variance)
+{
+    const gonio_status status = invert_diagonal(e, variance);
+    for (size_t i = 0; i < e->n && status == GONIO_OK; i++) {
+        variance[i] = 1.0 / variance[i];
+        difference[i] = e->solved[i] * variance[i];
+    }
+    return status == GONIO_OK && e->model.h < 1.0 ? mix_differences(e, difference, variance)
+                                                  : status;
 }
 
 /* What settling needs to know of the readings. */
@@ -328,7 +387,7 @@ gonio_status gonio_i_gaussian_settle(gonio_i_gaussian *e, size_t *outlying)
         if (status == GONIO_OK) {
             const bool bounds = judge_bounds(e, &j);
             changed = judge_readings(e, &j) || bounds;
-            status = changed ? gonio_i_gaussian_solve(e, e->alpha, e->peak) : GONIO_OK;
+            status = changed ? gonio_i_gaussian_solve(e, &e->model) : GONIO_OK;
         }
     }
     *outlying = 0;

@@ -12,8 +12,9 @@
  *     q_j ~ share_j exp(-|L^-1 (y - a F z_j)|^2 / 2),   S = L L',   z = a sum q_j z_j,
  *     c = z + h^2 F' S^-1 (y - F z),   g(x) = m(x) + f(x) c + alpha^2 k(x, .) S^-1 (y - F z).
  *
- * alpha is chosen by leaving readings out one at a time, all columns together. A reading that the
- * others contradict by more than `OUTLYING` deviations counts with a variance to match. */
+ * h, alpha and k's peak are chosen by leaving readings out one at a time, all columns together. A
+ * reading that the others contradict by more than `OUTLYING` deviations counts with a variance to
+ * match. */
 #ifndef GONIO_POSTERIOR_H
 #define GONIO_POSTERIOR_H
 
@@ -46,7 +47,6 @@ typedef struct gonio_i_posterior {
     double *field;        /* [columns][rows]: g */
     double *deviation;    /* [columns][rows] of g, or NULL */
     double smoothness;    /* alpha */
-    double peak;          /* of the remainder */
     double predicted;     /* of E6, per cent */
     double surprise;      /* root mean square of (reading - what the others say) / its deviation */
     double *covariance;   /* [K][K], of z, the mean over the columns; or NULL */

@@ -69,7 +69,7 @@ static double value_of(const spreader *s, size_t row, const double *t)
 {
     const gonio_i_gaussian *e = s->e;
     return e->prior->view.mean[row] + dot(t, s->c, e->components) +
-           e->alpha * e->alpha * dot(t + e->components, e->solved, s->n);
+           e->model.alpha * e->model.alpha * dot(t + e->components, e->solved, s->n);
 }
 
 /* Q less w S^-1 w', by rows w L'^-1. */
@@ -83,10 +83,10 @@ static gonio_status take_out_readings(const spreader *s, double *q)
     if (status == GONIO_OK) {
         for (size_t i = 0; i < n; i++) {
             for (size_t k = 0; k < e->components; k++) {
-                w[k * n + i] = e->h * e->h * e->f[i * e->components + k];
+                w[k * n + i] = e->model.h * e->model.h * e->f[i * e->components + k];
             }
             if (s->n > 0) {
-                w[(e->components + i) * n + i] = e->alpha * e->alpha;
+                w[(e->components + i) * n + i] = e->model.alpha * e->model.alpha;
             }
         }
         gonio_i_divide_triangle(w, s->size, n, e->lower);
@@ -106,7 +106,7 @@ static gonio_status fill_differences(const spreader *s, const size_t *listed, si
                                      double *d, double *seen, double *move)
 {
     const gonio_i_gaussian *e = s->e;
-    const double a = sqrt(1.0 - e->h * e->h);
+    const double a = sqrt(1.0 - e->model.h * e->model.h);
     for (size_t j = 0; j < count; j++) {
         const double root = sqrt(e->weight[listed[j]]);
         for (size_t k = 0; k < e->components; k++) {
@@ -123,10 +123,11 @@ static gonio_status fill_differences(const spreader *s, const size_t *listed, si
     }
     for (size_t j = 0; j < count && status == GONIO_OK; j++) {
         for (size_t k = 0; k < e->components; k++) {
-            d[j * s->size + k] -= e->h * e->h * move[j * e->components + k];
+            d[j * s->size + k] -= e->model.h * e->model.h * move[j * e->components + k];
         }
         for (size_t i = 0; i < s->n; i++) {
-            d[j * s->size + e->components + i] = -e->alpha * e->alpha * seen[j * e->n + i];
+            d[j * s->size + e->components + i] =
+                -e->model.alpha * e->model.alpha * seen[j * e->n + i];
         }
     }
     return status;
@@ -169,7 +170,7 @@ static gonio_status find_q(spreader *s)
         return GONIO_ERROR_MEMORY;
     }
     for (size_t k = 0; k < s->e->components; k++) {
-        s->q[k * s->size + k] = s->e->h * s->e->h;
+        s->q[k * s->size + k] = s->e->model.h * s->e->model.h;
     }
     const gonio_status status = take_out_readings(s, s->q);
     return status == GONIO_OK ? add_samples(s, s->q) : status;
@@ -181,7 +182,7 @@ static double remainder_at(const spreader *s, size_t row)
     int channel = 0;
     const gonio_i_place here =
         gonio_i_place_of(gonio_i_row_coordinates(&s->e->prior->view, row, &channel));
-    return gonio_i_remainder(&here, &here, s->e->peak);
+    return gonio_i_remainder(&here, &here, s->e->model.peak);
 }
 
 /* Sums over the rows of a block. */
@@ -201,7 +202,8 @@ static void spread_row(const spreader *s, size_t row, const double *t, const dou
 {
     const gonio_basis_view *view = &s->e->prior->view;
     const size_t each = view->channels == GONIO_JOINT ? GONIO_CHANNELS : 1;
-    const double prior = s->n > 0 ? s->e->alpha * s->e->alpha * remainder_at(s, row) : 0.0;
+    const double prior =
+        s->n > 0 ? s->e->model.alpha * s->e->model.alpha * remainder_at(s, row) : 0.0;
     const double g = fmax(value_of(s, row, t), 0.0);
     const double model = s->e->misfit * fmax(prior + dot(t, product, s->size), 0.0);
     const double square = calibrated(model, FOR_SQUARES);
@@ -218,7 +220,8 @@ static gonio_status spread_block(const spreader *s, size_t first, size_t step, s
                                  const workspace *w, block_sums *sums)
 {
     for (size_t b = 0; b < count; b++) {
-        fill_t(s->e->prior, s->e->place, s->e->peak, s->n, first + b * step, w->t + b * s->size);
+        fill_t(s->e->prior, s->e->place, s->e->model.peak, s->n, first + b * step,
+               w->t + b * s->size);
     }
     const gonio_status status = gonio_i_product_transposed(s->e->context, w->t, count, s->size,
                                                            s->q, s->size, w->product, s->size);
@@ -262,7 +265,7 @@ gonio_status gonio_i_spread_variance(const gonio_i_gaussian *gaussian, const dou
                                      double *square)
 {
     spreader s = {.e = gaussian, .c = c, .deviation = deviation};
-    s.n = gaussian->alpha > 0.0 ? gaussian->n : 0;
+    s.n = gaussian->model.alpha > 0.0 ? gaussian->n : 0;
     s.size = gaussian->components + s.n;
     const size_t rows = gaussian->prior->view.rows;
     const size_t step = deviation != NULL ? 1 : rows / SAMPLE + 1;
