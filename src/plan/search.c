@@ -115,15 +115,44 @@ static gonio_status consider(gonio_i_search *s)
     return status;
 }
 
-/* z = Q'u, from the eigenvectors as columns of q[K][K]. */
-GONIO_I_VECTORISED static void rotate(size_t k, const double *restrict q, const double *u,
-                                      double *restrict z)
+/* Components of z that are summed together: as many as registers hold. */
+enum { ROTATED = 32 };
+
+/* ROTATED components of z = Q'u, from where z and q point. */
+GONIO_I_VECTORISED static void rotate_many(size_t k, const double *q, const double *u, double *z)
+{
+    double sum[ROTATED] = {0.0};
+    for (size_t a = 0; a < k; a++) {
+        for (size_t j = 0; j < ROTATED; j++) {
+            sum[j] += u[a] * q[a * k + j];
+        }
+    }
+    memcpy(z, sum, sizeof sum);
+}
+
+/* All of z = Q'u for k < ROTATED. */
+GONIO_I_VECTORISED static void rotate_few(size_t k, const double *restrict q, const double *u,
+                                          double *restrict z)
 {
     memset(z, 0, k * sizeof *z);
     for (size_t a = 0; a < k; a++) {
         for (size_t j = 0; j < k; j++) {
             z[j] += u[a] * q[a * k + j];
         }
+    }
+}
+
+/* z = Q'u, from the eigenvectors as columns of q[K][K]. (The last components together with some of
+ * those before them, which come out the same again.) */
+static void rotate(size_t k, const double *q, const double *u, double *z)
+{
+    if (k < ROTATED) {
+        rotate_few(k, q, u, z);
+        return;
+    }
+    for (size_t j = 0; j < k; j += ROTATED) {
+        const size_t first = j + ROTATED < k ? j : k - ROTATED;
+        rotate_many(k, q + first, u, z + first);
     }
 }
 

@@ -92,7 +92,7 @@ static size_t most_components(const gonio_i_study *study)
 
 static void choose_grid(gonio_i_study *study, size_t most)
 {
-    static const size_t quick_components[] = {20, 35, 40, 45, 60};
+    static const size_t quick_components[] = {20, 35, 40, 45};
     static const size_t quick_samples[] = {20, 40, 80, 120, 170, 200};
     const size_t components = study->quick ? sizeof quick_components / sizeof(size_t) : 12;
     study->grid_samples = study->quick ? sizeof quick_samples / sizeof(size_t) : 20;

@@ -29,7 +29,7 @@ enum {
     GONIO_I_STARTS = 5,        /* of plans that are shown; those of the errors have one */
     GONIO_I_QUOTED = 4,        /* materials whose errors the paper quotes */
     GONIO_I_QUICK_SPLITS = 2,  /* of a quick run */
-    GONIO_I_QUICK_LEFT_OUT = 6 /* the same, besides the quoted materials */
+    GONIO_I_QUICK_LEFT_OUT = 4 /* the same, besides the quoted materials */
 };
 
 typedef struct gonio_i_study {
