@@ -4,7 +4,10 @@
  *
  * For splits FIRST to LAST of a splits file (as `gonio reproduce --splits` takes it) learns a basis
  * of the materials to learn from, plans, reads the test materials at single directions,
- * reconstructs and compares. Prints a line of CSV for each material and number of readings. */
+ * reconstructs and compares. Prints a line of CSV for each material and number of readings. A split
+ * that does not say what to learn from learns from the test materials of all others: classes.json
+ * leaves out a class of materials at a time. `adaptive` plans the first N only; the directions that
+ * follow are those of gonio_plan_next for each material. */
 #include <gonio/gonio.h>
 
 #include <jansson.h>
@@ -26,6 +29,7 @@ typedef struct setting {
     const char *method;
     gonio_metric metric;
     bool deviation;
+    bool adaptive;
 } setting;
 
 static void on_message(void *user, gonio_message_level level, const char *text)
@@ -54,6 +58,19 @@ static void check(gonio_status status)
     if (status != GONIO_OK) {
         exit(1);
     }
+}
+
+/* What a split learns from. */
+static json_t *names_to_learn(const json_t *splits, size_t number)
+{
+    const json_t *given = json_object_get(json_array_get(splits, number), "basis");
+    json_t *names = given != NULL ? json_copy((json_t *)given) : json_array();
+    for (size_t k = 0; k < json_array_size(splits) && given == NULL; k++) {
+        if (k != number) {
+            json_array_extend(names, json_object_get(json_array_get(splits, k), "test"));
+        }
+    }
+    return names;
 }
 
 static gonio_basis *learn(gonio_context *context, const setting *s, const json_t *names)
@@ -123,38 +140,61 @@ static double coverage(gonio_context *context, const gonio_material *original,
     return (double)inside / (double)all;
 }
 
-static void run(gonio_context *context, const setting *s, const gonio_basis *basis,
-                const gonio_material *original, const gonio_table *table, const gonio_plan *plan,
-                size_t n, int split)
+/* A material that is read. */
+typedef struct subject {
+    const setting *s;
+    const gonio_basis *basis;
+    const gonio_material *original;
+    const gonio_table *table;
+    int split;
+} subject;
+
+static gonio_reconstruct_options how_to_reconstruct(const setting *s)
 {
-    gonio_readings *readings = first_of(context, plan, n);
-    const gonio_instrument_options instrument = {
-        .noise = s->noise, .floor = s->floor, .seed = (uint64_t)split, .outliers = s->outliers};
     gonio_reconstruct_options how;
-    gonio_reconstruction *made = NULL;
-    gonio_material *material = NULL;
-    gonio_material *deviation = NULL;
-    gonio_comparison comparison;
     gonio_reconstruct_options_default(&how);
     how.deviation = s->deviation;
     how.believe = true;
     how.all_channels = true;
     how.noise = fmax(s->noise, how.noise);
     how.floor = fmax(s->floor, how.floor);
-    check(gonio_measure(context, readings, table, &instrument));
-    check(gonio_reconstruct(context, basis, readings, &how, &made));
-    check(gonio_reconstruction_material(context, basis, made, "r", &material));
-    check(gonio_compare(context, original, material, &comparison));
+    return how;
+}
+
+static gonio_readings *read_first(gonio_context *context, const subject *it, const gonio_plan *plan,
+                                  size_t n)
+{
+    gonio_readings *readings = first_of(context, plan, n);
+    const gonio_instrument_options instrument = {.noise = it->s->noise,
+                                                 .floor = it->s->floor,
+                                                 .seed = (uint64_t)it->split,
+                                                 .outliers = it->s->outliers};
+    check(gonio_measure(context, readings, it->table, &instrument));
+    return readings;
+}
+
+static void run(gonio_context *context, const subject *it, const gonio_plan *plan, size_t n)
+{
+    const setting *s = it->s;
+    gonio_readings *readings = read_first(context, it, plan, n);
+    gonio_reconstruction *made = NULL;
+    gonio_material *material = NULL;
+    gonio_material *deviation = NULL;
+    gonio_comparison comparison;
+    const gonio_reconstruct_options how = how_to_reconstruct(s);
+    check(gonio_reconstruct(context, it->basis, readings, &how, &made));
+    check(gonio_reconstruction_material(context, it->basis, made, "r", &material));
+    check(gonio_compare(context, it->original, material, &comparison));
     double inside = NAN;
     if (made->deviation != NULL) {
-        check(gonio_reconstruction_deviation_material(context, basis, made, &deviation));
-        inside = coverage(context, original, material, deviation);
+        check(gonio_reconstruction_deviation_material(context, it->basis, made, &deviation));
+        inside = coverage(context, it->original, material, deviation);
     }
-    printf("%s,%d,%s,%zu,%g,%g,%g,%.4f,%.4f,%.5f,%.4f,%.4f,%g,%zu,%.3f,%.3f\n", s->method, split,
-           gonio_material_name(original), n, s->noise, s->floor, s->outliers, comparison.all.e6,
-           comparison.all.cube_root, comparison.all.log_relative, made->predicted_e6, inside,
-           made->smoothness, made->outlying, plan->expected != NULL ? plan->expected[n - 1] : NAN,
-           made->surprise);
+    printf("%s%s,%d,%s,%zu,%g,%g,%g,%.4f,%.4f,%.5f,%.4f,%.4f,%g,%zu,%.3f,%.3f\n", s->method,
+           s->adaptive ? " adaptive" : "", it->split, gonio_material_name(it->original), n,
+           s->noise, s->floor, s->outliers, comparison.all.e6, comparison.all.cube_root,
+           comparison.all.log_relative, made->predicted_e6, inside, made->smoothness,
+           made->outlying, plan->expected != NULL ? plan->expected[n - 1] : NAN, made->surprise);
     fflush(stdout);
     gonio_material_free(&deviation);
     gonio_material_free(&material);
@@ -162,10 +202,42 @@ static void run(gonio_context *context, const setting *s, const gonio_basis *bas
     gonio_readings_free(&readings);
 }
 
-static void run_split(gonio_context *context, const setting *s, const json_t *split, int number)
+/* Entries from `done` to n of a plan become those that are proposed after the first `done` are
+ * read. */
+static void go_on(gonio_context *context, const subject *it, gonio_plan *plan, size_t done,
+                  size_t n)
 {
-    const json_t *test = json_object_get(split, "test");
-    gonio_basis *basis = learn(context, s, json_object_get(split, "basis"));
+    gonio_readings *readings = read_first(context, it, plan, done);
+    const gonio_reconstruct_options how = how_to_reconstruct(it->s);
+    gonio_plan_options options;
+    gonio_plan *more = NULL;
+    double now = 0.0;
+    gonio_plan_options_default(&options);
+    options.metric = it->s->metric;
+    options.count = n - done;
+    check(gonio_plan_next(context, it->basis, readings, &how, &options, &now, &more));
+    memcpy(plan->entries + done, more->entries, (n - done) * sizeof *plan->entries);
+    gonio_plan_free(&more);
+    gonio_readings_free(&readings);
+}
+
+/* `plan` is the first for all materials, with room for the last. */
+static void run_material(gonio_context *context, const subject *it, gonio_plan *plan)
+{
+    const setting *s = it->s;
+    for (size_t i = 0; i < s->sizes; i++) {
+        if (s->adaptive && i > 0) {
+            go_on(context, it, plan, s->size[i - 1], s->size[i]);
+        }
+        run(context, it, plan, s->size[i]);
+    }
+}
+
+static void run_split(gonio_context *context, const setting *s, const json_t *splits, int number)
+{
+    const json_t *test = json_object_get(json_array_get(splits, (size_t)number), "test");
+    json_t *names = names_to_learn(splits, (size_t)number);
+    gonio_basis *basis = learn(context, s, names);
     gonio_plan_options options;
     gonio_plan *plan = NULL;
     gonio_plan_options_default(&options);
@@ -179,15 +251,14 @@ static void run_split(gonio_context *context, const setting *s, const json_t *sp
         gonio_table *table = NULL;
         check(gonio_material_open(context, path, &original));
         check(gonio_table_load(context, original, &table));
-        for (size_t i = 0; i < s->sizes; i++) {
-            run(context, s, basis, original, table, plan, s->size[i], number);
-        }
+        run_material(context, &(subject){s, basis, original, table, number}, plan);
         gonio_table_free(&table);
         gonio_material_free(&original);
         free(path);
     }
     gonio_plan_free(&plan);
     gonio_basis_free(&basis);
+    json_decref(names);
 }
 
 static void read_sizes(char *list, setting *s)
@@ -208,6 +279,8 @@ static void read_words(int count, char **words, setting *s)
             s->outliers = 0.05;
         } else if (strcmp(words[k], "deviation") == 0) {
             s->deviation = true;
+        } else if (strcmp(words[k], "adaptive") == 0) {
+            s->adaptive = true;
         } else if (strcmp(words[k], "cube-root") == 0) {
             s->metric = GONIO_CUBE_ROOT;
         } else if (strcmp(words[k], "log-relative") == 0) {
@@ -235,7 +308,7 @@ int main(int argc, char **argv)
     puts("method,split,material,n,noise,floor,outliers,e6,cube_root,log_relative,predicted,inside,"
          "smoothness,outlying,expected,surprise");
     for (int k = atoi(argv[3]); k <= atoi(argv[4]); k++) {
-        run_split(context, &s, json_array_get(splits, (size_t)k), k);
+        run_split(context, &s, splits, k);
     }
     gonio_context_free(&context);
     json_decref(file);

@@ -339,10 +339,18 @@ static gonio_status fill_plan(const place_list *p, const gonio_plan_options *opt
     return status == GONIO_OK ? cut(p->context, options, plan) : status;
 }
 
-static gonio_status check_options(gonio_context *context, const gonio_plan_options *options)
+static gonio_status check_options(gonio_context *context, const gonio_basis *basis,
+                                  const gonio_plan_options *options)
 {
+    const size_t all = gonio_basis_describe(basis).components;
     if (options->count == 0) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "a plan needs at least 1 reading");
+    }
+    if (options->components != 0 && options->components != all) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "expected-error uses all %zu components of the basis, not %zu; learn "
+                            "one of fewer, or plan by --method condition",
+                            all, options->components);
     }
     if (options->candidates != NULL && options->candidate_count > MOST_CANDIDATES) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
@@ -374,7 +382,7 @@ static gonio_status make_plan(gonio_context *context, const gonio_basis *basis,
 {
     place_list p = {.context = context, .known = known};
     gonio_plan *made = NULL;
-    gonio_status status = check_options(context, options);
+    gonio_status status = check_options(context, basis, options);
     if (status == GONIO_OK) {
         status = gonio_i_prior_create(context, basis, &p.prior);
     }

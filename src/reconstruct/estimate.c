@@ -17,6 +17,12 @@ static gonio_status check(gonio_context *context, const gonio_basis_view *view,
                             "posterior works on a basis of the log mapping (gonio learn without "
                             "--mapping relative)");
     }
+    if (options->components != 0 && options->components != view->components) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "posterior uses all %zu components of the basis, not %zu; learn one of "
+                            "fewer",
+                            view->components, options->components);
+    }
     if (!(options->noise >= 0.0 && isfinite(options->noise)) ||
         !(options->floor >= 0.0 && isfinite(options->floor)) || !(options->saturation >= 0.0)) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,

@@ -54,6 +54,46 @@ expect_same out.binary again.binary
 expect_output 'valid bins   1096216 of 1096216' info deviation.binary
 rm again.binary one.binary deviation.binary
 
+# ---- energy ----
+
+expect_output ', albedo at most 0.' reconstruct b.gonio r.csv -o out.binary
+expect_output '"largest_albedo": 0.' reconstruct b.gonio r.csv --json -o out.binary
+awk -F, -v OFS=, '/^[#t]/ { print; next } { $6 *= 30; $7 *= 30; $8 *= 30; print }' r.csv >bright.csv
+expect_ok reconstruct b.gonio bright.csv --believe -o bright.binary
+expect_true 'more light than there is is told' \
+    grep -q 'note: bright.binary reflects .* times the light' "$root/work/stderr"
+
+# ---- one wrong reading ----
+
+awk -F, -v OFS=, '/^[#t]/ { print; next } ++n == 7 { $6 *= 20; $7 *= 20; $8 *= 20 } { print }' \
+    all.csv >wrong.csv
+expect_output ' values that the others contradict' reconstruct b.gonio wrong.csv -o wrong.binary
+expect_ok reconstruct b.gonio all.csv -o right.binary
+expect_true 'a wrong reading hardly matters' \
+    test "$(error right.binary wrong.binary)" -lt 2
+
+# ---- what to read next ----
+
+expect_output 'next.csv: 5 more readings; expected error (E6) now ' next b.gonio r.csv -o next.csv
+expect_ok next b.gonio r.csv --threads 1 -q -o again.csv
+expect_same <(directions next.csv 6) <(directions again.csv 6)
+expect_true 'nothing is read twice' \
+    test "$(cat <(directions r.csv 11) <(directions next.csv 6) | cut -d, -f1-4 | sort -u | wc -l)" -eq 16
+expect_ok measure next.csv $new -o more.csv
+{ cat r.csv; grep -v '^[#t]' more.csv; } >longer.csv
+expect_output 'from 15 readings in 3 channels' reconstruct b.gonio longer.csv -o longer.binary
+expect_output '"target_met": false' next b.gonio r.csv --target-error 0.1% --json -o next.csv
+rm next.csv
+expect_output 'the target is met, nothing more to read' \
+    next b.gonio r.csv --target-error 60% -o next.csv
+expect_true 'then there is no plan' test ! -e next.csv
+expect_output '"target_met": true' next b.gonio r.csv --target-error 60% --json -o next.csv
+expect_ok next b.gonio r.csv --candidates all.csv -n 3 -o among.csv
+expect_ok measure among.csv all.csv -o among-readings.csv
+expect_fail 2 "--target-error: '0' is no error" next b.gonio r.csv --target-error 0 -o next.csv
+expect_fail 2 'is an input' next b.gonio r.csv -o r.csv
+expect_fail 1 'missing.csv: cannot read' next b.gonio missing.csv -o next.csv
+
 # ---- choosing among directions ----
 
 expect_ok plan b.gonio --candidates all.csv -n 7 -o chosen.csv
@@ -85,12 +125,15 @@ changed '$6 *= 100; $7 *= 100; $8 *= 100' >percent.csv
 changed 'c = cos($3 * d); $6 *= c; $7 *= c; $8 *= c' >cosine.csv
 changed '$1 *= d; $2 *= d; $3 *= d; $4 *= d' >radians.csv
 changed '$1 = 90 - $1; $3 = 90 - $3' >elevation.csv
+expect_not_said() { # PART NAME
+    expect_true "$2" test "$(grep -c "$1" "$root/work/stderr")" -eq 0
+}
 suspect() { # FILE PART
     expect_ok reconstruct b.gonio "$1" -o suspect.binary
     expect_true "$1: '$2'" grep -q "note: .*$2" "$root/work/stderr"
     expect_output "\"suspicion\": \"" reconstruct b.gonio "$1" --json -o suspect.binary
     expect_ok reconstruct b.gonio "$1" --believe -o suspect.binary
-    expect_true "$1: --believe is silent" test ! -s "$root/work/stderr"
+    expect_not_said 'far likelier' "$1: --believe does not look"
 }
 suspect percent.csv 'the values are in per cent'
 suspect cosine.csv 'the values include the cosine'
@@ -120,6 +163,7 @@ planned='plan b.gonio -n 4 -o x.csv'
             $planned --target-error $target
     done
     expect_fail 2 'above the target of 0.01 %' $planned --target-error 0.01
+    expect_fail 2 'expected-error uses all 64 components' $planned --basis 10
     expect_fail 1 'missing.csv: cannot read' $planned --candidates missing.csv
     expect_fail 1 'binary data' $planned --candidates out.binary
     expect_fail 2 'is an input' plan b.gonio -n 4 --candidates all.csv -o all.csv
@@ -141,6 +185,10 @@ made='reconstruct b.gonio r.csv -o x.binary'
     done
     expect_fail 2 'numbers from 0' $made --noise inf
     expect_fail 1 'missing.csv: cannot read' $made --at missing.csv
+    expect_fail 2 'posterior uses all 64 components' $made --basis 10
+    expect_fail 1 'nowhere/d.binary' $made --deviation nowhere/d.binary
+    expect_fail 1 'nowhere/x.csv' reconstruct b.gonio r.csv --at all.csv \
+        --deviation d.binary -o nowhere/x.csv
     expect_fail 2 '--deviation and -o name the same file' $made --deviation x.binary
     expect_fail 2 'r.csv is an input' $made --deviation r.csv
 }

@@ -8,9 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { INCIDENCES = 6, VALID_BINS = 1096216 };
-
-static const double incidence_deg[INCIDENCES] = {0.0, 30.0, 45.0, 60.0, 75.0, 85.0};
+enum { VALID_BINS = 1096216 };
 
 /* ---- materials ---- */
 
@@ -18,7 +16,7 @@ typedef struct material_facts {
     int64_t bins;
     double peak;      /* largest value of any channel, 1/sr */
     double asymmetry; /* relative RMS of rho(phi_d) - rho(180 - phi_d), per cent */
-    double albedo[INCIDENCES][GONIO_CHANNELS];
+    double albedo[TOOL_INCIDENCES][GONIO_CHANNELS];
     double largest_albedo;
     uint64_t fingerprint;
 } material_facts;
@@ -69,8 +67,8 @@ static gonio_status find_facts(const gonio_table *table, material_facts *facts)
         }
     }
     facts->asymmetry = square > 0.0 ? 100.0 * sqrt(difference / square) : 0.0;
-    for (int k = 0; k < INCIDENCES; k++) {
-        gonio_table_albedo(table, incidence_deg[k] * M_PI / 180.0, facts->albedo[k]);
+    for (int k = 0; k < TOOL_INCIDENCES; k++) {
+        gonio_table_albedo(table, tool_incidence_deg[k] * M_PI / 180.0, facts->albedo[k]);
         for (int c = 0; c < GONIO_CHANNELS; c++) {
             facts->largest_albedo = fmax(facts->largest_albedo, facts->albedo[k][c]);
         }
@@ -84,10 +82,10 @@ static json_t *material_json(const char *path, const gonio_material *material,
     char fingerprint[20];
     snprintf(fingerprint, sizeof fingerprint, "%016" PRIx64, facts->fingerprint);
     json_t *albedo = json_array();
-    for (int k = 0; k < INCIDENCES; k++) {
+    for (int k = 0; k < TOOL_INCIDENCES; k++) {
         const double *rgb = facts->albedo[k];
         json_array_append_new(albedo,
-                              json_pack("{s:f, s:[o, o, o]}", "theta_i_deg", incidence_deg[k],
+                              json_pack("{s:f, s:[o, o, o]}", "theta_i_deg", tool_incidence_deg[k],
                                         "albedo_rgb", tool_json_number(rgb[0]),
                                         tool_json_number(rgb[1]), tool_json_number(rgb[2])));
     }
@@ -109,8 +107,8 @@ static void print_material(const char *path, const gonio_material *material,
            100.0 * (double)facts->bins / VALID_BINS);
     printf("  peak         %.4g 1/sr\n", facts->peak);
     printf("  albedo       theta_i      R      G      B\n");
-    for (int k = 0; k < INCIDENCES; k++) {
-        printf("               %4.0f deg %6.3f %6.3f %6.3f\n", incidence_deg[k],
+    for (int k = 0; k < TOOL_INCIDENCES; k++) {
+        printf("               %4.0f deg %6.3f %6.3f %6.3f\n", tool_incidence_deg[k],
                facts->albedo[k][0], facts->albedo[k][1], facts->albedo[k][2]);
     }
     printf("  energy       %s\n", facts->largest_albedo <= 1.0

@@ -25,8 +25,14 @@ typedef struct options {
     int json;
 } options;
 
-/* Says what was made: a line, or an object appended to `results`; and what is suspicious. */
-static void report(const gonio_reconstruction *r, const char *output, json_t *results)
+/* How much of the light the result reflects where it reflects most. */
+typedef struct energy {
+    bool known;
+    double albedo;
+    double theta_i; /* degrees */
+} energy;
+
+static void warn(const gonio_reconstruction *r, const char *output, const energy *e)
 {
     if (r->suspicion != NULL && !tool_quiet) {
         fprintf(stderr,
@@ -34,32 +40,70 @@ static void report(const gonio_reconstruction *r, const char *output, json_t *re
                 "not look)\n",
                 output, r->suspicion);
     }
-    if (results != NULL && r->field != NULL) {
-        json_array_append_new(
-            results, json_pack("{s:s, s:I, s:I, s:f, s:f, s:I, s:f, s:s?}", "output", output,
-                               "channels", (json_int_t)r->columns, "readings",
-                               (json_int_t)r->readings, "expected_e6_percent", r->predicted_e6,
-                               "residual_log", r->residual, "outlying", (json_int_t)r->outlying,
-                               "remainder_log", r->smoothness, "suspicion", r->suspicion));
-    } else if (!tool_quiet && results == NULL && r->field != NULL) {
+    if (e->known && e->albedo > 1.0 && !tool_quiet) {
+        fprintf(stderr,
+                "gonio reconstruct: note: %s reflects %.2f times the light that comes from "
+                "theta_i = %g degrees, which no material does\n",
+                output, e->albedo, e->theta_i);
+    }
+}
+
+static json_t *as_json(const gonio_reconstruction *r, const char *output, const energy *e)
+{
+    json_t *made =
+        r->field != NULL
+            ? json_pack("{s:s, s:I, s:I, s:f, s:f, s:I, s:f, s:s?}", "output", output, "channels",
+                        (json_int_t)r->columns, "readings", (json_int_t)r->readings,
+                        "expected_e6_percent", r->predicted_e6, "residual_log", r->residual,
+                        "outlying", (json_int_t)r->outlying, "remainder_log", r->smoothness,
+                        "suspicion", r->suspicion)
+            : json_pack("{s:s, s:I, s:I, s:o, s:f}", "output", output, "components",
+                        (json_int_t)r->components, "readings", (json_int_t)r->readings,
+                        "condition_number", tool_json_number(r->condition_number), "residual_log",
+                        r->residual);
+    if (e->known) {
+        json_object_set_new(made, "largest_albedo", tool_json_number(e->albedo));
+    }
+    return made;
+}
+
+static void print(const gonio_reconstruction *r, const char *output, const energy *e)
+{
+    if (r->field != NULL) {
         printf("%s: from %zu readings in %zu channels; expected error (E6) %.2f %%, residual %.4f "
-               "(log units)%s",
-               output, r->readings, r->columns, r->predicted_e6, r->residual,
-               r->outlying > 0 ? "" : "\n");
-        if (r->outlying > 0) {
-            printf(", %zu values that the others contradict\n", r->outlying);
-        }
-    } else if (results != NULL) {
-        json_array_append_new(
-            results, json_pack("{s:s, s:I, s:I, s:o, s:f}", "output", output, "components",
-                               (json_int_t)r->components, "readings", (json_int_t)r->readings,
-                               "condition_number", tool_json_number(r->condition_number),
-                               "residual_log", r->residual));
-    } else if (!tool_quiet) {
+               "(log units)",
+               output, r->readings, r->columns, r->predicted_e6, r->residual);
+    } else {
         printf("%s: %zu coefficients from %zu readings, condition number %.3f, residual %.4f "
-               "(log units)\n",
+               "(log units)",
                output, r->components, r->readings, r->condition_number, r->residual);
     }
+    if (e->known) {
+        printf(", albedo at most %.2f", e->albedo);
+    }
+    if (r->outlying > 0) {
+        printf(", %zu values that the others contradict", r->outlying);
+    }
+    putchar('\n');
+}
+
+/* Says what was made, in a line or an object appended to `results`, and what is wrong with it.
+ * `table`: whether the output is one. */
+static gonio_status report(tool *t, const gonio_reconstruction *r, const char *output, bool table,
+                           json_t *results)
+{
+    energy e = {.known = table};
+    const gonio_status status =
+        table ? tool_largest_albedo(t, output, &e.albedo, &e.theta_i) : GONIO_OK;
+    if (status == GONIO_OK) {
+        warn(r, output, &e);
+    }
+    if (status == GONIO_OK && results != NULL) {
+        json_array_append_new(results, as_json(r, output, &e));
+    } else if (status == GONIO_OK && !tool_quiet) {
+        print(r, output, &e);
+    }
+    return status;
 }
 
 static gonio_reconstruct_options settings(const options *o)
@@ -98,6 +142,9 @@ static gonio_status write_more(tool *t, const options *o, const gonio_basis *bas
     }
     if (status == GONIO_OK && at != NULL) {
         status = gonio_readings_write(t->context, at, t->command_line, o->output);
+        if (status != GONIO_OK && deviation != NULL) {
+            unlink(o->deviation); /* both outputs or none */
+        }
     }
     gonio_material_free(&deviation);
     gonio_readings_free(&at);
@@ -127,7 +174,7 @@ static gonio_status reconstruct_one(tool *t, const options *o, const gonio_basis
         }
     }
     if (status == GONIO_OK) {
-        report(made, output, results);
+        status = report(t, made, output, o->at == NULL, results);
     }
     gonio_material_free(&material);
     gonio_reconstruction_free(&made);
@@ -146,12 +193,12 @@ static gonio_status reconstruct(tool *t, const options *o, const gonio_basis *ba
     if (made == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    const gonio_status status =
+    gonio_status status =
         gonio_reconstruct_tables(t->context, basis, (const gonio_readings *const *)readings,
                                  (const char *const *)outputs, count, &how, made);
     for (size_t k = 0; k < count; k++) {
-        if (made[k] != NULL) {
-            report(made[k], outputs[k], results);
+        if (made[k] != NULL && status == GONIO_OK) {
+            status = report(t, made[k], outputs[k], true, results);
         }
         gonio_reconstruction_free(&made[k]);
     }

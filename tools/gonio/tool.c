@@ -406,6 +406,39 @@ gonio_status tool_basis(tool *t, const char *path, const char *method, gonio_bas
     return status;
 }
 
+const double tool_incidence_deg[TOOL_INCIDENCES] = {0.0, 30.0, 45.0, 60.0, 75.0, 85.0};
+
+static void find_largest_albedo(const gonio_table *table, double *largest, double *theta_i)
+{
+    *largest = *theta_i = 0.0;
+    for (int k = 0; k < TOOL_INCIDENCES; k++) {
+        double albedo[GONIO_CHANNELS];
+        gonio_table_albedo(table, tool_incidence_deg[k] * M_PI / 180.0, albedo);
+        for (int c = 0; c < GONIO_CHANNELS; c++) {
+            if (albedo[c] > *largest) {
+                *largest = albedo[c];
+                *theta_i = tool_incidence_deg[k];
+            }
+        }
+    }
+}
+
+gonio_status tool_largest_albedo(tool *t, const char *path, double *albedo, double *theta_i)
+{
+    gonio_material *material = NULL;
+    gonio_table *table = NULL;
+    gonio_status status = gonio_material_open(t->context, path, &material);
+    if (status == GONIO_OK) {
+        status = gonio_table_load(t->context, material, &table);
+    }
+    if (status == GONIO_OK) {
+        find_largest_albedo(table, albedo, theta_i);
+    }
+    gonio_table_free(&table);
+    gonio_material_free(&material);
+    return status;
+}
+
 json_t *tool_json_number(double value)
 {
     return isfinite(value) ? json_real(value) : json_null();

@@ -86,6 +86,14 @@ gonio_status tool_builtin_basis(tool *t, bool paper, char **path);
 /* Whether a file is a plan or readings, by its content: text. */
 bool tool_is_readings(const char *path);
 
+/* Where albedos are taken: theta_i in degrees. */
+enum { TOOL_INCIDENCES = 6 };
+extern const double tool_incidence_deg[TOOL_INCIDENCES];
+
+/* The share of the light that a material reflects where it reflects most, of all channels and of
+ * the incidences above; *theta_i: there, in degrees. */
+gonio_status tool_largest_albedo(tool *t, const char *path, double *albedo, double *theta_i);
+
 /* A JSON number; null if it is infinite or NaN, which JSON lacks. */
 json_t *tool_json_number(double value);
 
