@@ -23,9 +23,13 @@ typedef struct gonio_basis gonio_basis;
  *
  *     g = ln(1 + u (e^a - 1) + (1 - u) (e^b - 1)),   u uniform in (0, 1),
  *
- * a weighted sum of reflectances, where a and b are the two with their lobes wider or narrower:
- * a(theta_h) = column(theta_h / f), ln f normal with deviation 0.3. Mixtures count as much as the
- * measured columns together: m is the mean of the two groups' means, and H - m has every column
+ * a weighted sum of reflectances, where a and b are the two with their lobes wider or narrower and
+ * with what changes towards grazing light (Fresnel's reflection, shadowing) earlier or later:
+ *
+ *     a(theta_h, theta_d) = column(theta_h / f, 90 degrees (theta_d / 90 degrees)^t),
+ *
+ * ln f and ln t normal with deviations 0.3 and 0.25. Mixtures count as much as the measured columns
+ * together: m is the mean of the two groups' means, and H - m has every column
  * times the square root of its weight (on average 1). */
 enum { GONIO_DEFAULT_MIXTURES = 1000, GONIO_MIXTURE_COMPONENTS = 300 };
 

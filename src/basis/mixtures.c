@@ -8,7 +8,9 @@
 #include "../core/vector_math.h"
 #include "../database/tiles.h"
 
-static const double WIDTH_DEVIATION = 0.3; /* of ln f */
+/* Of ln f and ln t. */
+static const double WIDTH_DEVIATION = 0.3;
+static const double TILT_DEVIATION = 0.25;
 
 enum { CHUNK = 256 }; /* rows that are mixed together */
 
@@ -16,6 +18,7 @@ typedef struct half {
     size_t column;
     double share;
     double width; /* f */
+    double tilt;  /* t */
 } half;
 
 typedef struct recipe {
@@ -29,17 +32,22 @@ struct gonio_i_mixtures {
     float *measured; /* [column][row] */
 };
 
+static half draw_half(gonio_i_random *random, size_t columns, double share)
+{
+    half h = {.column = (size_t)gonio_i_random_below(random, columns), .share = share};
+    h.width = exp(WIDTH_DEVIATION * gonio_i_random_normal(random));
+    h.tilt = exp(TILT_DEVIATION * gonio_i_random_normal(random));
+    return h;
+}
+
 static void draw(gonio_i_mixtures *m, size_t columns, uint64_t seed)
 {
     for (size_t k = 0; k < m->count; k++) {
         gonio_i_random random;
         gonio_i_random_seed(&random, seed, k);
         const double share = gonio_i_random_uniform(&random);
-        for (int h = 0; h < 2; h++) {
-            m->recipe[k].half[h] =
-                (half){(size_t)gonio_i_random_below(&random, columns), h == 0 ? share : 1.0 - share,
-                       exp(WIDTH_DEVIATION * gonio_i_random_normal(&random))};
-        }
+        m->recipe[k].half[0] = draw_half(&random, columns, share);
+        m->recipe[k].half[1] = draw_half(&random, columns, 1.0 - share);
     }
 }
 
@@ -106,23 +114,42 @@ void gonio_i_mixtures_free(gonio_i_mixtures **mixtures)
     *mixtures = NULL;
 }
 
-/* A row of a column at theta_h / f: between the two cells around it in theta_h, which is spaced by
- * a square root, constant beyond the ends. */
+/* Between two of `bins` bins, in bins from the middle of the first: constant beyond the ends. */
+typedef struct between {
+    int low;
+    double share; /* of low + 1 */
+} between;
+
+static between place(double at, int bins)
+{
+    const double inside = fmin(fmax(at, 0.0), bins - 1.0);
+    const int low = (int)fmin(inside, bins - 2.0);
+    return (between){low, inside - low};
+}
+
+/* A row of a column at theta_h / f and at theta_d bent by t: between the four cells around. theta_h
+ * is spaced by a square root. */
 static double stretched(const gonio_i_mixtures *m, const half *h, size_t row)
 {
     const size_t each = m->basis->channels == GONIO_JOINT ? GONIO_CHANNELS : 1;
     const int32_t cell = m->basis->cell[row / each];
-    const int32_t slab = gonio_grid_cells(m->basis->representation) / GONIO_THETA_H_BINS;
-    const int theta_h = cell / slab;
-    const double at = (theta_h + 0.5) / sqrt(h->width) - 0.5;
-    const double inside = fmin(fmax(at, 0.0), GONIO_THETA_H_BINS - 1.0);
-    const int low = (int)fmin(inside, GONIO_THETA_H_BINS - 2.0);
-    double value[2];
-    for (int k = 0; k < 2; k++) {
-        const size_t position = gonio_basis_position(m->basis, (low + k) * slab + cell % slab);
-        value[k] = (double)m->measured[h->column * m->basis->rows + position * each + row % each];
+    const int32_t run = gonio_grid_cells(m->basis->representation) / GONIO_CELLS;
+    const int theta_h = cell / run / GONIO_THETA_D_BINS;
+    const int theta_d = cell / run % GONIO_THETA_D_BINS;
+    const between at_h = place((theta_h + 0.5) / sqrt(h->width) - 0.5, GONIO_THETA_H_BINS);
+    const double bent = pow((theta_d + 0.5) / GONIO_THETA_D_BINS, h->tilt);
+    const between at_d = place(GONIO_THETA_D_BINS * bent - 0.5, GONIO_THETA_D_BINS);
+    double sum = 0.0;
+    for (int k = 0; k < 4; k++) {
+        const int32_t other_h = at_h.low + k / 2;
+        const int32_t other_d = at_d.low + k % 2;
+        const size_t position = gonio_basis_position(
+            m->basis, (other_h * GONIO_THETA_D_BINS + other_d) * run + cell % run);
+        sum += (k / 2 == 0 ? 1.0 - at_h.share : at_h.share) *
+               (k % 2 == 0 ? 1.0 - at_d.share : at_d.share) *
+               (double)m->measured[h->column * m->basis->rows + position * each + row % each];
     }
-    return value[0] + (inside - low) * (value[1] - value[0]);
+    return sum;
 }
 
 /* share (e^g - 1) of a half, for up to CHUNK rows. */

@@ -1,4 +1,4 @@
-/* Made-up columns: mixtures of measured ones with lobes made wider or narrower. See basis.h. */
+/* Made-up columns: mixtures of measured ones, varied before. See basis.h. */
 #ifndef GONIO_MIXTURES_H
 #define GONIO_MIXTURES_H
 

@@ -139,14 +139,18 @@ static gonio_status choose_model(gonio_context *context, const gonio_i_prior *pr
 }
 
 gonio_status gonio_i_posterior_evidence(gonio_context *context, const gonio_i_prior *prior,
-                                        const gonio_i_column *column, double smoothness,
+                                        const gonio_i_column *column, double alpha, double peak,
                                         double *evidence)
 {
     gonio_i_gaussian e;
     gonio_status status = gonio_i_gaussian_begin(context, prior, column, &e);
     if (status == GONIO_OK) {
-        const gonio_i_model model = {GONIO_I_KERNEL_WIDTH, smoothness, 0.0};
+        const gonio_i_model model = {GONIO_I_KERNEL_WIDTH, alpha, peak};
         status = gonio_i_gaussian_solve(&e, &model);
+    }
+    if (status == GONIO_OK) {
+        size_t outlying = 0;
+        status = gonio_i_gaussian_settle(&e, &outlying);
     }
     *evidence = e.evidence;
     gonio_i_gaussian_end(&e);

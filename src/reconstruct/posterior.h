@@ -61,9 +61,10 @@ gonio_status gonio_i_posterior_find(gonio_context *context, const gonio_i_prior 
                                     const gonio_i_posterior_options *options,
                                     gonio_i_posterior *posterior);
 
-/* ln of the density of the readings of a column under the prior, with a given alpha. */
+/* ln of the density of the readings of a column under the prior with a remainder of a given alpha
+ * and peak. */
 gonio_status gonio_i_posterior_evidence(gonio_context *context, const gonio_i_prior *prior,
-                                        const gonio_i_column *column, double smoothness,
+                                        const gonio_i_column *column, double alpha, double peak,
                                         double *evidence);
 
 #endif

@@ -12,8 +12,12 @@
 /* How much likelier a mistake has to make the readings: e^30. */
 static const double CONVINCING = 30.0;
 
-/* Of the remainder, log units: some, so that an unusual material is not taken for a mistake. */
-static const double SMOOTHNESS = 0.25;
+/* Of the remainder, log units: some; and much, in favour of the readings as they are, so that an
+ * unusual material is not taken for a mistake. With peaks, as those of a mirror are higher than any
+ * in the database. */
+static const double SOME = 0.25;
+static const double MUCH = 0.5;
+static const double PEAK = 8.0;
 
 enum { MOST_TRIED = 64, MOST_COLUMNS = 3 };
 
@@ -82,10 +86,11 @@ static void thin(gonio_i_column *column)
     column->count = count;
 }
 
-/* ln of the density of the values under a transform; of a column's first MOST_TRIED, scaled. */
+/* ln of the density of the values under a transform and with a remainder of size alpha; of
+ * MOST_TRIED of a column, scaled. */
 static gonio_status weigh(gonio_context *context, const gonio_i_prior *prior,
                           const gonio_readings *readings, const gonio_reconstruct_options *options,
-                          const gonio_i_transform *transform, double *evidence)
+                          const gonio_i_transform *transform, double alpha, double *evidence)
 {
     gonio_i_columns columns;
     gonio_status status =
@@ -101,7 +106,7 @@ static gonio_status weigh(gonio_context *context, const gonio_i_prior *prior,
             continue;
         }
         thin(column);
-        status = gonio_i_posterior_evidence(context, prior, column, SMOOTHNESS, &mine);
+        status = gonio_i_posterior_evidence(context, prior, column, alpha, PEAK, &mine);
         const double share = (double)column->count / (double)all;
         *evidence += mine + share * gonio_i_transform_logarithm(readings, index, transform);
     }
@@ -121,12 +126,17 @@ gonio_status gonio_i_suspect(gonio_context *context, const gonio_i_prior *prior,
     if (prior->view.channels == GONIO_JOINT) {
         return GONIO_OK; /* its columns hold all channels: nothing to compare one by one */
     }
-    gonio_status status = weigh(context, prior, readings, options, &as_it_is, &here);
-    best = here + CONVINCING;
+    double unusual = 0.0;
+    gonio_status status = weigh(context, prior, readings, options, &as_it_is, SOME, &here);
+    if (status == GONIO_OK) {
+        status = weigh(context, prior, readings, options, &as_it_is, MUCH, &unusual);
+    }
+    best = fmax(here, unusual) + CONVINCING;
     for (int k = 0; k < HYPOTHESES && status == GONIO_OK; k++) {
         double evidence = 0.0;
         if (is_possible(&view, &hypotheses[k].transform)) {
-            status = weigh(context, prior, readings, options, &hypotheses[k].transform, &evidence);
+            status =
+                weigh(context, prior, readings, options, &hypotheses[k].transform, SOME, &evidence);
             if (status == GONIO_OK && evidence > best) {
                 best = evidence;
                 *suspicion = hypotheses[k].name;

@@ -364,8 +364,9 @@ static void test_the_evidence(void **state)
         }
         const double expected = log(density) - 0.5 * (logarithm + N * log(2.0 * M_PI));
         double evidence = 0.0;
-        assert_int_equal(gonio_i_posterior_evidence(context, priors[p], &column, ALPHA, &evidence),
-                         GONIO_OK);
+        assert_int_equal(
+            gonio_i_posterior_evidence(context, priors[p], &column, ALPHA, 0.0, &evidence),
+            GONIO_OK);
         assert_close(evidence, expected, 1e-6 * fabs(expected));
     }
     free(d.z);

@@ -100,23 +100,38 @@ static int tear_down(void **state)
     return 0;
 }
 
-/* column(theta_h / f) of a row, theta_h in radians. */
-static double stretched(const fixture *f, size_t column, double width, size_t row)
+/* column(theta_h, theta_d) at a fraction of bins, of the run of phi_d that a row belongs to. */
+static double between(const fixture *f, size_t column, double at_h, double at_d, size_t row)
 {
     const size_t each = f->view.channels == GONIO_JOINT ? GONIO_CHANNELS : 1;
-    const int32_t slab = gonio_grid_cells(f->view.representation) / GONIO_THETA_H_BINS;
-    const int32_t cell = f->view.cell[row / each];
-    const double centre =
-        gonio_bin_centre(gonio_cell_bin(f->view.representation, cell)).theta_h / width;
-    const double place =
-        fmin(fmax(90.0 * sqrt(centre / (M_PI / 2.0)) - 0.5, 0.0), GONIO_THETA_H_BINS - 1.0);
-    const int low = place >= GONIO_THETA_H_BINS - 1 ? GONIO_THETA_H_BINS - 2 : (int)place;
-    double value[2];
-    for (int k = 0; k < 2; k++) {
-        const size_t position = gonio_basis_position(f->basis, (low + k) * slab + cell % slab);
-        value[k] = f->h[column * f->view.rows + position * each + row % each];
+    const int32_t depth = gonio_grid_cells(f->view.representation) / GONIO_CELLS;
+    double sum = 0.0;
+    for (int h = 0; h < GONIO_THETA_H_BINS; h++) {
+        for (int d = 0; d < GONIO_THETA_D_BINS; d++) {
+            const double weight = fmax(1.0 - fabs(at_h - h), 0.0) * fmax(1.0 - fabs(at_d - d), 0.0);
+            if (weight > 0.0) {
+                const int32_t cell =
+                    (h * GONIO_THETA_D_BINS + d) * depth + f->view.cell[row / each] % depth;
+                const size_t position = gonio_basis_position(f->basis, cell);
+                sum += weight * f->h[column * f->view.rows + position * each + row % each];
+            }
+        }
     }
-    return (1.0 - (place - low)) * value[0] + (place - low) * value[1];
+    return sum;
+}
+
+/* column(theta_h / f, 90 degrees (theta_d / 90 degrees)^t) of a row. */
+static double varied(const fixture *f, size_t column, double width, double tilt, size_t row)
+{
+    const size_t each = f->view.channels == GONIO_JOINT ? GONIO_CHANNELS : 1;
+    const gonio_half_difference centre =
+        gonio_bin_centre(gonio_cell_bin(f->view.representation, f->view.cell[row / each]));
+    const double quarter = M_PI / 2.0;
+    const double theta_h = centre.theta_h / width;
+    const double theta_d = quarter * pow(centre.theta_d / quarter, tilt);
+    const double at_h = 90.0 * sqrt(theta_h / quarter) - 0.5;
+    const double at_d = 90.0 * theta_d / quarter - 0.5;
+    return between(f, column, fmin(fmax(at_h, 0.0), 89.0), fmin(fmax(at_d, 0.0), 89.0), row);
 }
 
 static void test_the_formula(void **state)
@@ -125,19 +140,21 @@ static void test_the_formula(void **state)
     for (int kind = 0; kind < KINDS; kind++) {
         const fixture f = made[kind];
         for (size_t k = 0; k < f.view.mixtures; k++) {
-            /* Each mixture has a stream: the share, then of each half its column and ln f. */
+            /* Each mixture has a stream: the share, then of each half its column, ln f, ln t. */
             gonio_i_random random;
             gonio_i_random_seed(&random, SEED, k);
             const double share = gonio_i_random_uniform(&random);
             size_t column[2];
             double width[2];
+            double tilt[2];
             for (int half = 0; half < 2; half++) {
                 column[half] = (size_t)gonio_i_random_below(&random, f.measured);
                 width[half] = exp(0.3 * gonio_i_random_normal(&random));
+                tilt[half] = exp(0.25 * gonio_i_random_normal(&random));
             }
             for (size_t row = k; row < f.view.rows; row += 101) {
-                const double a = stretched(&f, column[0], width[0], row);
-                const double b = stretched(&f, column[1], width[1], row);
+                const double a = varied(&f, column[0], width[0], tilt[0], row);
+                const double b = varied(&f, column[1], width[1], tilt[1], row);
                 const double expected =
                     log(1.0 + share * (exp(a) - 1.0) + (1.0 - share) * (exp(b) - 1.0));
                 assert_close(f.h[(f.measured + k) * f.view.rows + row], expected,

@@ -50,17 +50,16 @@ static void warn(const gonio_reconstruction *r, const char *output, const energy
 
 static json_t *as_json(const gonio_reconstruction *r, const char *output, const energy *e)
 {
-    json_t *made =
-        r->field != NULL
-            ? json_pack("{s:s, s:I, s:I, s:f, s:f, s:I, s:f, s:s?}", "output", output, "channels",
-                        (json_int_t)r->columns, "readings", (json_int_t)r->readings,
-                        "expected_e6_percent", r->predicted_e6, "residual_log", r->residual,
-                        "outlying", (json_int_t)r->outlying, "remainder_log", r->smoothness,
-                        "suspicion", r->suspicion)
-            : json_pack("{s:s, s:I, s:I, s:o, s:f}", "output", output, "components",
-                        (json_int_t)r->components, "readings", (json_int_t)r->readings,
-                        "condition_number", tool_json_number(r->condition_number), "residual_log",
-                        r->residual);
+    json_t *made = r->field != NULL
+                       ? json_pack("{s:s, s:I, s:I, s:f, s:f, s:I, s:f, s:s?}", "output", output,
+                                   "channels", (json_int_t)r->columns, "readings",
+                                   (json_int_t)r->readings, "expected_e6_percent", r->predicted_e6,
+                                   "residual_log", r->residual, "outlying", (json_int_t)r->outlying,
+                                   "remainder_log", r->smoothness, "suspicion", r->suspicion)
+                       : json_pack("{s:s, s:I, s:I, s:o, s:f}", "output", output, "components",
+                                   (json_int_t)r->components, "readings", (json_int_t)r->readings,
+                                   "condition_number", tool_json_number(r->condition_number),
+                                   "residual_log", r->residual);
     if (e->known) {
         json_object_set_new(made, "largest_albedo", tool_json_number(e->albedo));
     }

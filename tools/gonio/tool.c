@@ -363,6 +363,10 @@ static gonio_status make_builtin(tool *t, const char *path, bool paper)
     return status;
 }
 
+/* To be raised when gonio learn makes something else of the same materials, so that what an earlier
+ * build left in the cache is not taken for it. */
+enum { RECIPE = 2 };
+
 gonio_status tool_builtin_basis(tool *t, bool paper, char **path)
 {
     char *folder = cache_folder();
@@ -372,8 +376,8 @@ gonio_status tool_builtin_basis(tool *t, bool paper, char **path)
                    "with 'gonio learn atlas: -o FILE' and give it as BASIS");
         return GONIO_ERROR_IO;
     }
-    const int length =
-        asprintf(path, "%s/atlas-%s%s.gonio", folder, gonio_version(), paper ? "-bivariate" : "");
+    const int length = asprintf(path, "%s/atlas-%s-%d%s.gonio", folder, gonio_version(), RECIPE,
+                                paper ? "-bivariate" : "");
     free(folder);
     if (length < 0) {
         return GONIO_ERROR_MEMORY;
