@@ -47,6 +47,9 @@ static double handicap(int k)
  * remainder. */
 static const gonio_i_model SETTLING = {GONIO_I_KERNEL_WIDTH, 0.12, 0.0};
 
+/* Of a reading that is set aside, in ln of the density: one in a hundred is wrong. */
+static const double FOR_OUTLYING = 4.6;
+
 /* Readings are wrong more often than Gaussians say: what is left out is scored by Student's t with
  * this many degrees of freedom. */
 static const double FREEDOM = 4.0;
@@ -148,11 +151,11 @@ gonio_status gonio_i_posterior_evidence(gonio_context *context, const gonio_i_pr
         const gonio_i_model model = {GONIO_I_KERNEL_WIDTH, alpha, peak};
         status = gonio_i_gaussian_solve(&e, &model);
     }
+    size_t outlying = 0;
     if (status == GONIO_OK) {
-        size_t outlying = 0;
         status = gonio_i_gaussian_settle(&e, &outlying);
     }
-    *evidence = e.evidence;
+    *evidence = e.evidence - (double)outlying * FOR_OUTLYING;
     gonio_i_gaussian_end(&e);
     return status;
 }

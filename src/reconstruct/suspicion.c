@@ -12,9 +12,9 @@
 /* How much likelier a mistake has to make the readings: e^30. */
 static const double CONVINCING = 30.0;
 
-/* Of the remainder, log units: some; and much, in favour of the readings as they are, so that an
- * unusual material is not taken for a mistake. With peaks, as those of a mirror are higher than any
- * in the database. */
+/* Of the remainder, log units: some; and much, which the readings as they are may have too, so that
+ * an unusual material is not taken for a mistake. With peaks, as those of a mirror are higher than
+ * any in the database. */
 static const double SOME = 0.25;
 static const double MUCH = 0.5;
 static const double PEAK = 8.0;
@@ -131,7 +131,7 @@ gonio_status gonio_i_suspect(gonio_context *context, const gonio_i_prior *prior,
     if (status == GONIO_OK) {
         status = weigh(context, prior, readings, options, &as_it_is, MUCH, &unusual);
     }
-    best = fmax(here, unusual) + CONVINCING;
+    best = fmax(here + CONVINCING, unusual);
     for (int k = 0; k < HYPOTHESES && status == GONIO_OK; k++) {
         double evidence = 0.0;
         if (is_possible(&view, &hypotheses[k].transform)) {
