@@ -88,21 +88,16 @@ static void print(const gonio_reconstruction *r, const char *output, const energ
 
 /* Says what was made, in a line or an object appended to `results`, and what is wrong with it.
  * `table`: whether the output is one. */
-static gonio_status report(tool *t, const gonio_reconstruction *r, const char *output, bool table,
-                           json_t *results)
+static void report(const gonio_reconstruction *r, const char *output, bool table, json_t *results)
 {
-    energy e = {.known = table};
-    const gonio_status status =
-        table ? tool_largest_albedo(t, output, &e.albedo, &e.theta_i) : GONIO_OK;
-    if (status == GONIO_OK) {
-        warn(r, output, &e);
-    }
-    if (status == GONIO_OK && results != NULL) {
+    energy e = {0};
+    e.known = table && tool_largest_albedo(output, &e.albedo, &e.theta_i);
+    warn(r, output, &e);
+    if (results != NULL) {
         json_array_append_new(results, as_json(r, output, &e));
-    } else if (status == GONIO_OK && !tool_quiet) {
+    } else if (!tool_quiet) {
         print(r, output, &e);
     }
-    return status;
 }
 
 static gonio_reconstruct_options settings(const options *o)
@@ -173,7 +168,7 @@ static gonio_status reconstruct_one(tool *t, const options *o, const gonio_basis
         }
     }
     if (status == GONIO_OK) {
-        status = report(t, made, output, o->at == NULL, results);
+        report(made, output, o->at == NULL, results);
     }
     gonio_material_free(&material);
     gonio_reconstruction_free(&made);
@@ -192,12 +187,12 @@ static gonio_status reconstruct(tool *t, const options *o, const gonio_basis *ba
     if (made == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    gonio_status status =
+    const gonio_status status =
         gonio_reconstruct_tables(t->context, basis, (const gonio_readings *const *)readings,
                                  (const char *const *)outputs, count, &how, made);
     for (size_t k = 0; k < count; k++) {
-        if (made[k] != NULL && status == GONIO_OK) {
-            status = report(t, made[k], outputs[k], true, results);
+        if (made[k] != NULL) {
+            report(made[k], outputs[k], true, results);
         }
         gonio_reconstruction_free(&made[k]);
     }

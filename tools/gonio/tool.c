@@ -427,20 +427,19 @@ static void find_largest_albedo(const gonio_table *table, double *largest, doubl
     }
 }
 
-gonio_status tool_largest_albedo(tool *t, const char *path, double *albedo, double *theta_i)
+/* Without a context, so that of results that were made before an interrupt it is known too. */
+bool tool_largest_albedo(const char *path, double *albedo, double *theta_i)
 {
     gonio_material *material = NULL;
     gonio_table *table = NULL;
-    gonio_status status = gonio_material_open(t->context, path, &material);
-    if (status == GONIO_OK) {
-        status = gonio_table_load(t->context, material, &table);
-    }
-    if (status == GONIO_OK) {
+    const bool known = gonio_material_open(NULL, path, &material) == GONIO_OK &&
+                       gonio_table_load(NULL, material, &table) == GONIO_OK;
+    if (known) {
         find_largest_albedo(table, albedo, theta_i);
     }
     gonio_table_free(&table);
     gonio_material_free(&material);
-    return status;
+    return known;
 }
 
 json_t *tool_json_number(double value)

@@ -91,8 +91,8 @@ enum { TOOL_INCIDENCES = 6 };
 extern const double tool_incidence_deg[TOOL_INCIDENCES];
 
 /* The share of the light that a material reflects where it reflects most, of all channels and of
- * the incidences above; *theta_i: there, in degrees. */
-gonio_status tool_largest_albedo(tool *t, const char *path, double *albedo, double *theta_i);
+ * the incidences above; *theta_i: there, in degrees. False, silently, if it cannot be read. */
+bool tool_largest_albedo(const char *path, double *albedo, double *theta_i);
 
 /* A JSON number; null if it is infinite or NaN, which JSON lacks. */
 json_t *tool_json_number(double value);
