@@ -67,12 +67,7 @@ static gonio_status find_facts(const gonio_table *table, material_facts *facts)
         }
     }
     facts->asymmetry = square > 0.0 ? 100.0 * sqrt(difference / square) : 0.0;
-    for (int k = 0; k < TOOL_INCIDENCES; k++) {
-        gonio_table_albedo(table, tool_incidence_deg[k] * M_PI / 180.0, facts->albedo[k]);
-        for (int c = 0; c < GONIO_CHANNELS; c++) {
-            facts->largest_albedo = fmax(facts->largest_albedo, facts->albedo[k][c]);
-        }
-    }
+    tool_albedos(table, facts->albedo, &facts->largest_albedo);
     return fingerprint_of(table, &facts->fingerprint);
 }
 

@@ -32,6 +32,24 @@ typedef struct energy {
     double theta_i; /* degrees */
 } energy;
 
+/* Unknown only if there is no memory for it. Without a context, so that it is known of what was
+ * made before an interrupt too. */
+static energy find_energy(const gonio_basis *basis, const gonio_reconstruction *r)
+{
+    gonio_material *material = NULL;
+    gonio_table *table = NULL;
+    energy e = {0};
+    e.known = gonio_reconstruction_material(NULL, basis, r, "made", &material) == GONIO_OK &&
+              gonio_table_load(NULL, material, &table) == GONIO_OK;
+    if (e.known) {
+        double albedo[TOOL_INCIDENCES][GONIO_CHANNELS];
+        e.theta_i = tool_incidence_deg[tool_albedos(table, albedo, &e.albedo)];
+    }
+    gonio_table_free(&table);
+    gonio_material_free(&material);
+    return e;
+}
+
 static void warn(const gonio_reconstruction *r, const char *output, const energy *e)
 {
     if (r->suspicion != NULL && !tool_quiet) {
@@ -88,14 +106,17 @@ static void print(const gonio_reconstruction *r, const char *output, const energ
 
 /* Says what was made, in a line or an object appended to `results`, and what is wrong with it.
  * `table`: whether the output is one. */
-static void report(const gonio_reconstruction *r, const char *output, bool table, json_t *results)
+static void report(const gonio_basis *basis, const gonio_reconstruction *r, const char *output,
+                   bool table, json_t *results)
 {
-    energy e = {0};
-    e.known = table && tool_largest_albedo(output, &e.albedo, &e.theta_i);
+    if (tool_quiet && results == NULL) {
+        return;
+    }
+    const energy e = table ? find_energy(basis, r) : (energy){0};
     warn(r, output, &e);
     if (results != NULL) {
         json_array_append_new(results, as_json(r, output, &e));
-    } else if (!tool_quiet) {
+    } else {
         print(r, output, &e);
     }
 }
@@ -168,7 +189,7 @@ static gonio_status reconstruct_one(tool *t, const options *o, const gonio_basis
         }
     }
     if (status == GONIO_OK) {
-        report(made, output, o->at == NULL, results);
+        report(basis, made, output, o->at == NULL, results);
     }
     gonio_material_free(&material);
     gonio_reconstruction_free(&made);
@@ -192,7 +213,7 @@ static gonio_status reconstruct(tool *t, const options *o, const gonio_basis *ba
                                  (const char *const *)outputs, count, &how, made);
     for (size_t k = 0; k < count; k++) {
         if (made[k] != NULL) {
-            report(made[k], outputs[k], true, results);
+            report(basis, made[k], outputs[k], true, results);
         }
         gonio_reconstruction_free(&made[k]);
     }

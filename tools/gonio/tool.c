@@ -412,34 +412,21 @@ gonio_status tool_basis(tool *t, const char *path, const char *method, gonio_bas
 
 const double tool_incidence_deg[TOOL_INCIDENCES] = {0.0, 30.0, 45.0, 60.0, 75.0, 85.0};
 
-static void find_largest_albedo(const gonio_table *table, double *largest, double *theta_i)
+int tool_albedos(const gonio_table *table, double albedo[TOOL_INCIDENCES][GONIO_CHANNELS],
+                 double *largest)
 {
-    *largest = *theta_i = 0.0;
+    int where = 0;
+    *largest = 0.0;
     for (int k = 0; k < TOOL_INCIDENCES; k++) {
-        double albedo[GONIO_CHANNELS];
-        gonio_table_albedo(table, tool_incidence_deg[k] * M_PI / 180.0, albedo);
+        gonio_table_albedo(table, tool_incidence_deg[k] * M_PI / 180.0, albedo[k]);
         for (int c = 0; c < GONIO_CHANNELS; c++) {
-            if (albedo[c] > *largest) {
-                *largest = albedo[c];
-                *theta_i = tool_incidence_deg[k];
+            if (albedo[k][c] > *largest) {
+                *largest = albedo[k][c];
+                where = k;
             }
         }
     }
-}
-
-/* Without a context, so that of results that were made before an interrupt it is known too. */
-bool tool_largest_albedo(const char *path, double *albedo, double *theta_i)
-{
-    gonio_material *material = NULL;
-    gonio_table *table = NULL;
-    const bool known = gonio_material_open(NULL, path, &material) == GONIO_OK &&
-                       gonio_table_load(NULL, material, &table) == GONIO_OK;
-    if (known) {
-        find_largest_albedo(table, albedo, theta_i);
-    }
-    gonio_table_free(&table);
-    gonio_material_free(&material);
-    return known;
+    return where;
 }
 
 json_t *tool_json_number(double value)

@@ -90,9 +90,10 @@ bool tool_is_readings(const char *path);
 enum { TOOL_INCIDENCES = 6 };
 extern const double tool_incidence_deg[TOOL_INCIDENCES];
 
-/* The share of the light that a material reflects where it reflects most, of all channels and of
- * the incidences above; *theta_i: there, in degrees. False, silently, if it cannot be read. */
-bool tool_largest_albedo(const char *path, double *albedo, double *theta_i);
+/* The albedos there; returns the index of the incidence with the largest of any channel, which goes
+ * to *largest. */
+int tool_albedos(const gonio_table *table, double albedo[TOOL_INCIDENCES][GONIO_CHANNELS],
+                 double *largest);
 
 /* A JSON number; null if it is infinite or NaN, which JSON lacks. */
 json_t *tool_json_number(double value);
