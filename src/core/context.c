@@ -7,6 +7,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <cblas.h>
 #include <omp.h>
@@ -232,9 +234,24 @@ gonio_status gonio_i_progress(gonio_context *context, const char *task, double f
     return cancelled ? GONIO_ERROR_CANCELLED : GONIO_OK;
 }
 
+enum { LARGE = 64 << 20 }; /* bytes */
+
+/* Asks for large pages for what is large: a basis of the full grid has a million small ones, and
+ * their faults would take as long as its arithmetic. */
+static void use_large_pages(void *made, size_t bytes)
+{
+    const uintptr_t page = (uintptr_t)sysconf(_SC_PAGESIZE);
+    const uintptr_t first = ((uintptr_t)made + page - 1) / page * page;
+    const uintptr_t end = ((uintptr_t)made + bytes) / page * page;
+    madvise((char *)made + (first - (uintptr_t)made), end - first, MADV_HUGEPAGE);
+}
+
 void *gonio_i_allocate(gonio_context *context, size_t count, size_t size)
 {
     void *made = calloc(count > 0 ? count : 1, size);
+    if (made != NULL && size > 0 && count > LARGE / size) {
+        use_large_pages(made, count * size);
+    }
     if (made == NULL) {
         gonio_i_fail(context, GONIO_ERROR_MEMORY, "out of memory: %zu x %zu bytes needed", count,
                      size);
