@@ -9,6 +9,7 @@
 typedef struct sums {
     double yy, yz, zz; /* over 1/(d - x) */
     int above;         /* d_k > x */
+    int poles;         /* d_k = x */
 } sums;
 
 GONIO_I_VECTORISED static sums sums_at(const gonio_i_exchange *e, double x)
@@ -17,7 +18,8 @@ GONIO_I_VECTORISED static sums sums_at(const gonio_i_exchange *e, double x)
     double yz = 0.0;
     double zz = 0.0;
     int above = 0;
-#pragma omp simd reduction(+ : yy, yz, zz, above)
+    int poles = 0;
+#pragma omp simd reduction(+ : yy, yz, zz, above, poles)
     for (size_t k = 0; k < e->n; k++) {
         const double gap = e->d[k] - x;
         const double weight = 1.0 / gap;
@@ -25,18 +27,18 @@ GONIO_I_VECTORISED static sums sums_at(const gonio_i_exchange *e, double x)
         yz += e->y[k] * e->z[k] * weight;
         zz += e->z[k] * e->z[k] * weight;
         above += gap > 0.0;
+        poles += gap == 0.0;
     }
-    return (sums){yy, yz, zz, above};
+    return (sums){yy, yz, zz, above, poles};
 }
 
 int gonio_i_exchange_count_above(const gonio_i_exchange *e, double x)
 {
-    for (size_t k = 0; k < e->n; k++) {
-        if (e->d[k] == x) { /* step off the pole */
-            x = nextafter(x, 0.0);
-        }
+    sums s = sums_at(e, x);
+    while (s.poles > 0 && x > 0.0) { /* step off */
+        x = nextafter(x, 0.0);
+        s = sums_at(e, x);
     }
-    const sums s = sums_at(e, x);
     const double a = 1.0 - s.yy;
     const double c = -1.0 - s.zz;
     const double determinant = a * c - s.yz * s.yz;
