@@ -7,8 +7,6 @@
 
 #include "method.h"
 
-enum { MOST_READINGS = 6000 }; /* of a column: their covariance is held in memory */
-
 static gonio_status check(gonio_context *context, const gonio_basis_view *view,
                           const gonio_reconstruct_options *options)
 {
@@ -51,17 +49,10 @@ gonio_status gonio_i_columns_check(gonio_context *context, const gonio_i_columns
 {
     const char *origin = path != NULL ? path : "readings";
     for (size_t k = 0; k < columns->count; k++) {
-        const size_t count = columns->column[k].count;
-        if (count == 0) {
+        if (columns->column[k].count == 0) {
             return gonio_i_fail(context, GONIO_ERROR_UNDETERMINED,
                                 "%s: no reading in channel %zu: are the cells of its values empty?",
                                 origin, k + 1);
-        }
-        if (count > MOST_READINGS) {
-            return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                                "%s: %zu readings in a channel are more than posterior takes (%d); "
-                                "average neighbours, or use --method least-squares",
-                                origin, count, MOST_READINGS);
         }
     }
     return GONIO_OK;
@@ -189,7 +180,9 @@ static gonio_status observe_rows(gonio_context *context, const gonio_basis_view 
         column->observation = gonio_i_allocate(context, count, sizeof *column->observation);
         for (size_t i = 0; column->observation != NULL && i < count; i++) {
             gonio_i_observation *o = &column->observation[i];
-            *o = (gonio_i_observation){.g = b[k * count + i], .variance = 0.03 * 0.03};
+            *o = (gonio_i_observation){.g = b[k * count + i],
+                                       .variance =
+                                           GONIO_I_MODEL_DEVIATION * GONIO_I_MODEL_DEVIATION};
             o->at = gonio_i_row_coordinates(view, rows[i], &o->channel);
             o->bound = o->g <= 0.0 ? -1 : 0;
         }

@@ -5,17 +5,12 @@
 
 #include "estimate.h"
 
-/* Standard deviation, in log units, of what interpolation between cells and the inside of a cell
- * leave open: the smallest of 0.01, 0.03, 0.06 at which the error of left-out materials still
- * falls. */
-static const double MODEL = 0.03;
-
 /* The variance of g = ln(1 + v/s) for noise of the value v. */
 static double variance_of(double value, double s, const gonio_reconstruct_options *options)
 {
     const double relative = options->noise * value;
     return (relative * relative + options->floor * options->floor) / ((value + s) * (value + s)) +
-           MODEL * MODEL;
+           GONIO_I_MODEL_DEVIATION * GONIO_I_MODEL_DEVIATION;
 }
 
 static double true_value(const gonio_reading *reading, double value, double s,

@@ -7,6 +7,7 @@
 
 #include "../linalg/linalg.h"
 #include "equations.h"
+#include "merge.h"
 #include "spread.h"
 
 /* Narrow peaks only where there is much that the database does not know: for materials like its own
@@ -27,6 +28,7 @@ enum {
     CHOICES = 2 * ALL_REMAINDERS, /* as a mixture around the columns and as a plain Gaussian */
     MOST_TRIED = 128,             /* readings of a column that the model is chosen by */
     MOST_COLUMNS_TRIED = 8,       /* columns that it is chosen by */
+    MOST_READINGS = 6000,         /* of a column that are not merged */
 };
 
 static gonio_i_model choice(int k, size_t readings)
@@ -188,6 +190,7 @@ static double square_left(const gonio_i_gaussian *e)
 typedef struct predicted_sums {
     double error;
     double square;
+    size_t readings; /* after merging */
 } predicted_sums;
 
 /* What a column's field is made of, kept until all columns are solved. */
@@ -223,15 +226,31 @@ static gonio_status solve_column(gonio_i_gaussian *e, size_t column, gonio_i_pos
                               : status;
 }
 
+static gonio_status begin_column(gonio_context *context, const gonio_i_prior *prior,
+                                 const gonio_i_column *column, size_t most, gonio_i_gaussian *e)
+{
+    gonio_i_column merged = {0};
+    const bool many = column->count > most;
+    gonio_status status = GONIO_OK;
+    if (many) {
+        status = gonio_i_merge(context, column, most, &merged);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_gaussian_begin(context, prior, many ? &merged : column, e);
+    }
+    free(merged.observation);
+    return status;
+}
+
 static gonio_status find_column(gonio_context *context, const gonio_i_prior *prior,
                                 const gonio_i_column *columns, size_t column,
-                                const gonio_i_model *model, gonio_i_posterior *p,
+                                const gonio_i_model *model, size_t most, gonio_i_posterior *p,
                                 predicted_sums *sums, gonio_i_spread_column *kept)
 {
-    gonio_i_gaussian e;
+    gonio_i_gaussian e = {0};
     size_t outlying = 0;
     double surprise = 0.0;
-    gonio_status status = gonio_i_gaussian_begin(context, prior, &columns[column], &e);
+    gonio_status status = begin_column(context, prior, &columns[column], most, &e);
     if (status == GONIO_OK) {
         status = gonio_i_gaussian_solve(&e, model);
     }
@@ -246,6 +265,7 @@ static gonio_status find_column(gonio_context *context, const gonio_i_prior *pri
         p->outlying += outlying;
         p->residual += square_left(&e);
         p->surprise += surprise;
+        sums->readings += e.n;
     }
     gonio_i_gaussian_end(&e);
     return status;
@@ -255,8 +275,8 @@ gonio_status gonio_i_posterior_find(gonio_context *context, const gonio_i_prior 
                                     const gonio_i_column *columns, size_t count,
                                     const gonio_i_posterior_options *options, gonio_i_posterior *p)
 {
-    predicted_sums sums = {0.0, 0.0};
-    size_t readings = 0;
+    predicted_sums sums = {0};
+    const size_t most = options->most > 0 ? options->most : MOST_READINGS;
     gonio_i_model model = {GONIO_I_KERNEL_WIDTH, options->smoothness, 0.0};
     gonio_i_spread_column *kept = gonio_i_allocate(context, count, sizeof *kept);
     gonio_status status = kept == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
@@ -268,8 +288,7 @@ gonio_status gonio_i_posterior_find(gonio_context *context, const gonio_i_prior 
     }
     p->smoothness = model.alpha;
     for (size_t k = 0; k < count && status == GONIO_OK; k++) {
-        status = find_column(context, prior, columns, k, &model, p, &sums, &kept[k]);
-        readings += columns[k].count;
+        status = find_column(context, prior, columns, k, &model, most, p, &sums, &kept[k]);
         if (status == GONIO_OK) {
             status = gonio_i_progress(context, "reconstructing", (double)(k + 1) / (double)count);
         }
@@ -292,8 +311,9 @@ gonio_status gonio_i_posterior_find(gonio_context *context, const gonio_i_prior 
         }
         p->norm = sqrt(sums.square / (double)count);
         p->predicted = 100.0 * sqrt(sums.error / sums.square);
-        p->residual = readings > 0 ? sqrt(p->residual / (double)readings) : 0.0;
-        p->surprise = readings > 0 ? sqrt(p->surprise / (double)readings) : 0.0;
+        const double readings = fmax((double)sums.readings, 1.0);
+        p->residual = sqrt(p->residual / readings);
+        p->surprise = sqrt(p->surprise / readings);
     }
     return status;
 }

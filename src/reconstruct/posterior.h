@@ -22,12 +22,17 @@
 
 #include "../basis/prior.h"
 
+/* Standard deviation, in log units, of what interpolation between cells and the inside of a cell
+ * leave open of a reading: the smallest of 0.01, 0.03, 0.06 at which the error of left-out
+ * materials still falls. */
+#define GONIO_I_MODEL_DEVIATION 0.03
+
 /* A reading of one column. */
 typedef struct gonio_i_observation {
     gonio_half_difference at;
     int channel;     /* of the row, if the basis is joint */
     double g;        /* in log space */
-    double variance; /* of noise, in log space */
+    double variance; /* of noise, in log space, and of what the model leaves open */
     int bound;       /* 0; -1: g is at most this (a reading of zero); 1: at least (saturated) */
 } gonio_i_observation;
 
@@ -39,6 +44,7 @@ typedef struct gonio_i_column {
 typedef struct gonio_i_posterior_options {
     double smoothness; /* alpha; negative: chosen */
     bool deviation;    /* of every row wanted */
+    size_t most;       /* readings of a column that are not merged (merge.h); 0: 6,000 */
 } gonio_i_posterior_options;
 
 /* What is found; arrays belong to the caller and are filled in. */

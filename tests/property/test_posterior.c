@@ -115,20 +115,27 @@ typedef struct found {
     gonio_i_posterior posterior;
 } found;
 
-static found find(const gonio_i_prior *prior, gonio_i_observation *readings, size_t count,
-                  double alpha)
+static found find_of(const gonio_i_prior *prior, gonio_i_observation *readings, size_t count,
+                     double alpha, size_t most)
 {
     double coefficients[64];
     found r = {.field = malloc(prior->view.rows * sizeof *r.field),
                .deviation = malloc(prior->view.rows * sizeof *r.deviation)};
     const gonio_i_column column = {count, readings};
-    const gonio_i_posterior_options options = {.smoothness = alpha, .deviation = true};
+    const gonio_i_posterior_options options = {
+        .smoothness = alpha, .deviation = true, .most = most};
     r.posterior = (gonio_i_posterior){
         .coefficients = coefficients, .field = r.field, .deviation = r.deviation};
     assert_int_equal(gonio_i_posterior_find(context, prior, &column, 1, &options, &r.posterior),
                      GONIO_OK);
     r.posterior.coefficients = NULL;
     return r;
+}
+
+static found find(const gonio_i_prior *prior, gonio_i_observation *readings, size_t count,
+                  double alpha)
+{
+    return find_of(prior, readings, count, alpha, 0);
 }
 
 static void drop(found *r)
@@ -263,6 +270,34 @@ static void test_the_textbooks_posterior(void **state)
         free(s);
         free(d.z);
     }
+}
+
+/* Places read again and again, as they are and merged: the same but for what is left open of each
+ * reading. */
+static void test_merged_readings(void **state)
+{
+    (void)state;
+    enum { TIMES = 20 };
+    static const double noise = 0.3;
+    drawn d = draw(8, noise);
+    gonio_i_observation *all = malloc(sizeof *all * MOST * TIMES);
+    gonio_i_random random;
+    gonio_i_random_seed(&random, 8, 1);
+    for (size_t i = 0; i < MOST * TIMES; i++) {
+        all[i] = d.reading[i % MOST];
+        all[i].g = truth_at(d.z, all[i].at) + noise * gonio_i_random_normal(&random);
+        all[i].variance += GONIO_I_MODEL_DEVIATION * GONIO_I_MODEL_DEVIATION;
+    }
+    found direct = find(gaussian, all, MOST * TIMES, ALPHA);
+    found merged = find_of(gaussian, all, MOST * TIMES, ALPHA, MOST * TIMES - 1);
+    found once = find(gaussian, all, MOST, ALPHA);
+    assert_true(difference(&direct, &merged) < 0.01);
+    assert_true(difference(&direct, &once) > 0.05);
+    drop(&direct);
+    drop(&merged);
+    drop(&once);
+    free(all);
+    free(d.z);
 }
 
 static void test_leaving_one_out(void **state)
@@ -584,6 +619,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_the_textbooks_posterior),
+        cmocka_unit_test(test_merged_readings),
         cmocka_unit_test(test_leaving_one_out),
         cmocka_unit_test(test_leaving_one_out_of_a_mixture),
         cmocka_unit_test(test_the_evidence),

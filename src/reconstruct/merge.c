@@ -1,0 +1,143 @@
+/* Many readings as fewer: see merge.h. */
+#include "merge.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const double FINEST = 0.05;
+static const double COARSER = 1.2;
+
+/* Of every variance: it does not average out. */
+static const double LEFT_OPEN = GONIO_I_MODEL_DEVIATION * GONIO_I_MODEL_DEVIATION;
+
+/* A reading and its cell of the lattice. */
+typedef struct member {
+    int cell[4];
+    int bound;
+    int channel;
+    size_t index;
+} member;
+
+static int compare_cells(const member *a, const member *b)
+{
+    for (int k = 0; k < 4; k++) {
+        if (a->cell[k] != b->cell[k]) {
+            return a->cell[k] < b->cell[k] ? -1 : 1;
+        }
+    }
+    if (a->bound != b->bound) {
+        return a->bound < b->bound ? -1 : 1;
+    }
+    return (a->channel > b->channel) - (a->channel < b->channel);
+}
+
+static int compare_members(const void *a, const void *b)
+{
+    const member *x = a;
+    const member *y = b;
+    const int cells = compare_cells(x, y);
+    return cells != 0 ? cells : (x->index > y->index) - (x->index < y->index);
+}
+
+/* Members in the order of their cells; returns how many cells there are. */
+static size_t sort_into_cells(const gonio_i_column *column, double pitch, member *members)
+{
+    for (size_t i = 0; i < column->count; i++) {
+        const gonio_i_observation *o = &column->observation[i];
+        const gonio_i_place place = gonio_i_place_of(o->at);
+        members[i] = (member){.bound = o->bound, .channel = o->channel, .index = i};
+        for (int k = 0; k < 4; k++) {
+            members[i].cell[k] = (int)floor(place.p[k] / pitch);
+        }
+    }
+    qsort(members, column->count, sizeof *members, compare_members);
+    size_t cells = 0;
+    for (size_t i = 0; i < column->count; i++) {
+        cells += i == 0 || compare_cells(&members[i - 1], &members[i]) != 0;
+    }
+    return cells;
+}
+
+static double square_distance(const double *a, const double *b)
+{
+    double square = 0.0;
+    for (int k = 0; k < 4; k++) {
+        square += (a[k] - b[k]) * (a[k] - b[k]);
+    }
+    return square;
+}
+
+/* The member nearest to the middle of all. */
+static size_t nearest_to_middle(const gonio_i_column *column, const member *members, size_t count)
+{
+    double middle[4] = {0.0};
+    for (size_t i = 0; i < count; i++) {
+        const gonio_i_place place = gonio_i_place_of(column->observation[members[i].index].at);
+        for (int k = 0; k < 4; k++) {
+            middle[k] += place.p[k] / (double)count;
+        }
+    }
+    size_t best = 0;
+    double least = INFINITY;
+    for (size_t i = 0; i < count; i++) {
+        const gonio_i_place place = gonio_i_place_of(column->observation[members[i].index].at);
+        const double square = square_distance(place.p, middle);
+        if (square < least) {
+            least = square;
+            best = members[i].index;
+        }
+    }
+    return best;
+}
+
+static gonio_i_observation merge_cell(const gonio_i_column *column, const member *members,
+                                      size_t count)
+{
+    gonio_i_observation one = column->observation[nearest_to_middle(column, members, count)];
+    double weights = 0.0;
+    double sum = 0.0;
+    double noise = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        const gonio_i_observation *o = &column->observation[members[i].index];
+        const double weight = 1.0 / o->variance;
+        weights += weight;
+        sum += weight * o->g;
+        noise += weight * weight * fmax(o->variance - LEFT_OPEN, 0.0);
+    }
+    one.g = sum / weights;
+    one.variance = LEFT_OPEN + noise / (weights * weights);
+    return one;
+}
+
+static void merge_cells(const gonio_i_column *column, const member *members, gonio_i_column *merged)
+{
+    size_t first = 0;
+    for (size_t end = 1; end <= column->count; end++) {
+        if (end == column->count || compare_cells(&members[first], &members[end]) != 0) {
+            merged->observation[merged->count++] = merge_cell(column, members + first, end - first);
+            first = end;
+        }
+    }
+}
+
+gonio_status gonio_i_merge(gonio_context *context, const gonio_i_column *column, size_t most,
+                           gonio_i_column *merged)
+{
+    *merged = (gonio_i_column){0};
+    member *members = gonio_i_allocate(context, column->count, sizeof *members);
+    if (members == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    double pitch = FINEST;
+    size_t cells = sort_into_cells(column, pitch, members);
+    while (cells > most) {
+        pitch *= COARSER;
+        cells = sort_into_cells(column, pitch, members);
+    }
+    merged->observation = gonio_i_allocate(context, cells, sizeof *merged->observation);
+    if (merged->observation != NULL) {
+        merge_cells(column, members, merged);
+    }
+    free(members);
+    return merged->observation != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
+}
