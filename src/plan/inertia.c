@@ -9,33 +9,38 @@
 typedef struct sums {
     double yy, yz, zz; /* over 1/(d - x) */
     int above;         /* d_k > x */
-    int poles;         /* d_k = x */
+    bool on_pole;      /* some d_k = x */
 } sums;
 
+/* (Pointers of its own, or the compiler gathers values one by one.) */
 GONIO_I_VECTORISED static sums sums_at(const gonio_i_exchange *e, double x)
 {
+    const double *restrict d = e->d;
+    const double *restrict y = e->y;
+    const double *restrict z = e->z;
+    const size_t n = e->n;
     double yy = 0.0;
     double yz = 0.0;
     double zz = 0.0;
-    int above = 0;
-    int poles = 0;
+    double above = 0.0;
+    double poles = 0.0;
 #pragma omp simd reduction(+ : yy, yz, zz, above, poles)
-    for (size_t k = 0; k < e->n; k++) {
-        const double gap = e->d[k] - x;
+    for (size_t k = 0; k < n; k++) {
+        const double gap = d[k] - x;
         const double weight = 1.0 / gap;
-        yy += e->y[k] * e->y[k] * weight;
-        yz += e->y[k] * e->z[k] * weight;
-        zz += e->z[k] * e->z[k] * weight;
-        above += gap > 0.0;
-        poles += gap == 0.0;
+        yy += y[k] * y[k] * weight;
+        yz += y[k] * z[k] * weight;
+        zz += z[k] * z[k] * weight;
+        above += gap > 0.0 ? 1.0 : 0.0;
+        poles += gap == 0.0 ? 1.0 : 0.0;
     }
-    return (sums){yy, yz, zz, above, poles};
+    return (sums){yy, yz, zz, (int)above, poles > 0.0};
 }
 
 int gonio_i_exchange_count_above(const gonio_i_exchange *e, double x)
 {
     sums s = sums_at(e, x);
-    while (s.poles > 0 && x > 0.0) { /* step off */
+    while (s.on_pole && x > 0.0) { /* step off */
         x = nextafter(x, 0.0);
         s = sums_at(e, x);
     }
@@ -51,7 +56,9 @@ int gonio_i_exchange_count_above(const gonio_i_exchange *e, double x)
 static double largest_at_least(const gonio_i_exchange *e)
 {
     const size_t top = e->n - 1;
-    return fmax(e->d[top - 1], e->d[top] - e->y[top] * e->y[top] + e->z[top] * e->z[top]);
+    const double largest =
+        fmax(e->d[top - 1], e->d[top] - e->y[top] * e->y[top] + e->z[top] * e->z[top]);
+    return largest * (1.0 - 4.0 * DBL_EPSILON);
 }
 
 /* The largest d, and what is put in. */
@@ -79,10 +86,17 @@ double gonio_i_exchange_eigenvalue(const gonio_i_exchange *e, size_t k)
     return low;
 }
 
+bool gonio_i_exchange_may_beat(const gonio_i_exchange *e, size_t part, double limit)
+{
+    const gonio_i_exchange lowest = {e->d, e->y, e->z, part};
+    const double least = largest_at_least(e) / limit;
+    return gonio_i_exchange_count_above(&lowest, least) == (int)part;
+}
+
 bool gonio_i_exchange_beats(const gonio_i_exchange *e, double limit)
 {
     const int all = (int)e->n;
-    double low = largest_at_least(e) * (1.0 - 4.0 * DBL_EPSILON);
+    double low = largest_at_least(e);
     if (gonio_i_exchange_count_above(e, low / limit) != all) {
         return false; /* most of them */
     }

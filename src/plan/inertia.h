@@ -23,6 +23,11 @@ int gonio_i_exchange_count_above(const gonio_i_exchange *exchange, double x);
 /* Whether lambda_max(H)/lambda_min(H) < limit. */
 bool gonio_i_exchange_beats(const gonio_i_exchange *exchange, double limit);
 
+/* False only if H does not beat the limit, by the first `part` of z and its last value alone (the
+ * rest may be anything): by Cauchy's interlacing, lambda_min of a principal submatrix is no less
+ * than H's. */
+bool gonio_i_exchange_may_beat(const gonio_i_exchange *exchange, size_t part, double limit);
+
 /* The k-th eigenvalue of H (from 0, ascending), less at most a relative 1e-10. */
 double gonio_i_exchange_eigenvalue(const gonio_i_exchange *exchange, size_t k);
 

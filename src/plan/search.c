@@ -17,9 +17,6 @@
 /* A swap has to lower kappa by more than this share: less is rounding. */
 static const double least_gain = 1e-10;
 
-/* Values that are kept of all rows in the eigenbasis: 32 MB. */
-enum { MOST_TURNED = 1 << 22 };
-
 static double seconds(clockid_t clock)
 {
     struct timespec t;
@@ -71,11 +68,7 @@ static gonio_status decompose(gonio_i_search *s)
         status = gonio_i_product_transposed(p->context, s->x, p->count, k, s->q, k, s->y, k);
     }
     s->condition_number = status == GONIO_OK ? gonio_i_condition(s->d, k) : INFINITY;
-    for (size_t j = 0; j < k; j++) {
-        for (size_t a = 0; a < k; a++) {
-            s->columns[a * k + j] = s->q[j * k + a];
-        }
-    }
+    gonio_i_turned_set(&s->turned, s->q);
     return status;
 }
 
@@ -115,79 +108,35 @@ static gonio_status consider(gonio_i_search *s)
     return status;
 }
 
-/* Components of z that are summed together: as many as registers hold. */
-enum { ROTATED = 32 };
-
-/* ROTATED components of z = Q'u, from where z and q point. */
-GONIO_I_VECTORISED static void rotate_many(size_t k, const double *q, const double *u, double *z)
-{
-    double sum[ROTATED] = {0.0};
-    for (size_t a = 0; a < k; a++) {
-        for (size_t j = 0; j < ROTATED; j++) {
-            sum[j] += u[a] * q[a * k + j];
-        }
-    }
-    memcpy(z, sum, sizeof sum);
-}
-
-/* All of z = Q'u for k < ROTATED. */
-GONIO_I_VECTORISED static void rotate_few(size_t k, const double *restrict q, const double *u,
-                                          double *restrict z)
-{
-    memset(z, 0, k * sizeof *z);
-    for (size_t a = 0; a < k; a++) {
-        for (size_t j = 0; j < k; j++) {
-            z[j] += u[a] * q[a * k + j];
-        }
-    }
-}
-
-/* z = Q'u, from the eigenvectors as columns of q[K][K]. (The last components together with some of
- * those before them, which come out the same again.) */
-static void rotate(size_t k, const double *q, const double *u, double *z)
-{
-    if (k < ROTATED) {
-        rotate_few(k, q, u, z);
-        return;
-    }
-    for (size_t j = 0; j < k; j += ROTATED) {
-        const size_t first = j + ROTATED < k ? j : k - ROTATED;
-        rotate_many(k, q + first, u, z + first);
-    }
-}
-
 /* G after a swap, in the eigenbasis of G. */
 static gonio_i_exchange exchange_of(const gonio_i_search *s, size_t position, size_t row, double *z)
 {
     const size_t k = s->problem->components;
-    rotate(k, s->columns, gonio_i_row(s->problem, row), z);
-    return (gonio_i_exchange){s->d, s->y + position * k, z, k};
+    return (gonio_i_exchange){s->d, s->y + position * k, gonio_i_turned_row(&s->turned, row, z), k};
 }
 
-/* A row in the eigenbasis of G: made once for each G and kept, or made in z where all rows would be
- * too much to keep. */
-static const double *turned(const gonio_i_search *s, size_t row, double *z)
+/* Whether a swap lowers kappa, exactly. Most rows are refused by a part of them. */
+static bool wins(const gonio_i_search *s, size_t position, const gonio_i_turned_candidate *c)
 {
     const size_t k = s->problem->components;
-    double *made = s->turned != NULL ? s->turned + row * k : z;
-    if (s->turned == NULL || s->turned_for[row] != s->decompositions) {
-        rotate(k, s->columns, gonio_i_row(s->problem, row), made);
-    }
-    if (s->turned != NULL) {
-        s->turned_for[row] = s->decompositions;
-    }
-    return made;
-}
-
-/* Whether a swap lowers kappa, exactly. */
-static bool wins(const gonio_i_search *s, size_t position, size_t row, double *z)
-{
-    if (s->taken[row]) {
+    const double limit = s->condition_number * (1.0 - least_gain);
+    const gonio_i_exchange in_part = {s->d, s->y + position * k, c->z, k};
+    if (c->part < k && !gonio_i_exchange_may_beat(&in_part, c->part, limit)) {
         return false;
     }
-    const size_t k = s->problem->components;
-    const gonio_i_exchange exchange = {s->d, s->y + position * k, turned(s, row, z), k};
-    return gonio_i_exchange_beats(&exchange, s->condition_number * (1.0 - least_gain));
+    const gonio_i_exchange exchange = exchange_of(s, position, c->row, c->z);
+    return gonio_i_exchange_beats(&exchange, limit);
+}
+
+/* Rows less those that are chosen, in place. */
+static size_t leave_out_taken(const gonio_i_search *s, size_t *rows, size_t count)
+{
+    size_t left = 0;
+    for (size_t i = 0; i < count; i++) {
+        rows[left] = rows[i];
+        left += !s->taken[rows[i]];
+    }
+    return left;
 }
 
 /* The first of a chunk's rows first .. last - 1 that lowers kappa at a position; `rows` if none. */
@@ -195,11 +144,18 @@ static size_t first_winner_among(gonio_i_search *s, size_t position, size_t firs
                                  int thread)
 {
     const gonio_i_search_worker *w = &s->workers[thread];
-    const size_t count =
+    const size_t passed =
         gonio_i_filter_survivors(&s->filter, position, first, last, thread, w->survivors);
-    for (size_t k = 0; k < count; k++) {
-        if (wins(s, position, w->survivors[k], w->z)) {
-            return w->survivors[k];
+    const size_t count = leave_out_taken(s, w->survivors, passed);
+    for (size_t i = 0; i < count; i += GONIO_I_TURNED_TOGETHER) {
+        gonio_i_turned_candidate candidate[GONIO_I_TURNED_TOGETHER];
+        const size_t rest = count - i;
+        const size_t together = rest < GONIO_I_TURNED_TOGETHER ? rest : GONIO_I_TURNED_TOGETHER;
+        gonio_i_turned_begin(&s->turned, w->survivors + i, together, w->z, candidate);
+        for (size_t j = 0; j < together; j++) {
+            if (wins(s, position, &candidate[j])) {
+                return candidate[j].row;
+            }
         }
     }
     return s->problem->rows;
@@ -429,19 +385,6 @@ gonio_status gonio_i_search_descend(gonio_i_search *s, int restart, gonio_i_sele
     return status;
 }
 
-/* Room for all rows in the eigenbasis, unless they are many; false when out of memory. */
-static bool allocate_turned(gonio_i_search *s)
-{
-    const size_t rows = s->problem->rows;
-    const size_t k = s->problem->components;
-    if (rows > MOST_TURNED / k) {
-        return true;
-    }
-    s->turned = gonio_i_allocate(s->problem->context, rows * k, sizeof *s->turned);
-    s->turned_for = gonio_i_allocate(s->problem->context, rows, sizeof *s->turned_for);
-    return s->turned != NULL && s->turned_for != NULL;
-}
-
 static bool allocate_workers(gonio_i_search *s)
 {
     gonio_context *context = s->problem->context;
@@ -449,7 +392,7 @@ static bool allocate_workers(gonio_i_search *s)
     s->workers = gonio_i_allocate(context, (size_t)s->threads, sizeof *s->workers);
     for (int t = 0; t < s->threads && s->workers != NULL && ready; t++) {
         gonio_i_search_worker *w = &s->workers[t];
-        w->z = gonio_i_allocate(context, s->problem->components, sizeof *w->z);
+        w->z = gonio_i_turned_scratch(s->problem);
         w->survivors = gonio_i_allocate(context, GONIO_I_CHUNK + 1, sizeof *w->survivors);
         ready = w->z != NULL && w->survivors != NULL;
     }
@@ -472,15 +415,14 @@ bool gonio_i_search_allocate(const gonio_i_selection_problem *problem, const gon
         .y = gonio_i_allocate(context, n * k, sizeof *s->y),
         .gram = gonio_i_allocate(context, k * k, sizeof *s->gram),
         .q = gonio_i_allocate(context, k * k, sizeof *s->q),
-        .columns = gonio_i_allocate(context, k * k, sizeof *s->columns),
         .d = gonio_i_allocate(context, k, sizeof *s->d),
         .old_d = gonio_i_allocate(context, k, sizeof *s->old_d),
         .old_y = gonio_i_allocate(context, k, sizeof *s->old_y),
         .winners = gonio_i_allocate(context, gonio_i_panels_chunks(panels) + 1, sizeof *s->winners),
     };
     return gonio_i_filter_allocate(problem, panels, threads, &s->filter) && allocate_workers(s) &&
-           allocate_turned(s) && s->chosen != NULL && s->taken != NULL && s->x != NULL &&
-           s->y != NULL && s->gram != NULL && s->q != NULL && s->columns != NULL && s->d != NULL &&
+           gonio_i_turned_allocate(problem, &s->turned) && s->chosen != NULL && s->taken != NULL &&
+           s->x != NULL && s->y != NULL && s->gram != NULL && s->q != NULL && s->d != NULL &&
            s->old_d != NULL && s->old_y != NULL && s->winners != NULL;
 }
 
@@ -497,12 +439,10 @@ void gonio_i_search_free(gonio_i_search *s)
     free(s->y);
     free(s->gram);
     free(s->q);
-    free(s->columns);
     free(s->d);
     free(s->old_d);
     free(s->old_y);
     free(s->winners);
-    free(s->turned);
-    free(s->turned_for);
+    gonio_i_turned_free(&s->turned);
     gonio_i_filter_free(&s->filter);
 }

@@ -19,25 +19,24 @@
 #include "../core/random.h"
 #include "filter.h"
 #include "method.h"
+#include "turned.h"
 
 /* Scratch of one thread. */
 typedef struct gonio_i_search_worker {
-    double *z;         /* [K]: a candidate in the eigenbasis of G */
+    double *z;         /* gonio_i_turned_scratch */
     size_t *survivors; /* [GONIO_I_CHUNK + 1] */
 } gonio_i_search_worker;
 
 typedef struct gonio_i_search {
     const gonio_i_selection_problem *problem;
     size_t *chosen;
-    unsigned char *taken; /* [rows] */
-    double *x;            /* [count][K]: the chosen rows */
-    double *y;            /* [count][K]: the chosen rows in the eigenbasis of G */
-    double *gram;         /* G, [K][K] */
-    double *q;            /* [K][K]: the eigenvectors of G as rows */
-    double *columns;      /* [K][K]: and as columns */
-    double *d;            /* [K] eigenvalues, ascending */
-    double *turned;       /* [rows][K]: rows in the eigenbasis of G; NULL if they are too many */
-    uint64_t *turned_for; /* [rows]: for which decomposition of G */
+    unsigned char *taken;  /* [rows] */
+    double *x;             /* [count][K]: the chosen rows */
+    double *y;             /* [count][K]: the chosen rows in the eigenbasis of G */
+    double *gram;          /* G, [K][K] */
+    double *q;             /* [K][K]: the eigenvectors of G as rows */
+    double *d;             /* [K] eigenvalues, ascending */
+    gonio_i_turned turned; /* rows in the eigenbasis of G */
     uint64_t decompositions;
     double *old_d; /* [K] before a swap */
     double *old_y; /* [K] of the row that went out */

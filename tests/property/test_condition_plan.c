@@ -262,6 +262,7 @@ static void test_inertia(void **state)
     enum { K = 9 };
     gonio_i_random random;
     gonio_i_random_seed(&random, 3, 0);
+    int refused = 0;
     for (int trial = 0; trial < 200; trial++) {
         double d[K], y[K], z[K], h[K * K], values[K];
         double level = 0.0;
@@ -293,10 +294,16 @@ static void test_inertia(void **state)
         }
         if (values[0] > 0.0) {
             const double kappa = values[K - 1] / values[0];
+            /* A part may leave it open, but never refuses what wins. */
+            for (size_t part = 1; part < K; part++) {
+                assert_true(gonio_i_exchange_may_beat(&exchange, part, kappa * (1.0 + 1e-9)));
+            }
+            refused += !gonio_i_exchange_may_beat(&exchange, K - 1, 0.9 * kappa);
             assert_true(gonio_i_exchange_beats(&exchange, kappa * (1.0 + 1e-9)));
             assert_false(gonio_i_exchange_beats(&exchange, kappa * (1.0 - 1e-9)));
         }
     }
+    assert_true(refused > 10);
 }
 
 int main(void)
