@@ -7,7 +7,10 @@
  * reconstructs and compares. Prints a line of CSV for each material and number of readings. A split
  * that does not say what to learn from learns from the test materials of all others: classes.json
  * leaves out a class of materials at a time. `adaptive` plans the first N only; the directions that
- * follow are those of gonio_plan_next for each material. */
+ * follow are those of gonio_plan_next for each material. Other methods are given the basis that
+ * they were published with (condition, random: the paper's, 45 components; nielsen, frost: the full
+ * grid, relative to the median, separate channels), a plan for every N, and no more components than
+ * N. */
 #include <gonio/gonio.h>
 
 #include <jansson.h>
@@ -73,14 +76,31 @@ static json_t *names_to_learn(const json_t *splits, size_t number)
     return names;
 }
 
+static bool is_posterior(const setting *s)
+{
+    return strcmp(s->method, "expected-error") == 0;
+}
+
+/* The grid that a method was published with. */
+static gonio_database_options grid_of(const setting *s)
+{
+    static const gonio_database_options sectored = {.representation = GONIO_SECTORED,
+                                                    .channels = GONIO_SEPARATE};
+    static const gonio_database_options relative = {
+        .representation = GONIO_FULL, .channels = GONIO_SEPARATE, .mapping = GONIO_LOG_RELATIVE};
+    static const gonio_database_options paper = {.representation = GONIO_BIVARIATE};
+    const bool full = strcmp(s->method, "nielsen") == 0 || strcmp(s->method, "frost") == 0;
+    return is_posterior(s) ? sectored : full ? relative : paper;
+}
+
 static gonio_basis *learn(gonio_context *context, const setting *s, const json_t *names)
 {
-    const gonio_database_options sectored = {.representation = GONIO_SECTORED,
-                                             .channels = GONIO_SEPARATE};
-    const gonio_database_options paper = {.representation = GONIO_BIVARIATE};
-    const bool posterior = strcmp(s->method, "expected-error") == 0;
-    const gonio_basis_options how = {.mixtures = posterior ? GONIO_DEFAULT_MIXTURES : 0,
-                                     .components = posterior ? 0 : 45};
+    const gonio_database_options grid = grid_of(s);
+    const size_t largest = s->size[s->sizes - 1];
+    const gonio_basis_options how = {.mixtures = is_posterior(s) ? GONIO_DEFAULT_MIXTURES : 0,
+                                     .components = is_posterior(s)                     ? 0
+                                                   : grid.representation == GONIO_FULL ? largest
+                                                                                       : 45};
     gonio_database *database = NULL;
     gonio_basis *basis = NULL;
     char *path[MOST_MATERIALS];
@@ -88,8 +108,7 @@ static gonio_basis *learn(gonio_context *context, const setting *s, const json_t
     for (size_t k = 0; k < count; k++) {
         path[k] = path_of(s->folder, json_string_value(json_array_get(names, k)));
     }
-    check(gonio_database_create(context, (const char *const *)path, count,
-                                posterior ? &sectored : &paper, &database));
+    check(gonio_database_create(context, (const char *const *)path, count, &grid, &database));
     check(gonio_basis_learn(context, database, &how, &basis));
     gonio_database_free(&database);
     for (size_t k = 0; k < count; k++) {
@@ -181,7 +200,8 @@ static void run(gonio_context *context, const subject *it, const gonio_plan *pla
     gonio_material *material = NULL;
     gonio_material *deviation = NULL;
     gonio_comparison comparison;
-    const gonio_reconstruct_options how = how_to_reconstruct(s);
+    gonio_reconstruct_options how = how_to_reconstruct(s);
+    how.components = is_posterior(s) ? 0 : plan->components;
     check(gonio_reconstruct(context, it->basis, readings, &how, &made));
     check(gonio_reconstruction_material(context, it->basis, made, "r", &material));
     check(gonio_compare(context, it->original, material, &comparison));
@@ -221,16 +241,32 @@ static void go_on(gonio_context *context, const subject *it, gonio_plan *plan, s
     gonio_readings_free(&readings);
 }
 
-/* `plan` is the first for all materials, with room for the last. */
-static void run_material(gonio_context *context, const subject *it, gonio_plan *plan)
+/* plan[i]: that of the i-th size; one for all of a method whose plans are nested. */
+static void run_material(gonio_context *context, const subject *it, gonio_plan **plan)
 {
     const setting *s = it->s;
     for (size_t i = 0; i < s->sizes; i++) {
         if (s->adaptive && i > 0) {
-            go_on(context, it, plan, s->size[i - 1], s->size[i]);
+            go_on(context, it, plan[i], s->size[i - 1], s->size[i]);
         }
-        run(context, it, plan, s->size[i]);
+        run(context, it, plan[i], s->size[i]);
     }
+}
+
+static gonio_plan *make_plan(gonio_context *context, const setting *s, const gonio_basis *basis,
+                             size_t n, int split)
+{
+    const size_t components = gonio_basis_describe(basis).components;
+    gonio_plan_options options;
+    gonio_plan *plan = NULL;
+    gonio_plan_options_default(&options);
+    options.method = s->method;
+    options.metric = s->metric;
+    options.count = n;
+    options.seed = (uint64_t)split;
+    options.components = is_posterior(s) ? 0 : components < n ? components : n;
+    check(gonio_plan_create(context, basis, &options, &plan));
+    return plan;
 }
 
 static void run_split(gonio_context *context, const setting *s, const json_t *splits, int number)
@@ -238,13 +274,11 @@ static void run_split(gonio_context *context, const setting *s, const json_t *sp
     const json_t *test = json_object_get(json_array_get(splits, (size_t)number), "test");
     json_t *names = names_to_learn(splits, (size_t)number);
     gonio_basis *basis = learn(context, s, names);
-    gonio_plan_options options;
-    gonio_plan *plan = NULL;
-    gonio_plan_options_default(&options);
-    options.method = s->method;
-    options.metric = s->metric;
-    options.count = s->size[s->sizes - 1];
-    check(gonio_plan_create(context, basis, &options, &plan));
+    gonio_plan *plan[MOST_SIZES];
+    for (size_t i = s->sizes; i-- > 0;) {
+        const bool nested = is_posterior(s) && i + 1 < s->sizes;
+        plan[i] = nested ? plan[i + 1] : make_plan(context, s, basis, s->size[i], number);
+    }
     for (size_t k = 0; k < json_array_size(test); k++) {
         char *path = path_of(s->folder, json_string_value(json_array_get(test, k)));
         gonio_material *original = NULL;
@@ -256,7 +290,11 @@ static void run_split(gonio_context *context, const setting *s, const json_t *sp
         gonio_material_free(&original);
         free(path);
     }
-    gonio_plan_free(&plan);
+    for (size_t i = s->sizes; i-- > 0;) {
+        if (i == 0 || plan[i] != plan[i - 1]) {
+            gonio_plan_free(&plan[i]);
+        }
+    }
     gonio_basis_free(&basis);
     json_decref(names);
 }

@@ -69,7 +69,7 @@ typedef struct gonio_plan_options {
     gonio_metric metric;          /* whose expected value is to be small */
     const gonio_pair *candidates; /* choose among these directions, for the least error at all of
                                    * them; NULL: any, for the least error over the grid */
-    size_t candidate_count;       /* at most 6,000 */
+    size_t candidate_count;       /* at most 100,000 */
     double target;                /* per cent: as few readings as reach this E6, `count` at most; 0:
                                    * `count` */
 } gonio_plan_options;

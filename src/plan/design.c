@@ -19,7 +19,7 @@ static const double PEAK = 8.0;
 /* Variance that may stay out of the covariance between candidates. */
 static const double LEFT = 1e-4;
 
-enum { MOST_CANDIDATES = 6000, MOST_RANK = 500 };
+enum { MOST_CANDIDATES = 100000, MOST_RANK = 500 };
 
 /* Deviation, log units, of what the model leaves open beside what it knows of, wherever one reads:
  * by it the expected error is that of left-out materials (docs/accuracy.md). */
@@ -30,20 +30,27 @@ typedef struct place_list {
     gonio_i_prior *prior;
     size_t rows;
     size_t components; /* of f below: K, or as many as there are candidates */
-    double *f;
+    float *f;
     double *mean; /* [rows] */
     double *loss;
     bool *allowed;
     gonio_half_difference *at;
-    double *identity;
     const gonio_i_known *known; /* NULL: nothing */
 } place_list;
 
-static double dot(const double *a, const double *b, size_t n)
+static void to_float(const double *from, size_t count, float *to)
+{
+    for (size_t k = 0; k < count; k++) {
+        to[k] = (float)from[k];
+    }
+}
+
+GONIO_I_VECTORISED static double dot(const float *a, const float *b, size_t n)
 {
     double sum = 0.0;
+#pragma omp simd reduction(+ : sum)
     for (size_t i = 0; i < n; i++) {
-        sum += a[i] * b[i];
+        sum += (double)a[i] * (double)b[i];
     }
     return sum;
 }
@@ -56,7 +63,6 @@ static void free_places(place_list *p)
     free(p->loss);
     free(p->allowed);
     free(p->at);
-    free(p->identity);
 }
 
 static gonio_status allocate_places(place_list *p)
@@ -67,11 +73,7 @@ static gonio_status allocate_places(place_list *p)
     p->loss = gonio_i_allocate(c, p->rows, sizeof *p->loss);
     p->allowed = gonio_i_allocate(c, p->rows, sizeof *p->allowed);
     p->at = gonio_i_allocate(c, p->rows, sizeof *p->at);
-    p->identity = gonio_i_allocate(c, p->components * p->components, sizeof *p->identity);
-    for (size_t k = 0; p->identity != NULL && k < p->components; k++) {
-        p->identity[k * (p->components + 1)] = 1.0;
-    }
-    const bool done = p->f && p->mean && p->loss && p->allowed && p->at && p->identity;
+    const bool done = p->f && p->mean && p->loss && p->allowed && p->at;
     return done ? GONIO_OK : GONIO_ERROR_MEMORY;
 }
 
@@ -102,16 +104,19 @@ static gonio_status list_rows(place_list *p, gonio_metric metric)
     const size_t each = view->channels == GONIO_JOINT ? GONIO_CHANNELS : 1;
     p->rows = view->rows;
     p->components = p->prior->components;
-    const gonio_status status = allocate_places(p);
+    double *f = gonio_i_allocate(p->context, p->components, sizeof *f);
+    const gonio_status status = f == NULL ? GONIO_ERROR_MEMORY : allocate_places(p);
     for (size_t row = 0; row < p->rows && status == GONIO_OK; row++) {
         int channel = 0;
         const double bins = gonio_i_cell_bins(view->representation, view->cell[row / each]);
         p->at[row] = gonio_i_row_coordinates(view, row, &channel);
-        gonio_i_prior_row(p->prior, row, p->f + row * p->components);
+        gonio_i_prior_row(p->prior, row, f);
+        to_float(f, p->components, p->f + row * p->components);
         p->mean[row] = view->mean[row];
         p->allowed[row] = bins > 0.0;
         p->loss[row] = bins * metric_weight(metric, p->at[row], p->mean[row], channel);
     }
+    free(f);
     return status;
 }
 
@@ -119,7 +124,7 @@ static gonio_status list_rows(place_list *p, gonio_metric metric)
  * Returned p->f[rows][p->components], p->f p->f' = C to within LEFT of every variance
  * Method   Cholesky with pivoting on the largest variance left (Higham 2002, sec. 10.3); columns of
  *          C are made as they are needed */
-static void factorise(place_list *p, const double *f, const gonio_i_place *place, double *left)
+static void factorise(place_list *p, const float *f, const gonio_i_place *place, double *left)
 {
     const size_t most = p->components;
     const size_t k = p->prior->components;
@@ -137,21 +142,21 @@ static void factorise(place_list *p, const double *f, const gonio_i_place *place
             break;
         }
         const double root = sqrt(left[pivot]);
+#pragma omp parallel for schedule(static) num_threads(gonio_context_threads(p->context))
         for (size_t i = 0; i < p->rows; i++) {
             const double c =
                 dot(f + i * k, f + pivot * k, k) +
                 SMOOTHNESS * SMOOTHNESS * gonio_i_remainder(&place[i], &place[pivot], PEAK);
             const double known = dot(p->f + i * most, p->f + pivot * most, rank);
-            p->f[i * most + rank] = (c - known) / root;
-        }
-        for (size_t i = 0; i < p->rows; i++) {
-            left[i] -= p->f[i * most + rank] * p->f[i * most + rank];
+            const float entry = (float)((c - known) / root);
+            p->f[i * most + rank] = entry;
+            left[i] -= (double)entry * (double)entry;
         }
         left[pivot] = 0.0;
     }
 }
 
-static gonio_status factorise_candidates(place_list *p, const double *f)
+static gonio_status factorise_candidates(place_list *p, const float *f)
 {
     double *left = gonio_i_allocate(p->context, p->rows, sizeof *left);
     gonio_i_place *place = gonio_i_allocate(p->context, p->rows, sizeof *place);
@@ -174,11 +179,14 @@ static gonio_status list_candidates(place_list *p, const gonio_plan_options *opt
     const size_t most = p->known != NULL ? p->prior->components : MOST_RANK;
     p->rows = options->candidate_count;
     p->components = p->known != NULL || p->rows > most ? most : p->rows;
-    double *f = gonio_i_allocate(p->context, p->rows * p->prior->components, sizeof *f);
-    gonio_status status = f == NULL ? GONIO_ERROR_MEMORY : allocate_places(p);
+    const size_t components = p->prior->components;
+    float *f = gonio_i_allocate(p->context, p->rows * components, sizeof *f);
+    double *exact = gonio_i_allocate(p->context, components, sizeof *exact);
+    gonio_status status = f == NULL || exact == NULL ? GONIO_ERROR_MEMORY : allocate_places(p);
     for (size_t k = 0; k < p->rows && status == GONIO_OK; k++) {
         p->at[k] = gonio_half_difference_from_pair(options->candidates[k]);
-        gonio_i_prior_at(p->prior, p->at[k], 0, &p->mean[k], f + k * p->prior->components);
+        gonio_i_prior_at(p->prior, p->at[k], 0, &p->mean[k], exact);
+        to_float(exact, components, f + k * components);
         p->allowed[k] = true;
         p->loss[k] = metric_weight(options->metric, p->at[k], p->mean[k], 0);
     }
@@ -188,6 +196,7 @@ static gonio_status list_candidates(place_list *p, const gonio_plan_options *opt
         status = factorise_candidates(p, f);
     }
     free(f);
+    free(exact);
     return status;
 }
 
@@ -317,8 +326,8 @@ static gonio_status fill_plan(const place_list *p, const gonio_plan_options *opt
                                             .f = p->f,
                                             .rows = p->rows,
                                             .components = p->components,
-                                            .covariance = p->known != NULL ? p->known->covariance
-                                                                           : p->identity,
+                                            .covariance =
+                                                p->known != NULL ? p->known->covariance : NULL,
                                             .loss = p->loss,
                                             .allowed = p->allowed,
                                             .variance = NOISE * NOISE,
@@ -360,20 +369,34 @@ static gonio_status check_options(gonio_context *context, const gonio_basis *bas
     return GONIO_OK;
 }
 
-/* Directions that were read are not read again. */
-static void leave_out_read(place_list *p)
+static bool is_same(const gonio_i_place *a, const gonio_i_place *b)
 {
-    for (size_t i = 0; i < p->known->count; i++) {
-        const gonio_i_place read = gonio_i_place_of(p->known->read[i]);
-        for (size_t row = 0; row < p->rows; row++) {
-            const gonio_i_place here = gonio_i_place_of(p->at[row]);
-            double square = 0.0;
-            for (int k = 0; k < 4; k++) {
-                square += (here.p[k] - read.p[k]) * (here.p[k] - read.p[k]);
-            }
-            p->allowed[row] = p->allowed[row] && square > 1e-6;
+    double square = 0.0;
+    for (int k = 0; k < 4; k++) {
+        square += (a->p[k] - b->p[k]) * (a->p[k] - b->p[k]);
+    }
+    return square <= 1e-6;
+}
+
+/* Directions that were read are not read again. */
+static gonio_status leave_out_read(place_list *p)
+{
+    const size_t count = p->known->count;
+    gonio_i_place *read = gonio_i_allocate(p->context, count, sizeof *read);
+    if (read == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    for (size_t i = 0; i < count; i++) {
+        read[i] = gonio_i_place_of(p->known->read[i]);
+    }
+    for (size_t row = 0; row < p->rows; row++) {
+        const gonio_i_place here = gonio_i_place_of(p->at[row]);
+        for (size_t i = 0; i < count && p->allowed[row]; i++) {
+            p->allowed[row] = !is_same(&here, &read[i]);
         }
     }
+    free(read);
+    return GONIO_OK;
 }
 
 static gonio_status make_plan(gonio_context *context, const gonio_basis *basis,
@@ -391,7 +414,7 @@ static gonio_status make_plan(gonio_context *context, const gonio_basis *basis,
                                              : list_rows(&p, options->metric);
     }
     if (status == GONIO_OK && known != NULL) {
-        leave_out_read(&p);
+        status = leave_out_read(&p);
     }
     if (status == GONIO_OK) {
         status = check(context, &p, options);

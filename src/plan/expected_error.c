@@ -9,17 +9,32 @@
  *           with exact updates: Fedorov 1972). Each reading is the best next one. After 5, 10, 20,
  *           40 ... readings those of the last block are exchanged for better ones, one after
  *           another, until none changes: so the first 5, 10, 20 ... of a plan are good plans too.
- * Accuracy  Rank-one updates of q and t in double precision, computed anew from P after each block.
- */
+ * Accuracy  Rank-one updates of q and t in double precision, computed anew from P after each block
+ *           of 20 or more.
+ * Speed     Rows are single precision and updates of q and t wait until gains are asked for: an
+ *           exchange, one reading taken back and one made, reads the rows once. */
 #include "expected_error.h"
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "../linalg/linalg.h"
 
-enum { FIRST_BLOCK = 5, MOST_TURNS = 4, BLOCK_ROWS = 1024 };
+enum {
+    FIRST_BLOCK = 5,
+    LEAST_RENEWED = 20, /* readings after which q and t are computed anew */
+    MOST_TURNS = 4,
+    BLOCK_ROWS = 1024,
+    MOST_WAITING = 2 /* an exchange */
+};
+
+/* A reading made (sign 1) or taken back (-1): P became P - sign g g'. */
+typedef struct change {
+    double *g;
+    double *pwg; /* P W g, P from before */
+    double gwg;
+    double sign;
+} change;
 
 typedef struct design {
     const gonio_i_design_problem *problem;
@@ -29,13 +44,23 @@ typedef struct design {
     double *w;      /* [k][k]: W */
     double *q;      /* [rows] */
     double *t;      /* [rows] */
-    double *vector; /* [3][k]: P f, W g, P W g */
+    double *vector; /* [2 + 2 MOST_WAITING][k]: f, W g, and what the changes hold */
     bool *taken;    /* [rows] */
+    bool plain;     /* P is I: nothing was read yet */
+    change waiting[MOST_WAITING];
+    size_t waits;
 } design;
 
-static const double *row_of(const design *d, size_t row)
+static const float *row_of(const design *d, size_t row)
 {
     return d->problem->f + row * d->k;
+}
+
+static void copy_row(const design *d, size_t row, double *f)
+{
+    for (size_t j = 0; j < d->k; j++) {
+        f[j] = (double)row_of(d, row)[j];
+    }
 }
 
 GONIO_I_VECTORISED static double dot(const double *a, const double *b, size_t n)
@@ -66,7 +91,7 @@ static gonio_status find_loss(design *d)
         for (size_t b = 0; b < count; b++) {
             const double root = sqrt(d->problem->loss[first + b]);
             for (size_t j = 0; j < d->k; j++) {
-                block[b * d->k + j] = root * row_of(d, first + b)[j];
+                block[b * d->k + j] = root * (double)row_of(d, first + b)[j];
             }
         }
         status = gonio_i_add_gram_rows(context, block, count, d->k, d->w);
@@ -76,62 +101,140 @@ static gonio_status find_loss(design *d)
     return status;
 }
 
-/* q and t from P. */
-static gonio_status find_gains(design *d)
+/* q and t of `count` rows, f[count][k]; fp, fpw: scratch of that size. */
+static gonio_status find_block_gains(design *d, size_t first, size_t count, const double *f,
+                                     double *fp, double *fpw)
 {
     gonio_context *context = d->problem->context;
-    double *a = gonio_i_allocate(context, 2 * BLOCK_ROWS * d->k, sizeof *a);
-    gonio_status status = a == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
-    for (size_t first = 0; first < d->rows && status == GONIO_OK; first += BLOCK_ROWS) {
-        const size_t count = d->rows - first < BLOCK_ROWS ? d->rows - first : BLOCK_ROWS;
-        double *b = a + BLOCK_ROWS * d->k;
-        status =
-            gonio_i_product_transposed(context, row_of(d, first), count, d->k, d->p, d->k, a, d->k);
-        if (status == GONIO_OK) {
-            status = gonio_i_product_transposed(context, a, count, d->k, d->w, d->k, b, d->k);
-        }
-        for (size_t i = 0; i < count && status == GONIO_OK; i++) {
-            d->q[first + i] = dot(a + i * d->k, row_of(d, first + i), d->k);
-            d->t[first + i] = dot(b + i * d->k, a + i * d->k, d->k);
-        }
+    const double *a = d->plain ? f : fp;
+    gonio_status status = GONIO_OK;
+    if (!d->plain) {
+        status = gonio_i_product_transposed(context, f, count, d->k, d->p, d->k, fp, d->k);
     }
-    free(a);
+    if (status == GONIO_OK) {
+        status = gonio_i_product_transposed(context, a, count, d->k, d->w, d->k, fpw, d->k);
+    }
+    for (size_t i = 0; i < count && status == GONIO_OK; i++) {
+        d->q[first + i] = dot(a + i * d->k, f + i * d->k, d->k);
+        d->t[first + i] = dot(fpw + i * d->k, a + i * d->k, d->k);
+    }
     return status;
 }
 
-/* P becomes P - sign g g', g = P f / (sign f P f' + sigma^2)^(1/2): sign 1 for a reading made, -1
- * for one taken back. q and t follow. */
-static void update(design *d, const double *f, double variance, double sign)
+/* q and t from P. */
+static gonio_status find_gains(design *d)
 {
-    const size_t k = d->k;
-    double *g = d->vector;
-    double *wg = d->vector + k;
-    double *pwg = d->vector + 2 * k;
-    multiply(d->p, f, k, g);
-    const double scale = 1.0 / sqrt(fmax(variance + sign * dot(f, g, k), 1e-12));
-    for (size_t j = 0; j < k; j++) {
-        g[j] *= scale;
+    const size_t size = BLOCK_ROWS * d->k;
+    double *f = gonio_i_allocate(d->problem->context, 3 * size, sizeof *f);
+    gonio_status status = f == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    for (size_t first = 0; first < d->rows && status == GONIO_OK; first += BLOCK_ROWS) {
+        const size_t count = d->rows - first < BLOCK_ROWS ? d->rows - first : BLOCK_ROWS;
+        for (size_t i = 0; i < count; i++) {
+            copy_row(d, first + i, f + i * d->k);
+        }
+        status = find_block_gains(d, first, count, f, f + size, f + 2 * size);
     }
-    multiply(d->w, g, k, wg);
-    multiply(d->p, wg, k, pwg);
-    const double gwg = dot(g, wg, k);
+    d->waits = 0;
+    free(f);
+    return status;
+}
+
+/* f g and f P W g of a row for the changes that wait. */
+typedef struct seen_changes {
+    double g[MOST_WAITING];
+    double pwg[MOST_WAITING];
+} seen_changes;
+
+GONIO_I_VECTORISED static seen_changes see_one(const float *f, const change *c, size_t k)
+{
+    double a = 0.0;
+    double b = 0.0;
+#pragma omp simd reduction(+ : a, b)
+    for (size_t j = 0; j < k; j++) {
+        const double value = (double)f[j];
+        a += value * c[0].g[j];
+        b += value * c[0].pwg[j];
+    }
+    return (seen_changes){{a}, {b}};
+}
+
+GONIO_I_VECTORISED static seen_changes see_two(const float *f, const change *c, size_t k)
+{
+    const double *g = c[0].g;
+    const double *pwg = c[0].pwg;
+    const double *other_g = c[1].g;
+    const double *other_pwg = c[1].pwg;
+    double a = 0.0;
+    double b = 0.0;
+    double other_a = 0.0;
+    double other_b = 0.0;
+#pragma omp simd reduction(+ : a, b, other_a, other_b)
+    for (size_t j = 0; j < k; j++) {
+        const double value = (double)f[j];
+        a += value * g[j];
+        b += value * pwg[j];
+        other_a += value * other_g[j];
+        other_b += value * other_pwg[j];
+    }
+    return (seen_changes){{a, other_a}, {b, other_b}};
+}
+
+/* q and t follow the changes that wait. */
+static void catch_up(design *d)
+{
+    const change *c = d->waiting;
+    const size_t count = d->waits;
+    if (count == 0) {
+        return;
+    }
 #pragma omp parallel for schedule(static) num_threads(gonio_context_threads(d->problem->context))
     for (size_t x = 0; x < d->rows; x++) {
-        const double a = dot(row_of(d, x), g, k);
-        const double b = dot(row_of(d, x), pwg, k);
-        d->t[x] += -2.0 * sign * a * b + a * a * gwg;
-        d->q[x] -= sign * a * a;
-    }
-    for (size_t i = 0; i < k; i++) {
-        for (size_t j = 0; j < k; j++) {
-            d->p[i * k + j] -= sign * g[i] * g[j];
+        const seen_changes seen =
+            count == 1 ? see_one(row_of(d, x), c, d->k) : see_two(row_of(d, x), c, d->k);
+        for (size_t i = 0; i < count; i++) {
+            const double a = seen.g[i];
+            d->t[x] += -2.0 * c[i].sign * a * seen.pwg[i] + a * a * c[i].gwg;
+            d->q[x] -= c[i].sign * a * a;
         }
     }
+    d->waits = 0;
+}
+
+/* P becomes P - sign g g', g = P f / (sign f P f' + sigma^2)^(1/2); q and t have to catch up. */
+static void update(design *d, size_t row, double sign)
+{
+    const size_t k = d->k;
+    if (d->waits == MOST_WAITING) {
+        catch_up(d);
+    }
+    change *c = &d->waiting[d->waits];
+    double *f = d->vector;
+    double *wg = d->vector + k;
+    c->g = d->vector + (2 + 2 * d->waits) * k;
+    c->pwg = c->g + k;
+    c->sign = sign;
+    copy_row(d, row, f);
+    multiply(d->p, f, k, c->g);
+    const double scale = 1.0 / sqrt(fmax(d->problem->variance + sign * dot(f, c->g, k), 1e-12));
+    for (size_t j = 0; j < k; j++) {
+        c->g[j] *= scale;
+    }
+    multiply(d->w, c->g, k, wg);
+    multiply(d->p, wg, k, c->pwg);
+    c->gwg = dot(c->g, wg, k);
+    for (size_t i = 0; i < k; i++) {
+        for (size_t j = 0; j < k; j++) {
+            d->p[i * k + j] -= sign * c->g[i] * c->g[j];
+        }
+    }
+    d->plain = false;
+    d->waits++;
 }
 
 /* The row whose reading leaves the least loss; the first of equals. */
-static size_t find_best(const design *d)
+static size_t find_best(design *d)
 {
+    catch_up(d);
     size_t best = d->rows;
     double most = -INFINITY;
     for (size_t x = 0; x < d->rows; x++) {
@@ -145,16 +248,26 @@ static size_t find_best(const design *d)
     return best;
 }
 
+static void begin(design *d)
+{
+    const size_t k = d->k;
+    const double *given = d->problem->covariance;
+    for (size_t i = 0; i < k * k; i++) {
+        d->p[i] = given != NULL ? given[i] : (double)(i % (k + 1) == 0);
+    }
+    d->plain = given == NULL;
+}
+
 static void take(design *d, size_t row)
 {
     d->taken[row] = true;
-    update(d, row_of(d, row), d->problem->variance, 1.0);
+    update(d, row, 1.0);
 }
 
 static void take_back(design *d, size_t row)
 {
     d->taken[row] = false;
-    update(d, row_of(d, row), d->problem->variance, -1.0);
+    update(d, row, -1.0);
 }
 
 /* Exchanges the readings from `first` to `end` - 1 for better ones. */
@@ -189,7 +302,7 @@ static gonio_status choose_blocks(design *d, size_t *chosen)
             take(d, chosen[done]);
         }
         status = exchange(d, chosen, first, done);
-        if (status == GONIO_OK) {
+        if (status == GONIO_OK && done >= LEAST_RENEWED && done < problem->count) {
             status = find_gains(d);
         }
     }
@@ -201,11 +314,12 @@ static gonio_status choose_blocks(design *d, size_t *chosen)
 static void find_remaining(design *d, const size_t *chosen, double *remaining)
 {
     const size_t k = d->k;
-    memcpy(d->p, d->problem->covariance, k * k * sizeof *d->p);
+    begin(d);
     remaining[0] = dot(d->p, d->w, k * k);
     for (size_t n = 0; n < d->problem->count; n++) {
-        const double *f = row_of(d, chosen[n]);
-        double *g = d->vector;
+        double *f = d->vector;
+        double *g = d->vector + k;
+        copy_row(d, chosen[n], f);
         multiply(d->p, f, k, g);
         const double s = d->problem->variance + dot(f, g, k);
         for (size_t i = 0; i < k; i++) {
@@ -229,12 +343,12 @@ gonio_status gonio_i_design_find(const gonio_i_design_problem *problem, size_t *
                 .w = gonio_i_allocate(context, k * k, sizeof *d.w),
                 .q = gonio_i_allocate(context, problem->rows, sizeof *d.q),
                 .t = gonio_i_allocate(context, problem->rows, sizeof *d.t),
-                .vector = gonio_i_allocate(context, 3 * k, sizeof *d.vector),
+                .vector = gonio_i_allocate(context, (2 + 2 * MOST_WAITING) * k, sizeof *d.vector),
                 .taken = gonio_i_allocate(context, problem->rows, sizeof *d.taken)};
     const bool done = d.p && d.w && d.q && d.t && d.vector && d.taken;
     gonio_status status = done ? GONIO_OK : GONIO_ERROR_MEMORY;
     if (status == GONIO_OK) {
-        memcpy(d.p, problem->covariance, k * k * sizeof *d.p);
+        begin(&d);
         status = find_loss(&d);
     }
     if (status == GONIO_OK) {

@@ -6,10 +6,10 @@
 
 typedef struct gonio_i_design_problem {
     gonio_context *context;
-    const double *f; /* [rows][components] */
+    const float *f; /* [rows][components] */
     size_t rows;
     size_t components;
-    const double *covariance; /* [components][components]: of z before the first reading */
+    const double *covariance; /* [components][components]: of z before the first reading; NULL: I */
     const double *loss;       /* [rows]: weight of the squared error of g there */
     const bool *allowed;      /* [rows]: whether it can be read */
     double variance;          /* of the noise of a reading, log units */
