@@ -8,8 +8,17 @@
 #include "../linalg/linalg.h"
 
 /* Deviations from which on a reading is taken to be wrong, in units of what is usual among the
- * readings, or of the model's own if that is more; of a Gaussian one in 16,000 is. */
+ * readings, or of the model's own if that is more; of a Gaussian one in 16,000 is. Where there are
+ * many readings, more are far off without being wrong, and wrong ones stand out the more: it grows
+ * with the sixth root of their number. */
 static const double OUTLYING = 4.0;
+static const double MOST_OUTLYING = 6.0;
+static const double FEW = 40.0;
+
+static double outlying_from(size_t n)
+{
+    return fmin(OUTLYING * pow(fmax((double)n / FEW, 1.0), 1.0 / 6.0), MOST_OUTLYING);
+}
 
 /* A contradicted reading's variance, in squares of its difference: it has hardly a say. */
 static const double WIDENING = 100.0;
@@ -354,7 +363,7 @@ static bool judge_readings(gonio_i_gaussian *e, const judgement *j)
     size_t found = 0;
     for (; found < most; found++) {
         size_t worst = e->n;
-        double largest = OUTLYING * usual;
+        double largest = outlying_from(e->n) * usual;
         for (size_t i = 0; i < e->n; i++) {
             const double deviations = fabs(j->difference[i]) / sqrt(j->variance[i]);
             if (!j->outlying[i] && !e->left_out[i] && deviations > largest) {
