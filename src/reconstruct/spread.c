@@ -19,17 +19,21 @@ enum { BLOCK = 128, SAMPLE = 4096 /* rows that the predicted error is taken from
 /* Weights below this do not count among the samples. */
 static const double NEGLIGIBLE = 1e-7;
 
-/* From the model's variances to those of materials that were left out (docs/accuracy.md): beside
- * what the model knows of, it leaves something open everywhere. Deviations are widened so that 95 %
- * of the true values lie within 1.96 of them, which takes more than a Gaussian's, as errors come in
- * all sizes; the expected square of the error takes less. */
-static const double LEFT_OPEN = 0.05; /* deviation, log units */
-static const double FOR_BANDS = 1.96;
-static const double FOR_SQUARES = 1.44;
+/* From the model's variances to those of materials that were left out (docs/accuracy.md). Deviations
+ * are widened so that 95 % of the true values lie within 1.96 of them, which takes more than a
+ * Gaussian's, as errors come in all sizes. In the expected square of the error, which is mostly that
+ * of the materials that are known worst, more is left open everywhere. */
+typedef struct calibration {
+    double factor;
+    double left_open; /* deviation, log units */
+} calibration;
 
-static double calibrated(double variance, double factor)
+static const calibration FOR_BANDS = {1.5, 0.01};
+static const calibration FOR_SQUARES = {1.44, 0.05};
+
+static double calibrated(double variance, const calibration *c)
 {
-    return factor * variance + LEFT_OPEN * LEFT_OPEN;
+    return c->factor * variance + c->left_open * c->left_open;
 }
 
 typedef struct spreader {
@@ -206,10 +210,10 @@ static void spread_row(const spreader *s, size_t row, const double *t, const dou
         s->n > 0 ? s->e->model.alpha * s->e->model.alpha * remainder_at(s, row) : 0.0;
     const double g = fmax(value_of(s, row, t), 0.0);
     const double model = s->e->misfit * fmax(prior + dot(t, product, s->size), 0.0);
-    const double square = calibrated(model, FOR_SQUARES);
+    const double square = calibrated(model, &FOR_SQUARES);
     const double bins = gonio_i_cell_bins(view->representation, view->cell[row / each]);
     if (s->deviation != NULL) {
-        s->deviation[row] = sqrt(calibrated(model, FOR_BANDS));
+        s->deviation[row] = sqrt(calibrated(model, &FOR_BANDS));
     }
     sums->error += bins * square;
     sums->square += bins * (g * g + square);
