@@ -105,8 +105,9 @@ GONIO_API void gonio_database_options_default(gonio_database_options *options);
 
 /* Reads the materials at the given paths (as gonio_material_open takes them), several at a time.
  * The order of the columns is that of the paths, whatever the number of threads.
- * Errors: those of gonio_material_open and _read_slab; _DATA if a material has no data at all, if
- * two have the same name, or if no cell has data in all of them; _IO for the scratch files. */
+ * Errors: _ARGUMENT for sectors and the relative mapping; those of gonio_material_open and
+ * _read_slab; _DATA if a material has no data at all, if two have the same name, or if no cell has
+ * data in all of them; _IO for the scratch files. */
 GONIO_API gonio_status gonio_database_create(gonio_context *context, const char *const *paths,
                                              size_t count, const gonio_database_options *options,
                                              gonio_database **database);

@@ -531,6 +531,12 @@ gonio_status gonio_database_create(gonio_context *context, const char *const *pa
     if (count == 0) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "no materials given");
     }
+    if (options != NULL && options->representation == GONIO_SECTORED &&
+        options->mapping == GONIO_LOG_RELATIVE) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "the relative mapping is for the full and the bivariate grid, not for "
+                            "sectors (gonio learn --grid full)");
+    }
     gonio_database *made = gonio_i_allocate(context, 1, sizeof *made);
     if (made == NULL) {
         return GONIO_ERROR_MEMORY;

@@ -155,12 +155,42 @@ static gonio_status read_reconstructed(void *self, gonio_context *context, int t
     return GONIO_OK;
 }
 
+/* Of a sectored basis: by the field m + V c, as of a posterior, which is linear between the middles
+ * of sectors. */
+static gonio_status sectored_material(gonio_context *context, const gonio_basis *basis,
+                                      const gonio_reconstruction *reconstruction, const char *name,
+                                      gonio_material **material)
+{
+    const gonio_basis_view view = gonio_basis_describe(basis);
+    gonio_reconstruction with_field = *reconstruction;
+    const size_t values = reconstruction->columns * view.rows;
+    with_field.field = gonio_i_allocate(context, values, sizeof *with_field.field);
+    if (with_field.field == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    for (size_t k = 0; k < values; k++) {
+        const size_t row = k % view.rows;
+        const double *v = view.vectors + row * view.components;
+        const double *c = reconstruction->coefficients + k / view.rows * reconstruction->components;
+        with_field.field[k] = view.mean[row];
+        for (size_t j = 0; j < reconstruction->components; j++) {
+            with_field.field[k] += v[j] * c[j];
+        }
+    }
+    const gonio_status status = gonio_i_field_material(context, basis, &with_field, name, material);
+    free(with_field.field);
+    return status;
+}
+
 gonio_status gonio_reconstruction_material(gonio_context *context, const gonio_basis *basis,
                                            const gonio_reconstruction *reconstruction,
                                            const char *name, gonio_material **material)
 {
     if (reconstruction->field != NULL) {
         return gonio_i_field_material(context, basis, reconstruction, name, material);
+    }
+    if (gonio_basis_describe(basis).representation == GONIO_SECTORED) {
+        return sectored_material(context, basis, reconstruction, name, material);
     }
     const size_t count = reconstruction->columns * reconstruction->components;
     reconstructed *r = gonio_i_allocate(context, 1, sizeof *r + count * sizeof(double));

@@ -28,7 +28,7 @@ enum {
     CHOICES = 2 * ALL_REMAINDERS, /* as a mixture around the columns and as a plain Gaussian */
     MOST_TRIED = 128,             /* readings of a column that the model is chosen by */
     MOST_COLUMNS_TRIED = 8,       /* columns that it is chosen by */
-    MOST_READINGS = 6000,         /* of a column that are not merged */
+    MOST_READINGS = 3000,         /* of a column that are not merged */
 };
 
 static gonio_i_model choice(int k, size_t readings)

@@ -44,7 +44,7 @@ typedef struct gonio_i_column {
 typedef struct gonio_i_posterior_options {
     double smoothness; /* alpha; negative: chosen */
     bool deviation;    /* of every row wanted */
-    size_t most;       /* readings of a column that are not merged (merge.h); 0: 6,000 */
+    size_t most;       /* readings of a column that are not merged (merge.h); 0: 3,000 */
 } gonio_i_posterior_options;
 
 /* What is found; arrays belong to the caller and are filled in. */

@@ -23,6 +23,12 @@ expect_same out.binary one.binary
 error() { "$GONIO" compare "$@" | sed -n '2s/^[^ ]* *\([0-9]*\)\..*/\1/p'; }
 expect_true 'a new paint is within 10 per cent' test "$(error $new out.binary)" -lt 10
 
+# Other methods work on sectors too: cells at random, least squares.
+expect_ok plan b.gonio --method random -n 200 -K 20 -o random.csv
+expect_ok measure random.csv $new -o random.readings.csv
+expect_ok reconstruct b.gonio random.readings.csv -o squares.binary
+expect_true 'least squares on sectors is within 10 per cent' test "$(error $new squares.binary)" -lt 10
+
 # The first of a longer plan are the shorter plan.
 expect_ok plan b.gonio -n 40 -o p40.csv
 directions() { grep -v '^#' "$1" | head -n "$2"; }
@@ -150,7 +156,8 @@ learned='learn atlas:oak-sawn atlas:red-cotton -o x.gonio'
     expect_fail 2 '--mixtures: -5 is too small' $learned --mixtures -5
     expect_fail 2 'invalid numeric value' $learned --mixtures many
     expect_fail 2 'invalid numeric value' $learned --seed one
-    expect_fail 2 'mixtures are for the log mapping' $learned --mixtures 5 --mapping relative
+    expect_fail 2 'mixtures are for the log mapping' $learned --mixtures 5 --mapping relative --grid full
+    expect_fail 2 'the relative mapping is for the full and the bivariate grid' $learned --mapping relative
     expect_fail 2 'mixtures are for the log mapping' $learned --mixtures 5 --no-mean
     expect_fail 2 'mixtures are for the log mapping' $learned --mixtures 5 --grid full
 }
