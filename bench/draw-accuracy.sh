@@ -39,13 +39,13 @@ set grid lw 0.5 lt 1 dt 1 lc rgb '#E3E3E3'
 set border 3
 set tics nomirror
 set xlabel 'directions read, all channels'
-set key top right
+set key top right samplen 3
 do for [k = 1:3] {
     set title word("E6 cube-root log-relative", k)
     set ylabel k < 3 ? 'error, %' : 'error'
-    if (k == 1) { set ytics (1, 1.5, 2, 3, 4, 5, 7, 10, 15, 20) }
-    if (k == 2) { set ytics (2, 3, 5, 7, 10, 15, 20, 30) }
-    if (k == 3) { set ytics (0.05, 0.07, 0.1, 0.15, 0.2, 0.3, 0.5, 1) }
+    if (k == 1) { set yrange [1:40]; set ytics (1, 1.5, 2, 3, 4, 5, 7, 10, 15, 20, 30) }
+    if (k == 2) { unset key; set yrange [1.5:80]; set ytics (1.5, 2, 3, 5, 7, 10, 15, 20, 30, 50, 80) }
+    if (k == 3) { set yrange [0.04:0.8]; set ytics (0.05, 0.07, 0.1, 0.15, 0.2, 0.3, 0.5, 0.8) }
     plot for [b = 0:$blocks - 1] '$data' index b using 1:(column(k + 1)) \
         with linespoints lt b + 1 title columnheader(1)
 }
