@@ -107,7 +107,7 @@ gonio_i_place gonio_i_place_of(gonio_half_difference at)
                            exp(-0.5 * at.theta_h * at.theta_h / (WIDTH * WIDTH))};
 }
 
-static double square_distance(const gonio_i_place *a, const gonio_i_place *b)
+double gonio_i_place_distance(const gonio_i_place *a, const gonio_i_place *b)
 {
     double square = 0.0;
     for (int k = 0; k < 4; k++) {
@@ -118,13 +118,13 @@ static double square_distance(const gonio_i_place *a, const gonio_i_place *b)
 
 double gonio_i_smooth(const gonio_i_place *a, const gonio_i_place *b)
 {
-    return exp(-0.5 * square_distance(a, b));
+    return exp(-0.5 * gonio_i_place_distance(a, b));
 }
 
 double gonio_i_peaked(const gonio_i_place *a, const gonio_i_place *b)
 {
     const double both = a->peak * b->peak;
-    return both > 1e-12 ? both * exp(-2.0 * square_distance(a, b)) : 0.0;
+    return both > 1e-12 ? both * exp(-2.0 * gonio_i_place_distance(a, b)) : 0.0;
 }
 
 double gonio_i_remainder(const gonio_i_place *a, const gonio_i_place *b, double peak)

@@ -52,6 +52,10 @@ typedef struct gonio_i_place {
 } gonio_i_place;
 
 gonio_i_place gonio_i_place_of(gonio_half_difference at);
+
+/* |p - p'|^2. */
+double gonio_i_place_distance(const gonio_i_place *a, const gonio_i_place *b);
+
 /* The two parts of k: k = smooth + peak^2 peaked, for a `peak` of 0 or more. */
 double gonio_i_smooth(const gonio_i_place *a, const gonio_i_place *b);
 double gonio_i_peaked(const gonio_i_place *a, const gonio_i_place *b);

@@ -41,6 +41,16 @@ void gonio_i_mirror(double *c, size_t n)
     }
 }
 
+GONIO_I_VECTORISED double gonio_i_dot(const double *a, const double *b, size_t n)
+{
+    double sum = 0.0;
+#pragma omp simd reduction(+ : sum)
+    for (size_t i = 0; i < n; i++) {
+        sum += a[i] * b[i];
+    }
+    return sum;
+}
+
 gonio_status gonio_i_add_gram_columns(gonio_context *context, const double *a, size_t rows,
                                       size_t n, double *c)
 {

@@ -8,6 +8,9 @@
 
 #include "../core/core.h"
 
+/* a'b of n values. */
+double gonio_i_dot(const double *a, const double *b, size_t n);
+
 /* A'A for A (n columns of `rows` values, column-major) added to the upper triangle of C (n x n). */
 gonio_status gonio_i_add_gram_columns(gonio_context *context, const double *a, size_t rows,
                                       size_t n, double *c);

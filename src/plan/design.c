@@ -22,6 +22,9 @@ static const double PEAK = 8.0;
 /* Variance that may stay out of the covariance between candidates. */
 static const double LEFT = 1e-4;
 
+/* Square of the distance (basis/prior.h) up to which directions are the same. */
+static const double SAME = 1e-6;
+
 enum { MOST_CANDIDATES = 100000, MOST_RANK = 500 };
 
 /* Deviation, log units, of what the model leaves open beside what it knows of, wherever one reads:
@@ -374,15 +377,6 @@ static gonio_status check_options(gonio_context *context, const gonio_basis *bas
     return GONIO_OK;
 }
 
-static bool is_same(const gonio_i_place *a, const gonio_i_place *b)
-{
-    double square = 0.0;
-    for (int k = 0; k < 4; k++) {
-        square += (a->p[k] - b->p[k]) * (a->p[k] - b->p[k]);
-    }
-    return square <= 1e-6;
-}
-
 /* Directions that were read are not read again. */
 static gonio_status leave_out_read(place_list *p)
 {
@@ -397,7 +391,7 @@ static gonio_status leave_out_read(place_list *p)
     for (size_t row = 0; row < p->rows; row++) {
         const gonio_i_place here = gonio_i_place_of(p->at[row]);
         for (size_t i = 0; i < count && p->allowed[row]; i++) {
-            p->allowed[row] = !is_same(&here, &read[i]);
+            p->allowed[row] = gonio_i_place_distance(&here, &read[i]) > SAME;
         }
     }
     free(read);

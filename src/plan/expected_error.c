@@ -63,20 +63,10 @@ static void copy_row(const design *d, size_t row, double *f)
     }
 }
 
-GONIO_I_VECTORISED static double dot(const double *a, const double *b, size_t n)
-{
-    double sum = 0.0;
-#pragma omp simd reduction(+ : sum)
-    for (size_t i = 0; i < n; i++) {
-        sum += a[i] * b[i];
-    }
-    return sum;
-}
-
 static void multiply(const double *matrix, const double *x, size_t n, double *y)
 {
     for (size_t i = 0; i < n; i++) {
-        y[i] = dot(matrix + i * n, x, n);
+        y[i] = gonio_i_dot(matrix + i * n, x, n);
     }
 }
 
@@ -115,8 +105,8 @@ static gonio_status find_block_gains(design *d, size_t first, size_t count, cons
         status = gonio_i_product_transposed(context, a, count, d->k, d->w, d->k, fpw, d->k);
     }
     for (size_t i = 0; i < count && status == GONIO_OK; i++) {
-        d->q[first + i] = dot(a + i * d->k, f + i * d->k, d->k);
-        d->t[first + i] = dot(fpw + i * d->k, a + i * d->k, d->k);
+        d->q[first + i] = gonio_i_dot(a + i * d->k, f + i * d->k, d->k);
+        d->t[first + i] = gonio_i_dot(fpw + i * d->k, a + i * d->k, d->k);
     }
     return status;
 }
@@ -215,13 +205,14 @@ static void update(design *d, size_t row, double sign)
     c->sign = sign;
     copy_row(d, row, f);
     multiply(d->p, f, k, c->g);
-    const double scale = 1.0 / sqrt(fmax(d->problem->variance + sign * dot(f, c->g, k), 1e-12));
+    const double scale =
+        1.0 / sqrt(fmax(d->problem->variance + sign * gonio_i_dot(f, c->g, k), 1e-12));
     for (size_t j = 0; j < k; j++) {
         c->g[j] *= scale;
     }
     multiply(d->w, c->g, k, wg);
     multiply(d->p, wg, k, c->pwg);
-    c->gwg = dot(c->g, wg, k);
+    c->gwg = gonio_i_dot(c->g, wg, k);
     for (size_t i = 0; i < k; i++) {
         for (size_t j = 0; j < k; j++) {
             d->p[i * k + j] -= sign * c->g[i] * c->g[j];
@@ -315,19 +306,19 @@ static void find_remaining(design *d, const size_t *chosen, double *remaining)
 {
     const size_t k = d->k;
     begin(d);
-    remaining[0] = dot(d->p, d->w, k * k);
+    remaining[0] = gonio_i_dot(d->p, d->w, k * k);
     for (size_t n = 0; n < d->problem->count; n++) {
         double *f = d->vector;
         double *g = d->vector + k;
         copy_row(d, chosen[n], f);
         multiply(d->p, f, k, g);
-        const double s = d->problem->variance + dot(f, g, k);
+        const double s = d->problem->variance + gonio_i_dot(f, g, k);
         for (size_t i = 0; i < k; i++) {
             for (size_t j = 0; j < k; j++) {
                 d->p[i * k + j] -= g[i] * g[j] / s;
             }
         }
-        remaining[n + 1] = dot(d->p, d->w, k * k);
+        remaining[n + 1] = gonio_i_dot(d->p, d->w, k * k);
     }
 }
 

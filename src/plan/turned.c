@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../linalg/linalg.h"
+
 /* Values that are kept of all rows: 32 MB. */
 enum { MOST_KEPT = 1 << 22 };
 
@@ -133,16 +135,6 @@ static void rotate(const gonio_i_turned *t, size_t row, size_t from, double *z)
     }
 }
 
-GONIO_I_VECTORISED static double dot(const double *restrict a, const double *restrict b, size_t n)
-{
-    double sum = 0.0;
-#pragma omp simd reduction(+ : sum)
-    for (size_t i = 0; i < n; i++) {
-        sum += a[i] * b[i];
-    }
-    return sum;
-}
-
 /* ---- rows ---- */
 
 static double *place_of(const gonio_i_turned *t, size_t row, double *z)
@@ -185,7 +177,7 @@ void gonio_i_turned_begin(const gonio_i_turned *t, const size_t *rows, size_t co
         if (whole) {
             gonio_i_turned_row(t, rows[i], z);
         } else if (!is_there(t, rows[i], IN_PART)) {
-            z[k - 1] = dot(t->leading, gonio_i_row(t->problem, rows[i]), k);
+            z[k - 1] = gonio_i_dot(t->leading, gonio_i_row(t->problem, rows[i]), k);
             mark(t, rows[i], IN_PART);
             missing[wanted++] = &candidates[i];
         }

@@ -7,6 +7,7 @@
 #include "../core/core.h"
 #include "../core/vector_math.h"
 #include "../direction/grid.h"
+#include "../linalg/linalg.h"
 #include "field.h"
 
 typedef struct reconstructed {
@@ -17,16 +18,6 @@ typedef struct reconstructed {
     double coefficients[]; /* [columns][components] */
 } reconstructed;
 
-GONIO_I_VECTORISED static double dot(size_t n, const double *x, const double *y)
-{
-    double sum = 0.0;
-#pragma omp simd reduction(+ : sum)
-    for (size_t k = 0; k < n; k++) {
-        sum += x[k] * y[k];
-    }
-    return sum;
-}
-
 /* g = m + V c at a cell of the basis. */
 static double log_value(const reconstructed *r, int32_t cell, size_t channel)
 {
@@ -34,7 +25,8 @@ static double log_value(const reconstructed *r, int32_t cell, size_t channel)
     const size_t position = gonio_basis_position(r->basis, cell);
     const size_t row = joint ? GONIO_CHANNELS * position + channel : position;
     const double *c = r->coefficients + (joint ? 0 : channel * r->components);
-    return r->view.mean[row] + dot(r->components, r->view.vectors + row * r->view.components, c);
+    return r->view.mean[row] +
+           gonio_i_dot(r->view.vectors + row * r->view.components, c, r->components);
 }
 
 /* Between 0 and a number whose exponential is finite; 0 for NaN. */
@@ -172,10 +164,7 @@ static gonio_status sectored_material(gonio_context *context, const gonio_basis 
         const size_t row = k % view.rows;
         const double *v = view.vectors + row * view.components;
         const double *c = reconstruction->coefficients + k / view.rows * reconstruction->components;
-        with_field.field[k] = view.mean[row];
-        for (size_t j = 0; j < reconstruction->components; j++) {
-            with_field.field[k] += v[j] * c[j];
-        }
+        with_field.field[k] = view.mean[row] + gonio_i_dot(v, c, reconstruction->components);
     }
     const gonio_status status = gonio_i_field_material(context, basis, &with_field, name, material);
     free(with_field.field);

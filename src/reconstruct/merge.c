@@ -6,12 +6,14 @@
 
 static const double FINEST = 0.05;
 static const double COARSER = 1.2;
+static const double COARSEST = 20.0; /* one cell holds all that have the same signs */
 
 /* Of every variance: it does not average out. */
 static const double LEFT_OPEN = GONIO_I_MODEL_DEVIATION * GONIO_I_MODEL_DEVIATION;
 
 /* A reading and its cell of the lattice. */
 typedef struct member {
+    gonio_i_place place;
     int cell[4];
     int bound;
     int channel;
@@ -39,49 +41,44 @@ static int compare_members(const void *a, const void *b)
     return cells != 0 ? cells : (x->index > y->index) - (x->index < y->index);
 }
 
-/* Members in the order of their cells; returns how many cells there are. */
-static size_t sort_into_cells(const gonio_i_column *column, double pitch, member *members)
+static void list_members(const gonio_i_column *column, member *members)
 {
     for (size_t i = 0; i < column->count; i++) {
         const gonio_i_observation *o = &column->observation[i];
-        const gonio_i_place place = gonio_i_place_of(o->at);
-        members[i] = (member){.bound = o->bound, .channel = o->channel, .index = i};
+        members[i] = (member){
+            .place = gonio_i_place_of(o->at), .bound = o->bound, .channel = o->channel, .index = i};
+    }
+}
+
+/* Puts members in the order of their cells; returns how many cells there are. */
+static size_t sort_into_cells(member *members, size_t count, double pitch)
+{
+    for (size_t i = 0; i < count; i++) {
         for (int k = 0; k < 4; k++) {
-            members[i].cell[k] = (int)floor(place.p[k] / pitch);
+            members[i].cell[k] = (int)floor(members[i].place.p[k] / pitch);
         }
     }
-    qsort(members, column->count, sizeof *members, compare_members);
+    qsort(members, count, sizeof *members, compare_members);
     size_t cells = 0;
-    for (size_t i = 0; i < column->count; i++) {
+    for (size_t i = 0; i < count; i++) {
         cells += i == 0 || compare_cells(&members[i - 1], &members[i]) != 0;
     }
     return cells;
 }
 
-static double square_distance(const double *a, const double *b)
-{
-    double square = 0.0;
-    for (int k = 0; k < 4; k++) {
-        square += (a[k] - b[k]) * (a[k] - b[k]);
-    }
-    return square;
-}
-
 /* The member nearest to the middle of all. */
-static size_t nearest_to_middle(const gonio_i_column *column, const member *members, size_t count)
+static size_t nearest_to_middle(const member *members, size_t count)
 {
-    double middle[4] = {0.0};
+    gonio_i_place middle = {0};
     for (size_t i = 0; i < count; i++) {
-        const gonio_i_place place = gonio_i_place_of(column->observation[members[i].index].at);
         for (int k = 0; k < 4; k++) {
-            middle[k] += place.p[k] / (double)count;
+            middle.p[k] += members[i].place.p[k] / (double)count;
         }
     }
     size_t best = 0;
     double least = INFINITY;
     for (size_t i = 0; i < count; i++) {
-        const gonio_i_place place = gonio_i_place_of(column->observation[members[i].index].at);
-        const double square = square_distance(place.p, middle);
+        const double square = gonio_i_place_distance(&members[i].place, &middle);
         if (square < least) {
             least = square;
             best = members[i].index;
@@ -93,7 +90,7 @@ static size_t nearest_to_middle(const gonio_i_column *column, const member *memb
 static gonio_i_observation merge_cell(const gonio_i_column *column, const member *members,
                                       size_t count)
 {
-    gonio_i_observation one = column->observation[nearest_to_middle(column, members, count)];
+    gonio_i_observation one = column->observation[nearest_to_middle(members, count)];
     double weights = 0.0;
     double sum = 0.0;
     double noise = 0.0;
@@ -128,11 +125,12 @@ gonio_status gonio_i_merge(gonio_context *context, const gonio_i_column *column,
     if (members == NULL) {
         return GONIO_ERROR_MEMORY;
     }
+    list_members(column, members);
     double pitch = FINEST;
-    size_t cells = sort_into_cells(column, pitch, members);
-    while (cells > most) {
+    size_t cells = sort_into_cells(members, column->count, pitch);
+    while (cells > most && pitch < COARSEST) {
         pitch *= COARSER;
-        cells = sort_into_cells(column, pitch, members);
+        cells = sort_into_cells(members, column->count, pitch);
     }
     merged->observation = gonio_i_allocate(context, cells, sizeof *merged->observation);
     if (merged->observation != NULL) {

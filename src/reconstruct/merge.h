@@ -13,7 +13,8 @@
 
 #include "posterior.h"
 
-/* merged: a new column of at most `most` observations; merged->observation belongs to the caller.
+/* merged: a new column of at most `most` observations (of a few dozen if that is less: bounds and
+ * channels stay apart); merged->observation belongs to the caller.
  * Errors: _MEMORY. */
 gonio_status gonio_i_merge(gonio_context *context, const gonio_i_column *column, size_t most,
                            gonio_i_column *merged);
