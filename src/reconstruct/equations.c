@@ -380,7 +380,7 @@ static bool judge_readings(gonio_i_gaussian *e, const judgement *j)
     return found > 0;
 }
 
-gonio_status gonio_i_gaussian_settle(gonio_i_gaussian *e, size_t *outlying)
+gonio_status gonio_i_gaussian_settle(gonio_i_gaussian *e, bool doubt, size_t *outlying)
 {
     judgement j = {gonio_i_allocate(e->context, e->n, sizeof *j.difference),
                    gonio_i_allocate(e->context, e->n, sizeof *j.variance),
@@ -395,7 +395,7 @@ gonio_status gonio_i_gaussian_settle(gonio_i_gaussian *e, size_t *outlying)
         status = gonio_i_gaussian_leave_one_out(e, j.difference, j.variance);
         if (status == GONIO_OK) {
             const bool bounds = judge_bounds(e, &j);
-            changed = judge_readings(e, &j) || bounds;
+            changed = (doubt && judge_readings(e, &j)) || bounds;
             status = changed ? gonio_i_gaussian_solve(e, &e->model) : GONIO_OK;
         }
     }

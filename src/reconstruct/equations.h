@@ -58,9 +58,9 @@ gonio_status gonio_i_gaussian_solve(gonio_i_gaussian *gaussian, const gonio_i_mo
 gonio_status gonio_i_gaussian_leave_one_out(const gonio_i_gaussian *gaussian, double *difference,
                                             double *variance);
 
-/* Takes out bounds that hold anyway and gives readings that the others contradict a variance to
- * match, until nothing changes. outlying: how many of the latter. */
-gonio_status gonio_i_gaussian_settle(gonio_i_gaussian *gaussian, size_t *outlying);
+/* Takes out bounds that hold anyway and, if there is doubt, gives readings that the others
+ * contradict a variance to match, until nothing changes. outlying: how many of the latter. */
+gonio_status gonio_i_gaussian_settle(gonio_i_gaussian *gaussian, bool doubt, size_t *outlying);
 
 /* Sum over the readings of (reading - what the others say)^2 / its variance; and sets misfit to its
  * mean, held towards 1 by `PRIOR_READINGS` readings that are as expected: a material that surprises

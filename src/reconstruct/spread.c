@@ -298,8 +298,40 @@ gonio_status gonio_i_spread_variance(const gonio_i_gaussian *gaussian, const dou
 /* Whether a column was read where the one before it was: then k is the same. */
 static bool same_places(const gonio_i_spread_column *a, const gonio_i_spread_column *b)
 {
-    return a->n == b->n && a->peak == b->peak &&
-           (a->n == 0 || memcmp(a->place, b->place, a->n * sizeof *a->place) == 0);
+    return a->n == b->n && (a->n == 0 || memcmp(a->place, b->place, a->n * sizeof *a->place) == 0);
+}
+
+/* What all columns read at the same places have in common in a row. */
+typedef struct row_terms {
+    double *f;      /* [K] */
+    double *smooth; /* [n] */
+    double *peaked; /* [n] */
+} row_terms;
+
+static void fill_terms(const gonio_i_prior *prior, const gonio_i_spread_column *c, size_t row,
+                       const row_terms *t)
+{
+    int channel = 0;
+    const gonio_i_place here =
+        gonio_i_place_of(gonio_i_row_coordinates(&prior->view, row, &channel));
+    gonio_i_prior_row(prior, row, t->f);
+    for (size_t i = 0; i < c->n; i++) {
+        t->smooth[i] = gonio_i_smooth(&here, &c->place[i]);
+        t->peaked[i] = gonio_i_peaked(&here, &c->place[i]);
+    }
+}
+
+static void fill_row(const gonio_i_prior *prior, const gonio_i_spread_column *columns, size_t count,
+                     size_t row, const row_terms *t)
+{
+    for (size_t j = 0; j < count; j++) {
+        const gonio_i_spread_column *c = &columns[j];
+        if (j == 0 || !same_places(c, c - 1)) {
+            fill_terms(prior, c, row, t);
+        }
+        c->field[row] = prior->view.mean[row] + dot(t->f, c->c, prior->components) +
+                        dot(t->smooth, c->smooth, c->n) + dot(t->peaked, c->peaked, c->n);
+    }
 }
 
 gonio_status gonio_i_spread_fields(gonio_context *context, const gonio_i_prior *prior,
@@ -312,23 +344,20 @@ gonio_status gonio_i_spread_fields(gonio_context *context, const gonio_i_prior *
     }
 #pragma omp parallel num_threads(gonio_context_threads(context))
     {
-        double *t = gonio_i_allocate(context, prior->components + most, sizeof *t);
-        if (t == NULL) {
+        double *values = gonio_i_allocate(context, prior->components + 2 * most, sizeof *values);
+        if (values == NULL) {
 #pragma omp atomic write
             failed = true;
         }
 #pragma omp for schedule(static)
         for (size_t row = 0; row < prior->view.rows; row++) {
-            for (size_t j = 0; j < count && t != NULL; j++) {
-                const gonio_i_spread_column *c = &columns[j];
-                if (j == 0 || !same_places(c, c - 1)) {
-                    fill_t(prior, c->place, c->peak, c->n, row, t);
-                }
-                c->field[row] = prior->view.mean[row] + dot(t, c->c, prior->components) +
-                                dot(t + prior->components, c->weight, c->n);
+            if (values != NULL) {
+                const row_terms t = {values, values + prior->components,
+                                     values + prior->components + most};
+                fill_row(prior, columns, count, row, &t);
             }
         }
-        free(t);
+        free(values);
     }
     return failed ? GONIO_ERROR_MEMORY : GONIO_OK;
 }

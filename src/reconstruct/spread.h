@@ -14,15 +14,15 @@ gonio_status gonio_i_spread_variance(const gonio_i_gaussian *gaussian, const dou
 
 /* The field of a column: what it is made of. */
 typedef struct gonio_i_spread_column {
-    double peak;
     size_t n;             /* readings whose smoothness counts */
     gonio_i_place *place; /* [n] */
-    double *weight;       /* [n]: alpha^2 S^-1 (y - F z) */
+    double *smooth;       /* [n]: alpha^2 S^-1 (y - F z), the mean over the models */
+    double *peaked;       /* [n]: alpha^2 peak^2 S^-1 (y - F z), the same */
     const double *c;      /* [K] */
     double *field;        /* [rows]: to be filled */
 } gonio_i_spread_column;
 
-/* g = m + f c + k weight in every row, of all columns. */
+/* g = m + f c + k's two parts by their weights in every row, of all columns. */
 gonio_status gonio_i_spread_fields(gonio_context *context, const gonio_i_prior *prior,
                                    const gonio_i_spread_column *columns, size_t count);
 
