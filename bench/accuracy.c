@@ -6,11 +6,12 @@
  * of the materials to learn from, plans, reads the test materials at single directions,
  * reconstructs and compares. Prints a line of CSV for each material and number of readings. A split
  * that does not say what to learn from learns from the test materials of all others: classes.json
- * leaves out a class of materials at a time. `adaptive` plans the first N only; the directions that
- * follow are those of gonio_plan_next for each material. Other methods are given the basis that
- * they were published with (condition, random: the paper's, 45 components; nielsen, frost: the full
- * grid, relative to the median, separate channels), a plan for every N, and no more components than
- * N. */
+ * leaves out a class of materials at a time, unlike.json learns from one database and tests on
+ * another (atlas:NAME is a built-in material). `adaptive` plans the first N only; the directions
+ * that follow are those of gonio_plan_next for each material. Other methods are given the basis
+ * that they were published with (condition, random: the paper's, 45 components; nielsen, frost: the
+ * full grid, relative to the median, separate channels), a plan for every N, and no more components
+ * than N. */
 #include <gonio/gonio.h>
 
 #include <jansson.h>
@@ -46,6 +47,9 @@ static char *path_of(const char *folder, const char *name)
 {
     static const char *const endings[] = {".h5", ".binary"};
     char *path = NULL;
+    if (strncmp(name, "atlas:", 6) == 0) {
+        return strdup(name);
+    }
     for (int k = 0; k < 2; k++) {
         if (asprintf(&path, "%s/%s%s", folder, name, endings[k]) > 0 && access(path, R_OK) == 0) {
             return path;
