@@ -9,7 +9,7 @@
 
 #include "../unit/made_basis.h"
 #include "core/random.h"
-#include "reconstruct/equations.h"
+#include "reconstruct/models.h"
 
 enum { MOST = 60 };
 
@@ -497,6 +497,84 @@ static void test_a_reading_ten_times_too_large(void **state)
     }
 }
 
+/* ---- models ---- */
+
+/* The reconstruction is the mean over the models, and nothing else. */
+static void test_the_mean_over_the_models(void **state)
+{
+    (void)state;
+    enum { N = 30 };
+    drawn d = draw(40, 0.05);
+    const gonio_i_column column = {N, d.reading};
+    gonio_i_models models;
+    for (size_t i = 0, taken = 0; taken < N; i++) {
+        assert_in_range(i, 0, MOST - 1);
+        if (d.reading[i].at.theta_h > 0.1) { /* where a remainder has no peak */
+            d.reading[taken++] = d.reading[i];
+        }
+    }
+    assert_int_equal(gonio_i_models_weigh(context, gaussian, &column, 1, &models), GONIO_OK);
+    assert_in_range(models.count, 2, GONIO_I_MOST_MODELS);
+    found mixed = find(gaussian, d.reading, N, -1.0);
+    found mean = {.field = calloc(gaussian->view.rows, sizeof *mean.field)};
+    double sum = 0.0;
+    bool best = false;
+    for (size_t k = 0; k < models.count; k++) {
+        const gonio_i_model *m = &models.model[k];
+        found one = find(gaussian, d.reading, N, m->alpha);
+        for (size_t row = 0; row < gaussian->view.rows; row++) {
+            mean.field[row] += models.weight[k] * one.field[row];
+        }
+        sum += models.weight[k];
+        best = best || (m->alpha == models.best.alpha && m->h == models.best.h);
+        drop(&one);
+    }
+    assert_close(sum, 1.0, 1e-12);
+    assert_true(best);
+    assert_true(difference(&mean, &mixed) < 1e-9);
+    drop(&mean);
+    drop(&mixed);
+    free(d.z);
+}
+
+/* A lobe around the mirror direction that no material of the database has. */
+static double strange_at(gonio_half_difference at)
+{
+    return 4.0 * exp(-0.5 * pow(at.theta_h / 0.2, 2.0));
+}
+
+/* Of such a material the readings in the lobe are right, and are believed. */
+static void test_an_unusual_material(void **state)
+{
+    (void)state;
+    enum { N = 40 };
+    for (uint64_t seed = 50; seed < 54; seed++) {
+        drawn d = draw(seed, 0.02);
+        double square = 0.0;
+        size_t unusual = 0;
+        size_t rows = 0;
+        for (size_t i = 0; i < N; i++) {
+            const double strange = strange_at(d.reading[i].at);
+            d.reading[i].g += strange;
+            unusual += strange > 0.5;
+        }
+        assert_in_range(unusual, 2, N);
+        found r = find(gaussian, d.reading, N, -1.0);
+        for (size_t row = 0; row < gaussian->view.rows; row++) {
+            int channel = 0;
+            const gonio_half_difference at =
+                gonio_i_row_coordinates(&gaussian->view, row, &channel);
+            const double error = r.field[row] - truth_at(d.z, at) - strange_at(at);
+            square += strange_at(at) > 0.5 ? error * error : 0.0;
+            rows += strange_at(at) > 0.5;
+        }
+        assert_int_equal(r.posterior.outlying, 0);
+        assert_true(sqrt(square / (double)rows) < 0.3); /* set aside: 0.41 of the last one */
+        drop(&r);
+        free(d.z);
+    }
+}
+
 /* ---- from readings to a material ---- */
 
 static gonio_readings *read_lines(const char *folder, const char *const *lines, size_t count)
@@ -626,6 +704,8 @@ int main(void)
         cmocka_unit_test(test_deviations_shrink),
         cmocka_unit_test(test_bounds),
         cmocka_unit_test(test_a_reading_ten_times_too_large),
+        cmocka_unit_test(test_the_mean_over_the_models),
+        cmocka_unit_test(test_an_unusual_material),
         cmocka_unit_test(test_what_comes_out_is_sane),
         cmocka_unit_test(test_saturation),
         cmocka_unit_test(test_what_is_refused),
