@@ -12,9 +12,10 @@
  *     q_j ~ share_j exp(-|L^-1 (y - a F z_j)|^2 / 2),   S = L L',   z = a sum q_j z_j,
  *     c = z + h^2 F' S^-1 (y - F z),   g(x) = m(x) + f(x) c + alpha^2 k(x, .) S^-1 (y - F z).
  *
- * h, alpha and k's peak are chosen by leaving readings out one at a time, all columns together. A
- * reading that the others contradict by more than `OUTLYING` deviations counts with a variance to
- * match. */
+ * The field is the mean over models of different h, alpha and peak of k, weighed by leaving
+ * readings out one at a time, all columns together (models.h); deviations are the likeliest
+ * model's. A reading that the others contradict by more than `OUTLYING` deviations counts with a
+ * variance to match. */
 #ifndef GONIO_POSTERIOR_H
 #define GONIO_POSTERIOR_H
 
@@ -42,7 +43,7 @@ typedef struct gonio_i_column {
 } gonio_i_column;
 
 typedef struct gonio_i_posterior_options {
-    double smoothness; /* alpha; negative: chosen */
+    double smoothness; /* alpha; negative: a mean over models */
     bool deviation;    /* of every row wanted */
     size_t most;       /* readings of a column that are not merged (merge.h); 0: 3,000 */
 } gonio_i_posterior_options;
@@ -52,7 +53,7 @@ typedef struct gonio_i_posterior {
     double *coefficients; /* [columns][K], of V */
     double *field;        /* [columns][rows]: g */
     double *deviation;    /* [columns][rows] of g, or NULL */
-    double smoothness;    /* alpha */
+    double smoothness;    /* alpha of the likeliest model */
     double predicted;     /* of E6, per cent */
     double surprise;      /* root mean square of (reading - what the others say) / its deviation */
     double *covariance;   /* [K][K], of z, the mean over the columns; or NULL */
