@@ -283,6 +283,9 @@ static bool is_missing(const char *cell)
     return *cell == '\0' || strcasecmp(cell, "na") == 0 || strcasecmp(cell, "nan") == 0;
 }
 
+/* 1/sr: far above any peak, in any unit, and far below where squares overflow. */
+static const double MOST_VALUE = 1e30;
+
 /* NaN for a column that there is not (-1) and for an empty cell. */
 static gonio_status read_value(gonio_context *context, const gonio_readings *readings, size_t row,
                                int column, const gonio_readings_options *options, double *value)
@@ -294,6 +297,10 @@ static gonio_status read_value(gonio_context *context, const gonio_readings *rea
     if (!gonio_i_csv_number(readings->csv, row, (size_t)column, value) || !isfinite(*value)) {
         return bad_cell(context, readings, row, column, GONIO_ERROR_FORMAT,
                         "is not a finite number (leave the cell empty where nothing was read)");
+    }
+    if (*value > MOST_VALUE) {
+        return bad_cell(context, readings, row, column, GONIO_ERROR_DATA,
+                        "is larger than any BRDF (leave the cell empty where nothing was read)");
     }
     if (*value < 0.0 && !options->negative_to_zero) {
         return bad_cell(context, readings, row, column, GONIO_ERROR_DATA,

@@ -113,6 +113,7 @@ value 0 1 "channel '0' is no channel"
 value R bright "R_per_sr 'bright' is not a finite number (leave the cell empty"
 value R inf "R_per_sr 'inf' is not a finite number"
 value R 1e999 "R_per_sr '1e999' is not a finite number"
+value R 1e300 "R_per_sr '1e300' is larger than any BRDF"
 value R 1.5.2 "R_per_sr '1.5.2' is not a finite number"
 
 table negative.csv "$header" "$first" '11,0,20,0,R,-0.5,1,1' "$third"
