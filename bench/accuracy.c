@@ -6,12 +6,12 @@
  * of the materials to learn from, plans, reads the test materials at single directions,
  * reconstructs and compares. Prints a line of CSV for each material and number of readings. A split
  * that does not say what to learn from learns from the test materials of all others: classes.json
- * leaves out a class of materials at a time, unlike.json learns from one database and tests on
- * another (atlas:NAME is a built-in material). `adaptive` plans the first N only; the directions
- * that follow are those of gonio_plan_next for each material. Other methods are given the basis
- * that they were published with (condition, random: the paper's, 45 components; nielsen, frost: the
- * full grid, relative to the median, separate channels), a plan for every N, and no more components
- * than N. */
+ * leaves out a class of materials at a time; unlike.json learns from one database and tests on
+ * another (atlas:NAME is a built-in material), or learns from few materials. `adaptive` plans the
+ * first N only; the directions that follow are those of gonio_plan_next for each material. Other
+ * methods are given the basis that they were published with (condition, random: the paper's, 45
+ * components; nielsen, frost: the full grid, relative to the median, separate channels), a plan for
+ * every N, and no more components than N. */
 #include <gonio/gonio.h>
 
 #include <jansson.h>
