@@ -8,27 +8,24 @@
 
 #include "../linalg/linalg.h"
 #include "expected_error.h"
-#include "remainder.h"
 
-/* What a plan supposes beside what the basis says: the deviation of a reading, log units (noise,
- * and what the model leaves open around it), and how much the database has never seen. By errors of
- * left-out materials (docs/accuracy.md): with less noise plans trust single readings too much; with
- * more of a remainder materials like the database's lose at ten readings, with less others lose at
- * forty. Listed candidates are an instrument's own directions, with peaks between them. */
-typedef struct supposition {
-    double noise;
-    gonio_i_remainder_size remainder;
-    bool late; /* whether the remainder counts only once GONIO_I_DESIGN_LATE readings are chosen */
-} supposition;
+/* Deviation of a reading, log units: noise, and what the model leaves open around it; by errors of
+ * left-out materials: with 0.03 or 0.05 plans trust single readings too much. Less where a
+ * remainder is part of the covariance. */
+static const double NOISE = 0.08;
+static const double NOISE_BESIDE_REMAINDER = 0.05;
 
-static const supposition ANYWHERE = {0.08, {0.07, 5.0, 60}, true};
-static const supposition AMONG_CANDIDATES = {0.05, {0.2, 8.0, 200}, false};
-static const supposition BESIDE_READINGS = {0.08, {0.0, 0.0, 0}, false};
+/* Of the remainder that the database has never seen, log units, between candidates. */
+static const double SMOOTHNESS = 0.2;
+static const double PEAK = 8.0;
+
+/* Variance that may stay out of the covariance between candidates. */
+static const double LEFT = 1e-4;
 
 /* Square of the distance (basis/prior.h) up to which directions are the same. */
 static const double SAME = 1e-6;
 
-enum { MOST_CANDIDATES = 100000 };
+enum { MOST_CANDIDATES = 100000, MOST_RANK = 500 };
 
 /* Deviation, log units, of what the model leaves open beside what it knows of, wherever one reads:
  * by it the expected error is that of left-out materials (docs/accuracy.md). */
@@ -38,14 +35,14 @@ typedef struct place_list {
     gonio_context *context;
     gonio_i_prior *prior;
     size_t rows;
-    size_t components; /* of f below: K, and the remainder's unless something is known */
+    size_t components; /* of f below: K, or as many as there are candidates */
     float *f;
     double *mean; /* [rows] */
     double *loss;
     bool *allowed;
     gonio_half_difference *at;
     const gonio_i_known *known; /* NULL: nothing */
-    const supposition *supposed;
+    double noise;
 } place_list;
 
 static void to_float(const double *from, size_t count, float *to)
@@ -53,6 +50,16 @@ static void to_float(const double *from, size_t count, float *to)
     for (size_t k = 0; k < count; k++) {
         to[k] = (float)from[k];
     }
+}
+
+GONIO_I_VECTORISED static double dot(const float *a, const float *b, size_t n)
+{
+    double sum = 0.0;
+#pragma omp simd reduction(+ : sum)
+    for (size_t i = 0; i < n; i++) {
+        sum += (double)a[i] * (double)b[i];
+    }
+    return sum;
 }
 
 static void free_places(place_list *p)
@@ -103,14 +110,15 @@ static gonio_status list_rows(place_list *p, gonio_metric metric)
     const gonio_basis_view *view = &p->prior->view;
     const size_t each = view->channels == GONIO_JOINT ? GONIO_CHANNELS : 1;
     p->rows = view->rows;
-    double *f = gonio_i_allocate(p->context, p->prior->components, sizeof *f);
+    p->components = p->prior->components;
+    double *f = gonio_i_allocate(p->context, p->components, sizeof *f);
     const gonio_status status = f == NULL ? GONIO_ERROR_MEMORY : allocate_places(p);
     for (size_t row = 0; row < p->rows && status == GONIO_OK; row++) {
         int channel = 0;
         const double bins = gonio_i_cell_bins(view->representation, view->cell[row / each]);
         p->at[row] = gonio_i_row_coordinates(view, row, &channel);
         gonio_i_prior_row(p->prior, row, f);
-        to_float(f, p->prior->components, p->f + row * p->components);
+        to_float(f, p->components, p->f + row * p->components);
         p->mean[row] = view->mean[row];
         p->allowed[row] = bins > 0.0;
         p->loss[row] = bins * metric_weight(metric, p->at[row], p->mean[row], channel);
@@ -119,33 +127,85 @@ static gonio_status list_rows(place_list *p, gonio_metric metric)
     return status;
 }
 
+/* Given    f[rows][K] and places of candidates, whose covariance is C = f f' + alpha^2 k
+ * Returned p->f[rows][p->components], p->f p->f' = C to within LEFT of every variance
+ * Method   Cholesky with pivoting on the largest variance left (Higham 2002, sec. 10.3); columns of
+ *          C are made as they are needed */
+static void factorise(place_list *p, const float *f, const gonio_i_place *place, double *left)
+{
+    const size_t most = p->components;
+    const size_t k = p->prior->components;
+    for (size_t i = 0; i < p->rows; i++) {
+        left[i] = dot(f + i * k, f + i * k, k) +
+                  SMOOTHNESS * SMOOTHNESS * gonio_i_remainder(&place[i], &place[i], PEAK);
+    }
+    size_t rank = 0;
+    for (; rank < most; rank++) {
+        size_t pivot = 0;
+        for (size_t i = 1; i < p->rows; i++) {
+            pivot = left[i] > left[pivot] ? i : pivot;
+        }
+        if (left[pivot] < LEFT) {
+            break;
+        }
+        const double root = sqrt(left[pivot]);
+#pragma omp parallel for schedule(static) num_threads(gonio_context_threads(p->context))
+        for (size_t i = 0; i < p->rows; i++) {
+            const double c =
+                dot(f + i * k, f + pivot * k, k) +
+                SMOOTHNESS * SMOOTHNESS * gonio_i_remainder(&place[i], &place[pivot], PEAK);
+            const double known = dot(p->f + i * most, p->f + pivot * most, rank);
+            const float entry = (float)((c - known) / root);
+            p->f[i * most + rank] = entry;
+            left[i] -= (double)entry * (double)entry;
+        }
+        left[pivot] = 0.0;
+    }
+}
+
+static gonio_status factorise_candidates(place_list *p, const float *f)
+{
+    double *left = gonio_i_allocate(p->context, p->rows, sizeof *left);
+    gonio_i_place *place = gonio_i_allocate(p->context, p->rows, sizeof *place);
+    if (left == NULL || place == NULL) {
+        free(left);
+        free(place);
+        return GONIO_ERROR_MEMORY;
+    }
+    for (size_t i = 0; i < p->rows; i++) {
+        place[i] = gonio_i_place_of(p->at[i]);
+    }
+    factorise(p, f, place, left);
+    free(left);
+    free(place);
+    return GONIO_OK;
+}
+
 static gonio_status list_candidates(place_list *p, const gonio_plan_options *options)
 {
+    const size_t most = p->known != NULL ? p->prior->components : MOST_RANK;
     p->rows = options->candidate_count;
-    double *f = gonio_i_allocate(p->context, p->prior->components, sizeof *f);
-    const gonio_status status = f == NULL ? GONIO_ERROR_MEMORY : allocate_places(p);
+    p->components = p->known != NULL || p->rows > most ? most : p->rows;
+    const size_t components = p->prior->components;
+    float *f = gonio_i_allocate(p->context, p->rows * components, sizeof *f);
+    double *exact = gonio_i_allocate(p->context, components, sizeof *exact);
+    gonio_status status = f == NULL || exact == NULL ? GONIO_ERROR_MEMORY : allocate_places(p);
     for (size_t k = 0; k < p->rows && status == GONIO_OK; k++) {
         p->at[k] = gonio_half_difference_from_pair(options->candidates[k]);
-        gonio_i_prior_at(p->prior, p->at[k], 0, &p->mean[k], f);
-        to_float(f, p->prior->components, p->f + k * p->components);
+        gonio_i_prior_at(p->prior, p->at[k], 0, &p->mean[k], exact);
+        to_float(exact, components, f + k * components);
         p->allowed[k] = true;
         p->loss[k] = metric_weight(options->metric, p->at[k], p->mean[k], 0);
     }
+    if (status == GONIO_OK && p->known != NULL) {
+        memcpy(p->f, f, p->rows * p->components * sizeof *f);
+    } else if (status == GONIO_OK) {
+        p->noise = NOISE_BESIDE_REMAINDER;
+        status = factorise_candidates(p, f);
+    }
     free(f);
+    free(exact);
     return status;
-}
-
-static gonio_status list_places(place_list *p, const gonio_plan_options *options)
-{
-    const size_t known = p->prior->components;
-    const bool needed = !p->supposed->late || options->count > GONIO_I_DESIGN_LATE;
-    p->components = known + (needed ? p->supposed->remainder.columns : 0);
-    const gonio_status status =
-        options->candidates != NULL ? list_candidates(p, options) : list_rows(p, options->metric);
-    return status == GONIO_OK && p->components > known
-               ? gonio_i_remainder_columns(p->context, &p->supposed->remainder, p->at, p->allowed,
-                                           p->rows, p->components, p->f + known)
-               : status;
 }
 
 /* Mean over the measured columns of the database of 1/|g|, by the weights of the rows. */
@@ -270,17 +330,16 @@ static gonio_status fill_plan(const place_list *p, const gonio_plan_options *opt
     size_t *chosen = gonio_i_allocate(p->context, plan->count, sizeof *chosen);
     double *remaining = gonio_i_allocate(p->context, plan->count + 1, sizeof *remaining);
     plan->expected = gonio_i_allocate(p->context, plan->count, sizeof *plan->expected);
-    const gonio_i_design_problem problem = {
-        .context = p->context,
-        .f = p->f,
-        .rows = p->rows,
-        .components = p->components,
-        .from_first = p->supposed->late ? p->prior->components : p->components,
-        .covariance = p->known != NULL ? p->known->covariance : NULL,
-        .loss = p->loss,
-        .allowed = p->allowed,
-        .variance = p->supposed->noise * p->supposed->noise,
-        .count = plan->count};
+    const gonio_i_design_problem problem = {.context = p->context,
+                                            .f = p->f,
+                                            .rows = p->rows,
+                                            .components = p->components,
+                                            .covariance =
+                                                p->known != NULL ? p->known->covariance : NULL,
+                                            .loss = p->loss,
+                                            .allowed = p->allowed,
+                                            .variance = p->noise * p->noise,
+                                            .count = plan->count};
     const bool done = chosen != NULL && remaining != NULL && plan->expected != NULL;
     gonio_status status = done ? GONIO_OK : GONIO_ERROR_MEMORY;
     if (status == GONIO_OK) {
@@ -343,19 +402,15 @@ static gonio_status make_plan(gonio_context *context, const gonio_basis *basis,
                               const gonio_plan_options *options, const gonio_i_known *known,
                               gonio_plan **plan)
 {
-    place_list p = {.context = context, .known = known, .supposed = &ANYWHERE};
-    if (known != NULL) {
-        p.supposed = &BESIDE_READINGS;
-    } else if (options->candidates != NULL) {
-        p.supposed = &AMONG_CANDIDATES;
-    }
+    place_list p = {.context = context, .known = known, .noise = NOISE};
     gonio_plan *made = NULL;
     gonio_status status = check_options(context, basis, options);
     if (status == GONIO_OK) {
         status = gonio_i_prior_create(context, basis, &p.prior);
     }
     if (status == GONIO_OK) {
-        status = list_places(&p, options);
+        status = options->candidates != NULL ? list_candidates(&p, options)
+                                             : list_rows(&p, options->metric);
     }
     if (status == GONIO_OK && known != NULL) {
         status = leave_out_read(&p);

@@ -9,7 +9,6 @@
  *           with exact updates: Fedorov 1972). Each reading is the best next one. After 5, 10, 20,
  *           40 ... readings those of the last block are exchanged for better ones, one after
  *           another, until none changes: so the first 5, 10, 20 ... of a plan are good plans too.
- *           Some components may count only from the 21st reading on.
  * Accuracy  Rank-one updates of q and t in double precision, computed anew from P after each block
  *           of 20 or more.
  * Speed     Rows are single precision and updates of q and t wait until gains are asked for: an
@@ -18,7 +17,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "../linalg/linalg.h"
 
@@ -41,10 +39,9 @@ typedef struct change {
 typedef struct design {
     const gonio_i_design_problem *problem;
     size_t rows;
-    size_t k;       /* components that count so far */
+    size_t k;
     double *p;      /* [k][k]: P */
     double *w;      /* [k][k]: W */
-    double *half;   /* [k][k]: T, lower triangular, of W = T + T': f W f' = 2 f T f' */
     double *q;      /* [rows] */
     double *t;      /* [rows] */
     double *vector; /* [2 + 2 MOST_WAITING][k]: f, W g, and what the changes hold */
@@ -56,7 +53,7 @@ typedef struct design {
 
 static const float *row_of(const design *d, size_t row)
 {
-    return d->problem->f + row * d->problem->components;
+    return d->problem->f + row * d->k;
 }
 
 static void copy_row(const design *d, size_t row, double *f)
@@ -73,13 +70,12 @@ static void multiply(const double *matrix, const double *x, size_t n, double *y)
     }
 }
 
-/* W = F' diag(w) F, and T. */
+/* W = F' diag(w) F. */
 static gonio_status find_loss(design *d)
 {
     gonio_context *context = d->problem->context;
     double *block = gonio_i_allocate(context, BLOCK_ROWS * d->k, sizeof *block);
     gonio_status status = block == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
-    memset(d->w, 0, d->k * d->k * sizeof *d->w);
     for (size_t first = 0; first < d->rows && status == GONIO_OK; first += BLOCK_ROWS) {
         const size_t count = d->rows - first < BLOCK_ROWS ? d->rows - first : BLOCK_ROWS;
         for (size_t b = 0; b < count; b++) {
@@ -91,19 +87,13 @@ static gonio_status find_loss(design *d)
         status = gonio_i_add_gram_rows(context, block, count, d->k, d->w);
     }
     gonio_i_mirror(d->w, d->k);
-    for (size_t i = 0; i < d->k; i++) {
-        for (size_t j = 0; j < d->k; j++) {
-            const double share = j < i ? 1.0 : j == i ? 0.5 : 0.0;
-            d->half[i * d->k + j] = share * d->w[i * d->k + j];
-        }
-    }
     free(block);
     return status;
 }
 
-/* q and t of `count` rows, f[count][k]; fp, fpt: scratch of that size. */
+/* q and t of `count` rows, f[count][k]; fp, fpw: scratch of that size. */
 static gonio_status find_block_gains(design *d, size_t first, size_t count, const double *f,
-                                     double *fp, double *fpt)
+                                     double *fp, double *fpw)
 {
     gonio_context *context = d->problem->context;
     const double *a = d->plain ? f : fp;
@@ -112,12 +102,11 @@ static gonio_status find_block_gains(design *d, size_t first, size_t count, cons
         status = gonio_i_product_transposed(context, f, count, d->k, d->p, d->k, fp, d->k);
     }
     if (status == GONIO_OK) {
-        memcpy(fpt, a, count * d->k * sizeof *a);
-        gonio_i_multiply_lower(fpt, count, d->k, d->half);
+        status = gonio_i_product_transposed(context, a, count, d->k, d->w, d->k, fpw, d->k);
     }
     for (size_t i = 0; i < count && status == GONIO_OK; i++) {
         d->q[first + i] = gonio_i_dot(a + i * d->k, f + i * d->k, d->k);
-        d->t[first + i] = 2.0 * gonio_i_dot(fpt + i * d->k, a + i * d->k, d->k);
+        d->t[first + i] = gonio_i_dot(fpw + i * d->k, a + i * d->k, d->k);
     }
     return status;
 }
@@ -250,36 +239,14 @@ static size_t find_best(design *d)
     return best;
 }
 
-/* Nothing was read yet, and so many components count. */
-static gonio_status begin(design *d, size_t components)
+static void begin(design *d)
 {
-    const bool same = d->k == components; /* then W is there */
-    const size_t k = components;
+    const size_t k = d->k;
     const double *given = d->problem->covariance;
     for (size_t i = 0; i < k * k; i++) {
         d->p[i] = given != NULL ? given[i] : (double)(i % (k + 1) == 0);
     }
     d->plain = given == NULL;
-    d->waits = 0;
-    d->k = k;
-    return same ? GONIO_OK : find_loss(d);
-}
-
-/* P after a reading; q and t do not follow. */
-static void read_row(design *d, size_t row)
-{
-    const size_t k = d->k;
-    double *f = d->vector;
-    double *g = d->vector + k;
-    copy_row(d, row, f);
-    multiply(d->p, f, k, g);
-    const double s = d->problem->variance + gonio_i_dot(f, g, k);
-    for (size_t i = 0; i < k; i++) {
-        for (size_t j = 0; j < k; j++) {
-            d->p[i * k + j] -= g[i] * g[j] / s;
-        }
-    }
-    d->plain = false;
 }
 
 static void take(design *d, size_t row)
@@ -314,23 +281,10 @@ static gonio_status exchange(design *d, size_t *chosen, size_t first, size_t end
     return status;
 }
 
-/* From here on all components count. */
-static gonio_status let_all_count(design *d, const size_t *chosen, size_t done)
-{
-    const gonio_status status = begin(d, d->problem->components);
-    for (size_t n = 0; n < done && status == GONIO_OK; n++) {
-        read_row(d, chosen[n]);
-    }
-    return status;
-}
-
 static gonio_status choose_blocks(design *d, size_t *chosen)
 {
     const gonio_i_design_problem *problem = d->problem;
-    gonio_status status = begin(d, problem->from_first);
-    if (status == GONIO_OK) {
-        status = find_gains(d);
-    }
+    gonio_status status = find_gains(d);
     size_t done = 0;
     for (size_t end = FIRST_BLOCK; done < problem->count && status == GONIO_OK; end *= 2) {
         const size_t first = done;
@@ -339,12 +293,7 @@ static gonio_status choose_blocks(design *d, size_t *chosen)
             take(d, chosen[done]);
         }
         status = exchange(d, chosen, first, done);
-        const bool goes_on = done < problem->count;
-        if (status == GONIO_OK && done == GONIO_I_DESIGN_LATE && goes_on &&
-            d->k < problem->components) {
-            status = let_all_count(d, chosen, done);
-        }
-        if (status == GONIO_OK && done >= LEAST_RENEWED && goes_on) {
+        if (status == GONIO_OK && done >= LEAST_RENEWED && done < problem->count) {
             status = find_gains(d);
         }
     }
@@ -353,15 +302,24 @@ static gonio_status choose_blocks(design *d, size_t *chosen)
 
 /* trace(P W) before the first and after each reading, made again in order: an exchange changes what
  * was left before. */
-static gonio_status find_remaining(design *d, const size_t *chosen, double *remaining)
+static void find_remaining(design *d, const size_t *chosen, double *remaining)
 {
-    const gonio_status status = begin(d, d->problem->from_first);
-    remaining[0] = gonio_i_dot(d->p, d->w, d->k * d->k);
-    for (size_t n = 0; n < d->problem->count && status == GONIO_OK; n++) {
-        read_row(d, chosen[n]);
-        remaining[n + 1] = gonio_i_dot(d->p, d->w, d->k * d->k);
+    const size_t k = d->k;
+    begin(d);
+    remaining[0] = gonio_i_dot(d->p, d->w, k * k);
+    for (size_t n = 0; n < d->problem->count; n++) {
+        double *f = d->vector;
+        double *g = d->vector + k;
+        copy_row(d, chosen[n], f);
+        multiply(d->p, f, k, g);
+        const double s = d->problem->variance + gonio_i_dot(f, g, k);
+        for (size_t i = 0; i < k; i++) {
+            for (size_t j = 0; j < k; j++) {
+                d->p[i * k + j] -= g[i] * g[j] / s;
+            }
+        }
+        remaining[n + 1] = gonio_i_dot(d->p, d->w, k * k);
     }
-    return status;
 }
 
 gonio_status gonio_i_design_find(const gonio_i_design_problem *problem, size_t *chosen,
@@ -371,24 +329,27 @@ gonio_status gonio_i_design_find(const gonio_i_design_problem *problem, size_t *
     const size_t k = problem->components;
     design d = {.problem = problem,
                 .rows = problem->rows,
+                .k = k,
                 .p = gonio_i_allocate(context, k * k, sizeof *d.p),
                 .w = gonio_i_allocate(context, k * k, sizeof *d.w),
-                .half = gonio_i_allocate(context, k * k, sizeof *d.half),
                 .q = gonio_i_allocate(context, problem->rows, sizeof *d.q),
                 .t = gonio_i_allocate(context, problem->rows, sizeof *d.t),
                 .vector = gonio_i_allocate(context, (2 + 2 * MOST_WAITING) * k, sizeof *d.vector),
                 .taken = gonio_i_allocate(context, problem->rows, sizeof *d.taken)};
-    const bool done = d.p && d.w && d.half && d.q && d.t && d.vector && d.taken;
+    const bool done = d.p && d.w && d.q && d.t && d.vector && d.taken;
     gonio_status status = done ? GONIO_OK : GONIO_ERROR_MEMORY;
+    if (status == GONIO_OK) {
+        begin(&d);
+        status = find_loss(&d);
+    }
     if (status == GONIO_OK) {
         status = choose_blocks(&d, chosen);
     }
     if (status == GONIO_OK && remaining != NULL) {
-        status = find_remaining(&d, chosen, remaining);
+        find_remaining(&d, chosen, remaining);
     }
     free(d.p);
     free(d.w);
-    free(d.half);
     free(d.q);
     free(d.t);
     free(d.vector);

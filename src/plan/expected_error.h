@@ -4,15 +4,11 @@
 
 #include "method.h"
 
-enum { GONIO_I_DESIGN_LATE = 20 };
-
 typedef struct gonio_i_design_problem {
     gonio_context *context;
     const float *f; /* [rows][components] */
     size_t rows;
     size_t components;
-    size_t from_first;        /* components that count from the first reading; the others once
-                                 GONIO_I_DESIGN_LATE are chosen */
     const double *covariance; /* [components][components]: of z before the first reading; NULL: I */
     const double *loss;       /* [rows]: weight of the squared error of g there */
     const bool *allowed;      /* [rows]: whether it can be read */
@@ -21,8 +17,8 @@ typedef struct gonio_i_design_problem {
 } gonio_i_design_problem;
 
 /* chosen[count], in the order of reading; remaining[count + 1] (or NULL): the expected loss before
- * the first and after each of them, of the components that count from the first. `count` is at most
- * the number of rows allowed. Errors: _MEMORY, _CANCELLED. */
+ * the first and after each of them. `count` is at most the number of rows allowed. Errors: _MEMORY,
+ * _CANCELLED. */
 gonio_status gonio_i_design_find(const gonio_i_design_problem *problem, size_t *chosen,
                                  double *remaining);
 
