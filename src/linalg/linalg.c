@@ -208,6 +208,12 @@ void gonio_i_divide_triangle(double *a, size_t rows, size_t n, const double *l)
                 1.0, l, (int)n, a, (int)n);
 }
 
+void gonio_i_multiply_lower(double *a, size_t rows, size_t n, const double *l)
+{
+    cblas_dtrmm(CblasRowMajor, CblasRight, CblasLower, CblasNoTrans, CblasNonUnit, (int)rows,
+                (int)n, 1.0, l, (int)n, a, (int)n);
+}
+
 /* The numerical rank from the diagonal of R, which pivoting leaves in falling order. */
 static size_t rank_of(const double *r, size_t rows, size_t n)
 {

@@ -68,6 +68,10 @@ void gonio_i_divide_lower(double *b, size_t columns, size_t n, const double *l);
  * LAPACK's integers. */
 void gonio_i_divide_triangle(double *a, size_t rows, size_t n, const double *l);
 
+/* A (rows x n, row-major) becomes A L for a lower triangular L (n x n), of a matrix that fits BLAS'
+ * integers. Half the work of a product. */
+void gonio_i_multiply_lower(double *a, size_t rows, size_t n, const double *l);
+
 /* argmin |A x - b| by QR with column pivoting. A: rows x n, row-major; b: `columns`
  * right-hand sides of `rows` values each; x: [columns][n]. rank: of A to working precision; if it
  * is less than n, x is not written. condition: (largest/smallest singular value of A)^2. */

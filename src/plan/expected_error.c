@@ -17,6 +17,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "../linalg/linalg.h"
 
@@ -42,6 +43,7 @@ typedef struct design {
     size_t k;
     double *p;      /* [k][k]: P */
     double *w;      /* [k][k]: W */
+    double *half;   /* [k][k]: T, lower triangular, of W = T + T': f W f' = 2 f T f' */
     double *q;      /* [rows] */
     double *t;      /* [rows] */
     double *vector; /* [2 + 2 MOST_WAITING][k]: f, W g, and what the changes hold */
@@ -70,7 +72,7 @@ static void multiply(const double *matrix, const double *x, size_t n, double *y)
     }
 }
 
-/* W = F' diag(w) F. */
+/* W = F' diag(w) F, and T. */
 static gonio_status find_loss(design *d)
 {
     gonio_context *context = d->problem->context;
@@ -87,13 +89,19 @@ static gonio_status find_loss(design *d)
         status = gonio_i_add_gram_rows(context, block, count, d->k, d->w);
     }
     gonio_i_mirror(d->w, d->k);
+    for (size_t i = 0; i < d->k; i++) {
+        for (size_t j = 0; j < d->k; j++) {
+            const double share = j < i ? 1.0 : j == i ? 0.5 : 0.0;
+            d->half[i * d->k + j] = share * d->w[i * d->k + j];
+        }
+    }
     free(block);
     return status;
 }
 
-/* q and t of `count` rows, f[count][k]; fp, fpw: scratch of that size. */
+/* q and t of `count` rows, f[count][k]; fp, fpt: scratch of that size. */
 static gonio_status find_block_gains(design *d, size_t first, size_t count, const double *f,
-                                     double *fp, double *fpw)
+                                     double *fp, double *fpt)
 {
     gonio_context *context = d->problem->context;
     const double *a = d->plain ? f : fp;
@@ -102,11 +110,12 @@ static gonio_status find_block_gains(design *d, size_t first, size_t count, cons
         status = gonio_i_product_transposed(context, f, count, d->k, d->p, d->k, fp, d->k);
     }
     if (status == GONIO_OK) {
-        status = gonio_i_product_transposed(context, a, count, d->k, d->w, d->k, fpw, d->k);
+        memcpy(fpt, a, count * d->k * sizeof *a);
+        gonio_i_multiply_lower(fpt, count, d->k, d->half);
     }
     for (size_t i = 0; i < count && status == GONIO_OK; i++) {
         d->q[first + i] = gonio_i_dot(a + i * d->k, f + i * d->k, d->k);
-        d->t[first + i] = gonio_i_dot(fpw + i * d->k, a + i * d->k, d->k);
+        d->t[first + i] = 2.0 * gonio_i_dot(fpt + i * d->k, a + i * d->k, d->k);
     }
     return status;
 }
@@ -332,11 +341,12 @@ gonio_status gonio_i_design_find(const gonio_i_design_problem *problem, size_t *
                 .k = k,
                 .p = gonio_i_allocate(context, k * k, sizeof *d.p),
                 .w = gonio_i_allocate(context, k * k, sizeof *d.w),
+                .half = gonio_i_allocate(context, k * k, sizeof *d.half),
                 .q = gonio_i_allocate(context, problem->rows, sizeof *d.q),
                 .t = gonio_i_allocate(context, problem->rows, sizeof *d.t),
                 .vector = gonio_i_allocate(context, (2 + 2 * MOST_WAITING) * k, sizeof *d.vector),
                 .taken = gonio_i_allocate(context, problem->rows, sizeof *d.taken)};
-    const bool done = d.p && d.w && d.q && d.t && d.vector && d.taken;
+    const bool done = d.p && d.w && d.half && d.q && d.t && d.vector && d.taken;
     gonio_status status = done ? GONIO_OK : GONIO_ERROR_MEMORY;
     if (status == GONIO_OK) {
         begin(&d);
@@ -350,6 +360,7 @@ gonio_status gonio_i_design_find(const gonio_i_design_problem *problem, size_t *
     }
     free(d.p);
     free(d.w);
+    free(d.half);
     free(d.q);
     free(d.t);
     free(d.vector);
