@@ -68,8 +68,8 @@ void gonio_i_divide_lower(double *b, size_t columns, size_t n, const double *l);
  * LAPACK's integers. */
 void gonio_i_divide_triangle(double *a, size_t rows, size_t n, const double *l);
 
-/* A (rows x n, row-major) becomes A L for a lower triangular L (n x n), of a matrix that fits BLAS'
- * integers. Half the work of a product. */
+/* A (rows x n, row-major) becomes A L for a lower triangular L (n x n, what is above its diagonal
+ * is not read), of a matrix that fits BLAS' integers. Half the work of a product. */
 void gonio_i_multiply_lower(double *a, size_t rows, size_t n, const double *l);
 
 /* argmin |A x - b| by QR with column pivoting. A: rows x n, row-major; b: `columns`

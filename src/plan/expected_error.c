@@ -43,7 +43,7 @@ typedef struct design {
     size_t k;
     double *p;      /* [k][k]: P */
     double *w;      /* [k][k]: W */
-    double *half;   /* [k][k]: T, lower triangular, of W = T + T': f W f' = 2 f T f' */
+    double *half;   /* [k][k], above the diagonal not read: T of W = T + T', f W f' = 2 f T f' */
     double *q;      /* [rows] */
     double *t;      /* [rows] */
     double *vector; /* [2 + 2 MOST_WAITING][k]: f, W g, and what the changes hold */
@@ -89,11 +89,9 @@ static gonio_status find_loss(design *d)
         status = gonio_i_add_gram_rows(context, block, count, d->k, d->w);
     }
     gonio_i_mirror(d->w, d->k);
+    memcpy(d->half, d->w, d->k * d->k * sizeof *d->w);
     for (size_t i = 0; i < d->k; i++) {
-        for (size_t j = 0; j < d->k; j++) {
-            const double share = j < i ? 1.0 : j == i ? 0.5 : 0.0;
-            d->half[i * d->k + j] = share * d->w[i * d->k + j];
-        }
+        d->half[i * d->k + i] *= 0.5;
     }
     free(block);
     return status;

@@ -244,6 +244,19 @@ static void test_farthest_rows_span_the_space(void **state)
     gonio_context_free(&context);
 }
 
+/* What is above the diagonal has no say. */
+static void test_multiplying_by_a_lower_triangle(void **state)
+{
+    (void)state;
+    const double l[] = {2.0, NAN, NAN, -1.0, 3.0, NAN, 0.5, 4.0, -2.0};
+    double a[] = {1.0, 2.0, 3.0, -4.0, 0.0, 2.0};
+    const double product[] = {1.5, 18.0, -6.0, -7.0, 8.0, -4.0};
+    gonio_i_multiply_lower(a, 2, 3, l);
+    for (int i = 0; i < 6; i++) {
+        assert_true(fabs(a[i] - product[i]) < 1e-15);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -254,6 +267,7 @@ int main(void)
         cmocka_unit_test(test_eigenvectors),
         cmocka_unit_test(test_products),
         cmocka_unit_test(test_dividing_by_cholesky_makes_columns_orthonormal),
+        cmocka_unit_test(test_multiplying_by_a_lower_triangle),
         cmocka_unit_test(test_a_matrix_that_is_not_positive_is_an_error),
         cmocka_unit_test(test_farthest_rows_span_the_space),
     };
