@@ -88,6 +88,7 @@ typedef struct gonio_basis_view {
     size_t variance_count;   /* all of them, not only the first `components` */
     const double *variances; /* lambda_k = S_k^2/(columns - 1), descending */
     const double *loadings;  /* W, [columns][components], orthonormal; NULL in files without */
+    const int32_t *parents;  /* [mixtures][2]: the columns each one is made of; NULL without */
     uint64_t
         fingerprint; /* which basis it is: its cells, materials' names and leading variances to six
                       * digits, so that the same one learned on another processor is the same */

@@ -43,9 +43,12 @@ gonio_basis *gonio_i_basis_allocate(gonio_context *context, size_t materials, si
     made->variances = gonio_i_allocate(context, variance_count, sizeof *made->variances);
     made->loadings =
         gonio_i_allocate(context, gonio_i_basis_columns(made) * components, sizeof *made->loadings);
+    if (mixtures > 0) {
+        made->parents = gonio_i_allocate(context, 2 * mixtures, sizeof *made->parents);
+    }
     if (made->names == NULL || made->fingerprints == NULL || made->cell == NULL ||
         made->mean == NULL || made->vectors == NULL || made->variances == NULL ||
-        made->loadings == NULL) {
+        made->loadings == NULL || (mixtures > 0 && made->parents == NULL)) {
         gonio_basis_free(&made);
     }
     return made;
@@ -67,6 +70,7 @@ void gonio_basis_free(gonio_basis **basis)
     free(old->vectors);
     free(old->variances);
     free(old->loadings);
+    free(old->parents);
     free(old->program);
     free(old->command);
     free(old->position);
@@ -212,6 +216,10 @@ static void add_loadings(const gonio_basis *basis, gonio_fingerprint *fingerprin
     gonio_fingerprint_add(fingerprint, basis->loadings,
                           gonio_i_basis_columns(basis) * basis->components *
                               sizeof *basis->loadings);
+    if (basis->parents != NULL) {
+        gonio_fingerprint_add(fingerprint, basis->parents,
+                              2 * basis->mixtures * sizeof *basis->parents);
+    }
 }
 
 static gonio_status hash(const gonio_basis *basis,
@@ -260,6 +268,7 @@ gonio_basis_view gonio_basis_describe(const gonio_basis *basis)
         .variance_count = basis->variance_count,
         .variances = basis->variances,
         .loadings = basis->loadings,
+        .parents = basis->parents,
         .fingerprint = basis->fingerprint,
         .checksum = basis->checksum,
         .program = basis->program != NULL ? basis->program : "",

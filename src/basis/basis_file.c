@@ -72,6 +72,14 @@ static bool write_loadings(hid_t file, const gonio_basis *basis)
                                     basis->loadings));
 }
 
+static bool write_parents(hid_t file, const gonio_basis *basis)
+{
+    const size_t shape[2] = {basis->mixtures, 2};
+    return basis->parents == NULL ||
+           gonio_i_hdf_write_array(file, "mixture_parents", 2, shape, H5T_NATIVE_INT32,
+                                   H5T_STD_I32LE, basis->parents);
+}
+
 static bool write_contents(hid_t file, const gonio_basis *basis, const char *command)
 {
     const size_t scales = GONIO_CHANNELS;
@@ -88,6 +96,7 @@ static bool write_contents(hid_t file, const gonio_basis *basis, const char *com
            write_hash(file, "fingerprint", basis->fingerprint) &&
            write_hash(file, "checksum", basis->checksum) && write_grid(file, basis) &&
            write_materials(file, basis) && write_loadings(file, basis) &&
+           write_parents(file, basis) &&
            gonio_i_hdf_write_array(file, "log_scale", 1, &scales, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE,
                                    scale) &&
            gonio_i_hdf_write_array(file, "mean", 1, &basis->rows, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE,
@@ -142,7 +151,7 @@ typedef struct contents {
     const char *path;
     hid_t file;
     int64_t representation, channels, mapping, without_mean;
-    void *cell, *mean, *vectors, *variances, *loadings, *fingerprints;
+    void *cell, *mean, *vectors, *variances, *loadings, *parents, *fingerprints;
     size_t cells, rows, components, variance_count, materials, mixtures;
     char **names;
     char *program, *command;
@@ -198,9 +207,14 @@ static gonio_status read_mixtures(contents *c)
     return GONIO_OK;
 }
 
+static size_t measured_of(const contents *c)
+{
+    return (c->channels == GONIO_JOINT ? 1 : GONIO_CHANNELS) * c->materials;
+}
+
 static size_t columns_of(const contents *c)
 {
-    return (c->channels == GONIO_JOINT ? 1 : GONIO_CHANNELS) * c->materials + c->mixtures;
+    return measured_of(c) + c->mixtures;
 }
 
 static gonio_status read_grid(contents *c)
@@ -362,6 +376,21 @@ static gonio_status read_loadings(contents *c)
                            : read_hash(c, "loadings_checksum", &c->loadings_checksum);
 }
 
+/* What mixtures are made of, which older files lack. */
+static gonio_status read_parents(contents *c)
+{
+    size_t shape[2] = {0, 0};
+    if (c->mixtures == 0 || H5Lexists(c->file, "mixture_parents", H5P_DEFAULT) <= 0) {
+        return GONIO_OK;
+    }
+    const char *problem = gonio_i_hdf_read_array(c->file, "mixture_parents", 2, 2 * c->mixtures,
+                                                 H5T_NATIVE_INT32, &c->parents, shape);
+    if (problem == NULL && (shape[0] != c->mixtures || shape[1] != 2)) {
+        problem = "has a shape that does not fit the mixtures";
+    }
+    return problem != NULL ? damaged(c, "mixture_parents", problem) : GONIO_OK;
+}
+
 static gonio_status read_contents(contents *c)
 {
     gonio_status status = check_kind(c);
@@ -387,6 +416,9 @@ static gonio_status read_contents(contents *c)
         status = read_loadings(c);
     }
     if (status == GONIO_OK) {
+        status = read_parents(c);
+    }
+    if (status == GONIO_OK) {
         status = read_text(c, "program", &c->program);
     }
     if (status == GONIO_OK) {
@@ -408,6 +440,7 @@ static void free_contents(contents *c)
     free(c->vectors);
     free(c->variances);
     free(c->loadings);
+    free(c->parents);
     free(c->fingerprints);
     free(c->names);
     free(c->program);
@@ -434,6 +467,17 @@ static bool cells_in_order(const contents *c)
             return false;
         }
         last = cell[k];
+    }
+    return true;
+}
+
+static bool parents_are_measured(const contents *c)
+{
+    const int32_t *parent = c->parents;
+    for (size_t k = 0; parent != NULL && k < 2 * c->mixtures; k++) {
+        if (parent[k] < 0 || (size_t)parent[k] >= measured_of(c)) {
+            return false;
+        }
     }
     return true;
 }
@@ -468,6 +512,9 @@ static gonio_status check_values(const contents *c)
     const size_t columns = columns_of(c);
     if (c->loadings != NULL && !all_finite(c->loadings, columns * c->components)) {
         return damaged(c, "loadings", "holds a number that is not finite");
+    }
+    if (!parents_are_measured(c)) {
+        return damaged(c, "mixture_parents", "names a column that no material has");
     }
     return check_orthonormal(c);
 }
@@ -510,6 +557,7 @@ static gonio_status assemble(contents *c, gonio_basis **basis)
         .variance_count = c->variance_count,
         .variances = take(&c->variances),
         .loadings = take(&c->loadings),
+        .parents = take(&c->parents),
         .program = c->program,
         .command = c->command,
     };

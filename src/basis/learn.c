@@ -452,6 +452,9 @@ static gonio_status prepare_mixtures(learner *l, const gonio_basis_options *opti
         status = gonio_i_mixtures_create(l->context, l->basis, l->database, options, mixtures);
         l->mixtures = *mixtures;
     }
+    if (status == GONIO_OK) {
+        gonio_i_mixtures_parents(*mixtures, l->basis->parents);
+    }
     return status;
 }
 

@@ -114,6 +114,14 @@ void gonio_i_mixtures_free(gonio_i_mixtures **mixtures)
     *mixtures = NULL;
 }
 
+void gonio_i_mixtures_parents(const gonio_i_mixtures *mixtures, int32_t *parents)
+{
+    for (size_t k = 0; k < mixtures->count; k++) {
+        parents[2 * k] = (int32_t)mixtures->recipe[k].half[0].column;
+        parents[2 * k + 1] = (int32_t)mixtures->recipe[k].half[1].column;
+    }
+}
+
 /* Between two of `bins` bins, in bins from the middle of the first: constant beyond the ends. */
 typedef struct between {
     int low;

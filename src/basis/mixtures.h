@@ -15,6 +15,9 @@ gonio_status gonio_i_mixtures_create(gonio_context *context, const gonio_basis *
                                      gonio_i_mixtures **mixtures);
 void gonio_i_mixtures_free(gonio_i_mixtures **mixtures);
 
+/* The two columns that each one is made of: parents[count][2]. */
+void gonio_i_mixtures_parents(const gonio_i_mixtures *mixtures, int32_t *parents);
+
 /* Rows first .. first + count - 1 of all mixtures: values[mixture][count]. Thread-safe. */
 void gonio_i_mixtures_fill(const gonio_i_mixtures *mixtures, size_t first, size_t count,
                            float *values);

@@ -149,6 +149,7 @@ static void test_the_formula(void **state)
             double tilt[2];
             for (int half = 0; half < 2; half++) {
                 column[half] = (size_t)gonio_i_random_below(&random, f.measured);
+                assert_int_equal(f.view.parents[2 * k + (size_t)half], column[half]);
                 width[half] = exp(0.3 * gonio_i_random_normal(&random));
                 tilt[half] = exp(0.25 * gonio_i_random_normal(&random));
             }
@@ -295,6 +296,7 @@ static void test_the_file_keeps_mixtures(void **state)
     assert_memory_equal(a.mean, b.mean, a.rows * sizeof *a.mean);
     assert_memory_equal(a.vectors, b.vectors, a.rows * a.components * sizeof *a.vectors);
     assert_memory_equal(a.loadings, b.loadings, a.columns * a.components * sizeof *a.loadings);
+    assert_memory_equal(a.parents, b.parents, 2 * a.mixtures * sizeof *a.parents);
     gonio_basis_free(&again);
     support_remove(folder);
 }
@@ -337,6 +339,51 @@ static void test_a_damaged_number_of_mixtures(void **state)
     support_remove(folder);
 }
 
+/* Other parents in a file, or none. */
+static void change_parents(const char *path, int32_t parent)
+{
+    int32_t parents[2 * MADE_MIXTURES] = {0};
+    const hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
+    assert_true(file >= 0);
+    if (parent == INT32_MIN) {
+        assert_true(H5Ldelete(file, "mixture_parents", H5P_DEFAULT) >= 0);
+    } else {
+        const hid_t array = H5Dopen2(file, "mixture_parents", H5P_DEFAULT);
+        assert_true(array >= 0);
+        parents[MADE_MIXTURES] = parent;
+        assert_true(H5Dwrite(array, H5T_NATIVE_INT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, parents) >= 0);
+        H5Dclose(array);
+    }
+    H5Fclose(file);
+}
+
+static void test_damaged_parents(void **state)
+{
+    (void)state;
+    static const struct {
+        int32_t parent;
+        const char *says;
+    } wrong[] = {{-1, "names a column that no material has"},
+                 {MADE_MATERIALS * GONIO_CHANNELS, "names a column that no material has"},
+                 {INT32_MAX, "names a column that no material has"},
+                 {1, "'loadings_checksum' does not fit the contents"},
+                 {INT32_MIN, "'loadings_checksum' does not fit the contents"}};
+    char *folder = support_folder();
+    char path[256];
+    snprintf(path, sizeof path, "%s/basis.gonio", folder);
+    gonio_context *context = support_context();
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
+        gonio_basis *again = NULL;
+        assert_int_equal(gonio_basis_write(context, made[2].basis, "", path), GONIO_OK);
+        change_parents(path, wrong[k].parent);
+        assert_int_equal(gonio_basis_read(context, path, &again), GONIO_ERROR_FORMAT);
+        assert_null(again);
+        assert_non_null(strstr(support_message(), wrong[k].says));
+    }
+    gonio_context_free(&context);
+    support_remove(folder);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -347,6 +394,7 @@ int main(void)
         cmocka_unit_test(test_what_has_no_mixtures),
         cmocka_unit_test(test_the_file_keeps_mixtures),
         cmocka_unit_test(test_a_damaged_number_of_mixtures),
+        cmocka_unit_test(test_damaged_parents),
     };
     return cmocka_run_group_tests_name("mixtures", tests, set_up, tear_down);
 }

@@ -365,7 +365,7 @@ static gonio_status make_builtin(tool *t, const char *path, bool paper)
 
 /* To be raised when gonio learn makes something else of the same materials, so that what an earlier
  * build left in the cache is not taken for it. */
-enum { RECIPE = 2 };
+enum { RECIPE = 3 };
 
 gonio_status tool_builtin_basis(tool *t, bool paper, char **path)
 {
