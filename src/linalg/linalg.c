@@ -208,6 +208,24 @@ void gonio_i_divide_triangle(double *a, size_t rows, size_t n, const double *l)
                 1.0, l, (int)n, a, (int)n);
 }
 
+gonio_status gonio_i_inverse_diagonal(gonio_context *context, const double *l, size_t n,
+                                      double *diagonal)
+{
+    double *inverse = gonio_i_allocate(context, n * n, sizeof *inverse);
+    if (inverse == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    for (size_t i = 0; i < n; i++) {
+        inverse[i * n + i] = 1.0;
+    }
+    gonio_i_divide_triangle(inverse, n, n, l);
+    for (size_t i = 0; i < n; i++) {
+        diagonal[i] = gonio_i_dot(inverse + i * n, inverse + i * n, n);
+    }
+    free(inverse);
+    return GONIO_OK;
+}
+
 void gonio_i_multiply_lower(double *a, size_t rows, size_t n, const double *l)
 {
     cblas_dtrmm(CblasRowMajor, CblasRight, CblasLower, CblasNoTrans, CblasNonUnit, (int)rows,

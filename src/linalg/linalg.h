@@ -68,6 +68,10 @@ void gonio_i_divide_lower(double *b, size_t columns, size_t n, const double *l);
  * LAPACK's integers. */
 void gonio_i_divide_triangle(double *a, size_t rows, size_t n, const double *l);
 
+/* diagonal[n]: of (L L')^-1. */
+gonio_status gonio_i_inverse_diagonal(gonio_context *context, const double *l, size_t n,
+                                      double *diagonal);
+
 /* A (rows x n, row-major) becomes A L for a lower triangular L (n x n, what is above its diagonal
  * is not read), of a matrix that fits BLAS' integers. Half the work of a product. */
 void gonio_i_multiply_lower(double *a, size_t rows, size_t n, const double *l);

@@ -39,12 +39,18 @@ double gonio_i_kernel_width(size_t n)
     return sqrt((double)n / ((double)n + HALF_KEPT));
 }
 
+double gonio_i_gaussian_noise(const gonio_i_gaussian *e, size_t reading)
+{
+    return e->left_out[reading] ? NO_SAY : e->variance[reading];
+}
+
 static gonio_status allocate(gonio_i_gaussian *e)
 {
     gonio_context *c = e->context;
     const size_t n = e->n;
     e->f = gonio_i_allocate(c, n * e->components, sizeof *e->f);
     e->place = gonio_i_allocate(c, n, sizeof *e->place);
+    e->mean = gonio_i_allocate(c, n, sizeof *e->mean);
     e->y = gonio_i_allocate(c, n, sizeof *e->y);
     e->variance = gonio_i_allocate(c, n, sizeof *e->variance);
     e->bound = gonio_i_allocate(c, n, sizeof *e->bound);
@@ -59,9 +65,9 @@ static gonio_status allocate(gonio_i_gaussian *e)
     e->centre = gonio_i_allocate(c, e->components, sizeof *e->centre);
     e->rest = gonio_i_allocate(c, n, sizeof *e->rest);
     e->solved = gonio_i_allocate(c, n, sizeof *e->solved);
-    const bool done = e->f && e->place && e->y && e->variance && e->bound && e->left_out &&
-                      e->seen && e->gram && e->smooth && e->peaked && e->lower && e->white &&
-                      e->weight && e->centre && e->rest && e->solved;
+    const bool done = e->f && e->place && e->mean && e->y && e->variance && e->bound &&
+                      e->left_out && e->seen && e->gram && e->smooth && e->peaked && e->lower &&
+                      e->white && e->weight && e->centre && e->rest && e->solved;
     return done ? GONIO_OK : GONIO_ERROR_MEMORY;
 }
 
@@ -69,6 +75,7 @@ void gonio_i_gaussian_end(gonio_i_gaussian *e)
 {
     free(e->f);
     free(e->place);
+    free(e->mean);
     free(e->y);
     free(e->variance);
     free(e->bound);
@@ -113,10 +120,9 @@ gonio_status gonio_i_gaussian_begin(gonio_context *context, const gonio_i_prior 
     }
     for (size_t i = 0; i < e->n; i++) {
         const gonio_i_observation *o = &column->observation[i];
-        double mean = 0.0;
-        gonio_i_prior_at(prior, o->at, o->channel, &mean, e->f + i * e->components);
+        gonio_i_prior_at(prior, o->at, o->channel, &e->mean[i], e->f + i * e->components);
         e->place[i] = gonio_i_place_of(o->at);
-        e->y[i] = o->g - mean;
+        e->y[i] = o->g - e->mean[i];
         e->variance[i] = o->variance;
         e->bound[i] = o->bound;
         for (size_t j = 0; j <= i; j++) {
@@ -141,7 +147,7 @@ static gonio_status factorise(gonio_i_gaussian *e, double *logarithm)
         e->lower[i] = m.h * m.h * e->gram[i] + m.alpha * m.alpha * k;
     }
     for (size_t i = 0; i < n; i++) {
-        e->lower[i * n + i] += e->left_out[i] ? NO_SAY : e->variance[i];
+        e->lower[i * n + i] += gonio_i_gaussian_noise(e, i);
     }
     const gonio_status status = gonio_i_cholesky(e->context, e->lower, n);
     *logarithm = 0.0;
@@ -242,25 +248,6 @@ gonio_status gonio_i_gaussian_solve(gonio_i_gaussian *e, const gonio_i_model *mo
     return GONIO_OK;
 }
 
-/* (S^-1)_ii. */
-static gonio_status invert_diagonal(const gonio_i_gaussian *e, double *diagonal)
-{
-    const size_t n = e->n;
-    double *inverse = gonio_i_allocate(e->context, n * n, sizeof *inverse);
-    if (inverse == NULL) {
-        return GONIO_ERROR_MEMORY;
-    }
-    for (size_t i = 0; i < n; i++) {
-        inverse[i * n + i] = 1.0;
-    }
-    gonio_i_divide_triangle(inverse, n, n, e->lower);
-    for (size_t i = 0; i < n; i++) {
-        diagonal[i] = square_sum(inverse + i * n, n);
-    }
-    free(inverse);
-    return GONIO_OK;
-}
-
 /* Sample j's difference at reading i is d_j = (S^-1 (y - a F z_j))_i v, v = 1/(S^-1)_ii; without
  * that reading its weight would be q_j / N(d_j; 0, v), but for what makes them add up to 1. */
 static gonio_status mix_differences(const gonio_i_gaussian *e, double *difference, double *variance)
@@ -306,7 +293,7 @@ static gonio_status mix_differences(const gonio_i_gaussian *e, double *differenc
 gonio_status gonio_i_gaussian_leave_one_out(const gonio_i_gaussian *e, double *difference,
                                             double *variance)
 {
-    const gonio_status status = invert_diagonal(e, variance);
+    const gonio_status status = gonio_i_inverse_diagonal(e->context, e->lower, e->n, variance);
     for (size_t i = 0; i < e->n && status == GONIO_OK; i++) {
         variance[i] = 1.0 / variance[i];
         difference[i] = e->solved[i] * variance[i];

@@ -21,6 +21,7 @@ typedef struct gonio_i_gaussian {
     size_t components;
     double *f;            /* [n][K] */
     gonio_i_place *place; /* [n] */
+    double *mean;         /* [n]: m */
     double *y;            /* [n]: g - m */
     double *variance;     /* [n]: D */
     int *bound;           /* [n] */
@@ -52,6 +53,9 @@ void gonio_i_gaussian_end(gonio_i_gaussian *gaussian);
 
 /* The rest, for a model. Errors: _NUMERICAL, _MEMORY. */
 gonio_status gonio_i_gaussian_solve(gonio_i_gaussian *gaussian, const gonio_i_model *model);
+
+/* The variance that a reading counts with: so large that it has no say if it is left out. */
+double gonio_i_gaussian_noise(const gonio_i_gaussian *gaussian, size_t reading);
 
 /* What the other readings say of each one: the difference to it, and its variance (noise
  * included), difference[n], variance[n]. Exactly, samples weighted by the other readings only. */

@@ -7,6 +7,7 @@
 
 #include "../linalg/linalg.h"
 #include "equations.h"
+#include "expectation.h"
 #include "merge.h"
 #include "models.h"
 #include "spread.h"
@@ -59,12 +60,18 @@ static double square_left(const gonio_i_gaussian *e)
     return sum;
 }
 
-/* The sums over rows and columns that the predicted error is made of. */
-typedef struct predicted_sums {
-    double error;
-    double square;
+/* What the columns have in common, and the sums over them. */
+typedef struct finding {
+    gonio_context *context;
+    const gonio_i_prior *prior;
+    gonio_i_models models;
+    size_t most;                      /* readings of a column that are not merged */
+    gonio_i_expectation *expectation; /* NULL: the Gaussian's own */
+    gonio_i_posterior *p;
+    gonio_i_spread_sums sums;
+    double expected; /* the square of the error to expect, over the bins */
     size_t readings; /* after merging */
-} predicted_sums;
+} finding;
 
 /* What a column's field is made of, kept until all columns are solved: of no model yet. */
 static gonio_status keep_places(const gonio_i_gaussian *e, size_t column, gonio_i_posterior *p,
@@ -126,26 +133,84 @@ static gonio_status mix_models(gonio_i_gaussian *e, const gonio_i_models *models
     return status;
 }
 
-/* The variance, of the best model; it is in e. */
-static gonio_status find_variance(const gonio_i_gaussian *e, size_t column, gonio_i_posterior *p,
-                                  predicted_sums *sums)
+static gonio_status begin_column(const finding *found, const gonio_i_column *column, size_t most,
+                                 gonio_i_gaussian *e)
 {
+    gonio_i_column merged = {0};
+    const bool many = column->count > most;
+    gonio_status status = GONIO_OK;
+    if (many) {
+        status = gonio_i_merge(found->context, column, most, &merged);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_gaussian_begin(found->context, found->prior, many ? &merged : column, e);
+    }
+    free(merged.observation);
+    return status;
+}
+
+/* The best model, with readings that the others contradict set aside. */
+static gonio_status settle(const finding *found, gonio_i_gaussian *e, size_t *outlying)
+{
+    const gonio_status status = gonio_i_gaussian_solve(e, &found->models.best);
+    return status == GONIO_OK ? gonio_i_gaussian_settle(e, true, outlying) : status;
+}
+
+/* The variance, of the best model; it is in e. */
+static gonio_status find_variance(finding *found, const gonio_i_gaussian *e, size_t column,
+                                  gonio_i_spread_sums *sums)
+{
+    gonio_i_posterior *p = found->p;
     double *c = p->coefficients + column * e->components;
     double *deviation = p->deviation != NULL ? p->deviation + column * e->prior->view.rows : NULL;
     find_coefficients(e, c);
-    return gonio_i_spread_variance(e, c, deviation, p->covariance, &sums->error, &sums->square);
+    return gonio_i_spread_variance(e, c, deviation, p->covariance, sums);
 }
 
-static gonio_status solve_column(gonio_i_gaussian *e, const gonio_i_models *models, size_t column,
-                                 gonio_i_posterior *p, predicted_sums *sums,
-                                 gonio_i_spread_column *kept)
+/* The mean square of the error to expect of a column that is in e, with fewer readings if there are
+ * many. */
+static gonio_status expect(const finding *found, const gonio_i_column *column,
+                           const gonio_i_gaussian *e, double *square)
 {
+    if (e->n <= GONIO_I_EXPECTATION_MOST) {
+        return gonio_i_expectation_find(found->expectation, e, square);
+    }
+    gonio_i_gaussian fewer = {0};
+    size_t outlying = 0;
+    gonio_status status = begin_column(found, column, GONIO_I_EXPECTATION_MOST, &fewer);
+    if (status == GONIO_OK) {
+        status = settle(found, &fewer, &outlying);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_expectation_find(found->expectation, &fewer, square);
+    }
+    gonio_i_gaussian_end(&fewer);
+    return status;
+}
+
+static gonio_status sum_up(finding *found, const gonio_i_column *column, const gonio_i_gaussian *e,
+                           size_t number)
+{
+    gonio_i_spread_sums sums = {0};
+    double square = 0.0;
+    gonio_status status = find_variance(found, e, number, &sums);
+    if (status == GONIO_OK && found->expectation != NULL) {
+        status = expect(found, column, e, &square);
+    }
+    found->sums.bins += sums.bins;
+    found->sums.error += sums.error;
+    found->sums.square += sums.square;
+    found->expected += found->expectation != NULL ? square * sums.bins : sums.error;
+    return status;
+}
+
+static gonio_status solve_column(finding *found, const gonio_i_column *column, gonio_i_gaussian *e,
+                                 size_t number, gonio_i_spread_column *kept)
+{
+    gonio_i_posterior *p = found->p;
     size_t outlying = 0;
     double surprise = 0.0;
-    gonio_status status = gonio_i_gaussian_solve(e, &models->best);
-    if (status == GONIO_OK) {
-        status = gonio_i_gaussian_settle(e, true, &outlying);
-    }
+    gonio_status status = settle(found, e, &outlying);
     if (status == GONIO_OK) {
         status = gonio_i_gaussian_surprise(e, &surprise);
     }
@@ -153,90 +218,104 @@ static gonio_status solve_column(gonio_i_gaussian *e, const gonio_i_models *mode
         p->outlying += outlying;
         p->residual += square_left(e);
         p->surprise += surprise;
-        sums->readings += e->n;
-        status = find_variance(e, column, p, sums);
+        found->readings += e->n;
+        status = sum_up(found, column, e, number);
     }
     if (status == GONIO_OK) {
-        status = keep_places(e, column, p, kept);
+        status = keep_places(e, number, p, kept);
     }
     return status == GONIO_OK
-               ? mix_models(e, models, p->coefficients + column * e->components, kept)
+               ? mix_models(e, &found->models, p->coefficients + number * e->components, kept)
                : status;
 }
 
-static gonio_status begin_column(gonio_context *context, const gonio_i_prior *prior,
-                                 const gonio_i_column *column, size_t most, gonio_i_gaussian *e)
-{
-    gonio_i_column merged = {0};
-    const bool many = column->count > most;
-    gonio_status status = GONIO_OK;
-    if (many) {
-        status = gonio_i_merge(context, column, most, &merged);
-    }
-    if (status == GONIO_OK) {
-        status = gonio_i_gaussian_begin(context, prior, many ? &merged : column, e);
-    }
-    free(merged.observation);
-    return status;
-}
-
-static gonio_status find_column(gonio_context *context, const gonio_i_prior *prior,
-                                const gonio_i_column *columns, size_t column,
-                                const gonio_i_models *models, size_t most, gonio_i_posterior *p,
-                                predicted_sums *sums, gonio_i_spread_column *kept)
+static gonio_status find_column(finding *found, const gonio_i_column *column, size_t number,
+                                gonio_i_spread_column *kept)
 {
     gonio_i_gaussian e = {0};
-    gonio_status status = begin_column(context, prior, &columns[column], most, &e);
+    gonio_status status = begin_column(found, column, found->most, &e);
     if (status == GONIO_OK) {
-        status = solve_column(&e, models, column, p, sums, kept);
+        status = solve_column(found, column, &e, number, kept);
     }
     gonio_i_gaussian_end(&e);
     return status;
+}
+
+static gonio_status find_columns(finding *found, const gonio_i_column *columns, size_t count)
+{
+    gonio_i_spread_column *kept = gonio_i_allocate(found->context, count, sizeof *kept);
+    gonio_status status = kept == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    for (size_t k = 0; k < count && status == GONIO_OK; k++) {
+        status = find_column(found, &columns[k], k, &kept[k]);
+        if (status == GONIO_OK) {
+            status =
+                gonio_i_progress(found->context, "reconstructing", (double)(k + 1) / (double)count);
+        }
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_spread_fields(found->context, found->prior, kept, count);
+    }
+    for (size_t k = 0; kept != NULL && k < count; k++) {
+        forget(&kept[k]);
+    }
+    free(kept);
+    return status;
+}
+
+/* Root of the square of an error by that of g, of which the estimate is smaller by the error. */
+static double relative(const finding *found, double error)
+{
+    return sqrt(error / (found->sums.square + error));
+}
+
+/* From sums over the columns to what they stand for. Of the error the Gaussian of the likeliest
+ * model has one opinion and the database another; the geometric mean of both is nearer to the truth
+ * than either, in and out of the database (docs/accuracy.md). */
+static void conclude(const finding *found, size_t count)
+{
+    const size_t components = found->prior->components;
+    gonio_i_posterior *p = found->p;
+    for (size_t k = 0; k < count * components; k++) {
+        p->coefficients[k] *= found->prior->deviation[k % components];
+    }
+    for (size_t k = 0; p->covariance != NULL && k < components * components; k++) {
+        p->covariance[k] /= (double)count;
+    }
+    const double readings = fmax((double)found->readings, 1.0);
+    p->norm = sqrt((found->sums.square + found->sums.error) / (double)count);
+    p->predicted =
+        100.0 * sqrt(relative(found, found->sums.error) * relative(found, found->expected));
+    p->residual = sqrt(p->residual / readings);
+    p->surprise = sqrt(p->surprise / readings);
+    p->smoothness = found->models.best.alpha;
 }
 
 gonio_status gonio_i_posterior_find(gonio_context *context, const gonio_i_prior *prior,
                                     const gonio_i_column *columns, size_t count,
                                     const gonio_i_posterior_options *options, gonio_i_posterior *p)
 {
-    predicted_sums sums = {0};
-    const size_t most = options->most > 0 ? options->most : MOST_READINGS;
-    gonio_i_models models =
-        gonio_i_models_of((gonio_i_model){GONIO_I_KERNEL_WIDTH, options->smoothness, 0.0});
-    gonio_i_spread_column *kept = gonio_i_allocate(context, count, sizeof *kept);
-    gonio_status status = kept == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    finding found = {.context = context,
+                     .prior = prior,
+                     .models = gonio_i_models_of(
+                         (gonio_i_model){GONIO_I_KERNEL_WIDTH, options->smoothness, 0.0}),
+                     .most = options->most > 0 ? options->most : MOST_READINGS,
+                     .p = p};
+    gonio_status status = GONIO_OK;
     p->outlying = 0;
     p->residual = 0.0;
     p->surprise = 0.0;
-    if (status == GONIO_OK && !(options->smoothness >= 0.0)) {
-        status = gonio_i_models_weigh(context, prior, columns, count, &models);
-    }
-    p->smoothness = models.best.alpha;
-    for (size_t k = 0; k < count && status == GONIO_OK; k++) {
-        status = find_column(context, prior, columns, k, &models, most, p, &sums, &kept[k]);
-        if (status == GONIO_OK) {
-            status = gonio_i_progress(context, "reconstructing", (double)(k + 1) / (double)count);
-        }
+    if (!(options->smoothness >= 0.0)) {
+        status = gonio_i_models_weigh(context, prior, columns, count, &found.models);
     }
     if (status == GONIO_OK) {
-        status = gonio_i_spread_fields(context, prior, kept, count);
-    }
-    for (size_t k = 0; kept != NULL && k < count; k++) {
-        forget(&kept[k]);
-    }
-    free(kept);
-    for (size_t k = 0; k < count * prior->components && status == GONIO_OK; k++) {
-        p->coefficients[k] *= prior->deviation[k % prior->components];
+        status = gonio_i_expectation_create(context, prior, &found.expectation);
     }
     if (status == GONIO_OK) {
-        const size_t values = prior->components * prior->components;
-        for (size_t k = 0; p->covariance != NULL && k < values; k++) {
-            p->covariance[k] /= (double)count;
-        }
-        p->norm = sqrt(sums.square / (double)count);
-        p->predicted = 100.0 * sqrt(sums.error / sums.square);
-        const double readings = fmax((double)sums.readings, 1.0);
-        p->residual = sqrt(p->residual / readings);
-        p->surprise = sqrt(p->surprise / readings);
+        status = find_columns(&found, columns, count);
     }
+    if (status == GONIO_OK) {
+        conclude(&found, count);
+    }
+    gonio_i_expectation_free(&found.expectation);
     return status;
 }

@@ -189,12 +189,6 @@ static double remainder_at(const spreader *s, size_t row)
     return gonio_i_remainder(&here, &here, s->e->model.peak);
 }
 
-/* Sums over the rows of a block. */
-typedef struct block_sums {
-    double error;
-    double square;
-} block_sums;
-
 /* What a thread works on: t and product, [BLOCK][size] each. */
 typedef struct workspace {
     double *t;
@@ -202,7 +196,7 @@ typedef struct workspace {
 } workspace;
 
 static void spread_row(const spreader *s, size_t row, const double *t, const double *product,
-                       block_sums *sums)
+                       gonio_i_spread_sums *sums)
 {
     const gonio_basis_view *view = &s->e->prior->view;
     const size_t each = view->channels == GONIO_JOINT ? GONIO_CHANNELS : 1;
@@ -215,13 +209,14 @@ static void spread_row(const spreader *s, size_t row, const double *t, const dou
     if (s->deviation != NULL) {
         s->deviation[row] = sqrt(calibrated(model, &FOR_BANDS));
     }
+    sums->bins += bins;
     sums->error += bins * square;
-    sums->square += bins * (g * g + square);
+    sums->square += bins * g * g;
 }
 
 /* Rows first, first + step, ... of which `count` make a block. */
 static gonio_status spread_block(const spreader *s, size_t first, size_t step, size_t count,
-                                 const workspace *w, block_sums *sums)
+                                 const workspace *w, gonio_i_spread_sums *sums)
 {
     for (size_t b = 0; b < count; b++) {
         fill_t(s->e->prior, s->e->place, s->e->model.peak, s->n, first + b * step,
@@ -237,7 +232,8 @@ static gonio_status spread_block(const spreader *s, size_t first, size_t step, s
 
 /* All blocks, by several threads; the sums of each block for themselves, so that they add up to the
  * same whatever the threads. */
-static gonio_status spread_blocks(const spreader *s, size_t step, size_t blocks, block_sums *sums)
+static gonio_status spread_blocks(const spreader *s, size_t step, size_t blocks,
+                                  gonio_i_spread_sums *sums)
 {
     const size_t rows = s->e->prior->view.rows;
     gonio_status result = GONIO_OK;
@@ -265,8 +261,8 @@ static gonio_status spread_blocks(const spreader *s, size_t step, size_t blocks,
 }
 
 gonio_status gonio_i_spread_variance(const gonio_i_gaussian *gaussian, const double *c,
-                                     double *deviation, double *covariance, double *error,
-                                     double *square)
+                                     double *deviation, double *covariance,
+                                     gonio_i_spread_sums *sums)
 {
     spreader s = {.e = gaussian, .c = c, .deviation = deviation};
     s.n = gaussian->model.alpha > 0.0 ? gaussian->n : 0;
@@ -274,10 +270,10 @@ gonio_status gonio_i_spread_variance(const gonio_i_gaussian *gaussian, const dou
     const size_t rows = gaussian->prior->view.rows;
     const size_t step = deviation != NULL ? 1 : rows / SAMPLE + 1;
     const size_t blocks = (rows + BLOCK * step - 1) / (BLOCK * step);
-    block_sums *sums = gonio_i_allocate(gaussian->context, blocks, sizeof *sums);
-    gonio_status status = sums == NULL ? GONIO_ERROR_MEMORY : find_q(&s);
+    gonio_i_spread_sums *part = gonio_i_allocate(gaussian->context, blocks, sizeof *part);
+    gonio_status status = part == NULL ? GONIO_ERROR_MEMORY : find_q(&s);
     if (status == GONIO_OK) {
-        status = spread_blocks(&s, step, blocks, sums);
+        status = spread_blocks(&s, step, blocks, part);
     }
     for (size_t k = 0; covariance != NULL && k < gaussian->components && status == GONIO_OK; k++) {
         for (size_t j = 0; j < gaussian->components; j++) {
@@ -285,11 +281,12 @@ gonio_status gonio_i_spread_variance(const gonio_i_gaussian *gaussian, const dou
         }
     }
     for (size_t k = 0; k < blocks && status == GONIO_OK; k++) {
-        *error += (double)step * sums[k].error;
-        *square += (double)step * sums[k].square;
+        sums->bins += (double)step * part[k].bins;
+        sums->error += (double)step * part[k].error;
+        sums->square += (double)step * part[k].square;
     }
     free(s.q);
-    free(sums);
+    free(part);
     return status;
 }
 

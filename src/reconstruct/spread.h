@@ -4,13 +4,19 @@
 
 #include "equations.h"
 
-/* Adds to `error` the expected square of the field's error over the bins of the grid, and to
- * `square` that of g itself: from every row if the deviation[rows] is wanted (not NULL), otherwise
- * from a sample. c[K]: coefficients in units of the prior. covariance[K][K], or NULL: that of z is
- * added to it. */
+/* Sums over the bins of the grid. */
+typedef struct gonio_i_spread_sums {
+    double bins;
+    double error;  /* the square of the field's error to expect of the Gaussian */
+    double square; /* g^2 */
+} gonio_i_spread_sums;
+
+/* What the readings leave open: sums over every row if the deviation[rows] is wanted (not NULL),
+ * otherwise over a sample. c[K]: coefficients in units of the prior. covariance[K][K], or NULL:
+ * that of z is added to it. */
 gonio_status gonio_i_spread_variance(const gonio_i_gaussian *gaussian, const double *c,
-                                     double *deviation, double *covariance, double *error,
-                                     double *square);
+                                     double *deviation, double *covariance,
+                                     gonio_i_spread_sums *sums);
 
 /* The field of a column: what it is made of. */
 typedef struct gonio_i_spread_column {

@@ -257,6 +257,16 @@ static void test_multiplying_by_a_lower_triangle(void **state)
     }
 }
 
+static void test_the_diagonal_of_an_inverse(void **state)
+{
+    (void)state;
+    const double l[] = {2.0, 0.0, 1.0, 3.0}; /* of (4 2; 2 10) */
+    double diagonal[2];
+    assert_int_equal(gonio_i_inverse_diagonal(NULL, l, 2, diagonal), GONIO_OK);
+    assert_true(fabs(diagonal[0] - 10.0 / 36.0) < 1e-15);
+    assert_true(fabs(diagonal[1] - 4.0 / 36.0) < 1e-15);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -268,6 +278,7 @@ int main(void)
         cmocka_unit_test(test_products),
         cmocka_unit_test(test_dividing_by_cholesky_makes_columns_orthonormal),
         cmocka_unit_test(test_multiplying_by_a_lower_triangle),
+        cmocka_unit_test(test_the_diagonal_of_an_inverse),
         cmocka_unit_test(test_a_matrix_that_is_not_positive_is_an_error),
         cmocka_unit_test(test_farthest_rows_span_the_space),
     };

@@ -1,0 +1,519 @@
+/* The error to expect: see expectation.h. */
+#include "expectation.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../core/random.h"
+#include "../linalg/linalg.h"
+
+enum {
+    FOLDS = 10, /* parts of the database that are left out in turn */
+    FEW_MATERIALS = 10,
+    SAMPLE = 4096, /* rows that stand for the grid */
+    FEATURES = 4,
+};
+
+/* Of the regression, for features of deviation 1: beside some 240 columns. */
+static const double RIDGE = 10.0;
+
+/* What keeps logarithms of squares, in deviations, and of spreads, in log units, finite. */
+static const double LEAST_SQUARE = 0.01;
+static const double LEAST_SPREAD = 0.1;
+
+/* The Gaussian of the columns that are not left out, at the readings. */
+typedef struct fold {
+    double *mean_seen;  /* [n] */
+    double *mean;       /* [K] */
+    double *covariance; /* [n][n], without noise */
+    double *cross;      /* [n][K]: of the readings and z */
+} fold;
+
+struct gonio_i_expectation {
+    gonio_context *context;
+    const gonio_i_prior *prior;
+    size_t components;
+    size_t measured; /* columns of materials */
+    size_t each;     /* columns of a material */
+    double *metric;  /* [K][K]: mean over the bins of f' f */
+    size_t n;        /* of the readings that `folds` are for */
+    gonio_i_place *place;
+    fold fold[FOLDS + 1]; /* the last one leaves out nothing */
+};
+
+/* A column that is reconstructed, or some of one fold: what its readings look like, and what was
+ * found. */
+typedef struct lesson {
+    double feature[FEATURES];
+    double square; /* of its error */
+} lesson;
+
+static bool can_tell(const gonio_i_prior *prior)
+{
+    const gonio_basis_view *view = &prior->view;
+    return prior->samples > 0 && view->materials >= FEW_MATERIALS &&
+           (view->mixtures == 0 || view->parents != NULL);
+}
+
+/* Mean of f' f over the bins, from a sample of rows. */
+static gonio_status find_metric(gonio_i_expectation *x)
+{
+    const gonio_basis_view *view = &x->prior->view;
+    const size_t channels = view->channels == GONIO_JOINT ? GONIO_CHANNELS : 1;
+    const size_t step = view->rows / SAMPLE + 1;
+    const size_t count = (view->rows + step - 1) / step;
+    double *rows = gonio_i_allocate(x->context, count * x->components, sizeof *rows);
+    if (rows == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    double all = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        double *row = rows + i * x->components;
+        const double bins =
+            gonio_i_cell_bins(view->representation, view->cell[i * step / channels]);
+        gonio_i_prior_row(x->prior, i * step, row);
+        for (size_t k = 0; k < x->components; k++) {
+            row[k] *= sqrt(bins);
+        }
+        all += bins;
+    }
+    const gonio_status status =
+        gonio_i_gram_rows(x->context, rows, count, x->components, x->components, x->metric);
+    for (size_t k = 0; k < x->components * x->components && status == GONIO_OK; k++) {
+        x->metric[k] /= all;
+    }
+    free(rows);
+    return status;
+}
+
+gonio_status gonio_i_expectation_create(gonio_context *context, const gonio_i_prior *prior,
+                                        gonio_i_expectation **expectation)
+{
+    *expectation = NULL;
+    if (!can_tell(prior)) {
+        return GONIO_OK;
+    }
+    gonio_i_expectation *x = gonio_i_allocate(context, 1, sizeof *x);
+    if (x == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    x->context = context;
+    x->prior = prior;
+    x->components = prior->components;
+    x->measured = prior->samples - prior->view.mixtures;
+    x->each = x->measured / prior->view.materials;
+    x->metric = gonio_i_allocate(context, x->components * x->components, sizeof *x->metric);
+    const gonio_status status = x->metric == NULL ? GONIO_ERROR_MEMORY : find_metric(x);
+    if (status != GONIO_OK) {
+        gonio_i_expectation_free(&x);
+    }
+    *expectation = x;
+    return status;
+}
+
+static void forget_places(gonio_i_expectation *x)
+{
+    for (size_t k = 0; k <= FOLDS; k++) {
+        free(x->fold[k].mean_seen);
+        free(x->fold[k].mean);
+        free(x->fold[k].covariance);
+        free(x->fold[k].cross);
+        x->fold[k] = (fold){0};
+    }
+    free(x->place);
+    x->place = NULL;
+    x->n = 0;
+}
+
+void gonio_i_expectation_free(gonio_i_expectation **expectation)
+{
+    if (expectation == NULL || *expectation == NULL) {
+        return;
+    }
+    forget_places(*expectation);
+    free((*expectation)->metric);
+    free(*expectation);
+    *expectation = NULL;
+}
+
+/* ---- leaving out ---- */
+
+static bool is_of_fold(const gonio_i_expectation *x, size_t measured, size_t k)
+{
+    return measured / x->each % FOLDS == k;
+}
+
+/* Whether fold k leaves a column out: none is by the last one. */
+static bool is_left_out(const gonio_i_expectation *x, size_t column, size_t k)
+{
+    if (column < x->measured) {
+        return is_of_fold(x, column, k);
+    }
+    const int32_t *parent = x->prior->view.parents + 2 * (column - x->measured);
+    return is_of_fold(x, (size_t)parent[0], k) || is_of_fold(x, (size_t)parent[1], k);
+}
+
+/* The share of each column in fold k: 0 for those left out. */
+static void share_out(const gonio_i_expectation *x, size_t k, double *share)
+{
+    double all = 0.0;
+    for (size_t j = 0; j < x->prior->samples; j++) {
+        share[j] = is_left_out(x, j, k) ? 0.0 : x->prior->share[j];
+        all += share[j];
+    }
+    for (size_t j = 0; j < x->prior->samples; j++) {
+        share[j] /= all;
+    }
+}
+
+/* from[samples][n], less its mean, times the root of the share, row after row; mean[n]. */
+static void centre(const double *from, const double *share, size_t samples, size_t n, double *mean,
+                   double *to)
+{
+    for (size_t j = 0; j < samples; j++) {
+        for (size_t i = 0; i < n; i++) {
+            mean[i] += share[j] * from[j * n + i];
+        }
+    }
+    for (size_t j = 0; j < samples; j++) {
+        const double root = sqrt(share[j]);
+        for (size_t i = 0; i < n; i++) {
+            to[j * n + i] = root * (from[j * n + i] - mean[i]);
+        }
+    }
+}
+
+/* What folds are made with: every column, centred. */
+typedef struct fold_scratch {
+    double *share; /* [samples] */
+    double *seen;  /* [samples][n] */
+    double *z;     /* [samples][K] */
+} fold_scratch;
+
+static gonio_status fill_fold(gonio_i_expectation *x, const gonio_i_gaussian *e, size_t k,
+                              const fold_scratch *s)
+{
+    fold *f = &x->fold[k];
+    const size_t samples = x->prior->samples;
+    f->mean_seen = gonio_i_allocate(x->context, e->n, sizeof *f->mean_seen);
+    f->mean = gonio_i_allocate(x->context, x->components, sizeof *f->mean);
+    f->covariance = gonio_i_allocate(x->context, e->n * e->n, sizeof *f->covariance);
+    f->cross = gonio_i_allocate(x->context, e->n * x->components, sizeof *f->cross);
+    if (f->mean_seen == NULL || f->mean == NULL || f->covariance == NULL || f->cross == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    share_out(x, k, s->share);
+    centre(e->seen, s->share, samples, e->n, f->mean_seen, s->seen);
+    centre(x->prior->sample, s->share, samples, x->components, f->mean, s->z);
+    const gonio_status status =
+        gonio_i_gram_rows(x->context, s->seen, samples, e->n, e->n, f->covariance);
+    return status == GONIO_OK ? gonio_i_product_columns(x->context, s->seen, e->n, samples, s->z,
+                                                        x->components, f->cross)
+                              : status;
+}
+
+/* Makes all folds, unless they are of the same places already. */
+static gonio_status visit(gonio_i_expectation *x, const gonio_i_gaussian *e)
+{
+    if (x->place != NULL && x->n == e->n &&
+        memcmp(x->place, e->place, e->n * sizeof *x->place) == 0) {
+        return GONIO_OK;
+    }
+    forget_places(x);
+    const size_t samples = x->prior->samples;
+    fold_scratch s = {gonio_i_allocate(x->context, samples, sizeof *s.share),
+                      gonio_i_allocate(x->context, samples * e->n, sizeof *s.seen),
+                      gonio_i_allocate(x->context, samples * x->components, sizeof *s.z)};
+    gonio_i_place *place = gonio_i_allocate(x->context, e->n, sizeof *place);
+    gonio_status status = s.share == NULL || s.seen == NULL || s.z == NULL || place == NULL
+                              ? GONIO_ERROR_MEMORY
+                              : GONIO_OK;
+    for (size_t k = 0; k <= FOLDS && status == GONIO_OK; k++) {
+        status = fill_fold(x, e, k, &s);
+    }
+    if (status == GONIO_OK) {
+        memcpy(place, e->place, e->n * sizeof *place);
+        x->place = place;
+        x->n = e->n;
+    } else {
+        free(place);
+    }
+    free(s.share);
+    free(s.seen);
+    free(s.z);
+    return status;
+}
+
+/* ---- lessons ---- */
+
+/* How much of a say a reading has: 1 if exact, next to 0 if it is set aside. */
+static double say_of(const gonio_i_gaussian *e, const fold *f, size_t i)
+{
+    const double prior = f->covariance[i * e->n + i];
+    return prior / (prior + gonio_i_gaussian_noise(e, i));
+}
+
+/* y: readings less the fold's mean; solved: S^-1 y; diagonal: of S^-1. The mean of the database is
+ * put back where brightness counts. */
+static void find_features(const gonio_i_gaussian *e, const fold *f, const double *y,
+                          const double *solved, const double *diagonal, double *feature)
+{
+    double all = 1e-9;
+    double surprise = 0.0;
+    double distance = 0.0;
+    double mean = 0.0;
+    double square = 0.0;
+    for (size_t i = 0; i < e->n; i++) {
+        const double say = say_of(e, f, i);
+        const double g = e->mean[i] + f->mean_seen[i] + y[i];
+        all += say;
+        surprise += say * solved[i] * solved[i] / diagonal[i];
+        distance += y[i] * solved[i];
+        mean += say * g;
+        square += say * g * g;
+    }
+    mean /= all;
+    feature[0] = log(surprise / all + LEAST_SQUARE); /* of each reading to the others */
+    feature[1] = log(distance / all + LEAST_SQUARE); /* Mahalanobis' */
+    feature[2] = mean;
+    feature[3] = log(sqrt(fmax(square / all - mean * mean, 0.0)) + LEAST_SPREAD);
+}
+
+/* S = L L' of a fold, and the diagonal of S^-1. */
+typedef struct solver {
+    double *lower;
+    double *diagonal;
+} solver;
+
+static gonio_status begin_solver(const gonio_i_expectation *x, const gonio_i_gaussian *e,
+                                 const fold *f, solver *s)
+{
+    const size_t n = e->n;
+    s->lower = gonio_i_allocate(x->context, n * n, sizeof *s->lower);
+    s->diagonal = gonio_i_allocate(x->context, n, sizeof *s->diagonal);
+    if (s->lower == NULL || s->diagonal == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    memcpy(s->lower, f->covariance, n * n * sizeof *s->lower);
+    for (size_t i = 0; i < n; i++) {
+        s->lower[i * n + i] += gonio_i_gaussian_noise(e, i);
+    }
+    const gonio_status status = gonio_i_cholesky(x->context, s->lower, n);
+    return status == GONIO_OK ? gonio_i_inverse_diagonal(x->context, s->lower, n, s->diagonal)
+                              : status;
+}
+
+static void end_solver(solver *s)
+{
+    free(s->lower);
+    free(s->diagonal);
+}
+
+static void solve(const solver *s, size_t count, size_t n, double *y)
+{
+    gonio_i_divide_triangle(y, count, n, s->lower);
+    gonio_i_divide_lower(y, count, n, s->lower);
+}
+
+/* What is read of a measured column, less the fold's mean: with noise, the same every time. */
+static void read_column(const gonio_i_gaussian *e, const fold *f, size_t column, double *y)
+{
+    gonio_i_random random;
+    gonio_i_random_seed(&random, 0, column);
+    for (size_t i = 0; i < e->n; i++) {
+        const double noise = sqrt(gonio_i_gaussian_noise(e, i)) * gonio_i_random_normal(&random);
+        y[i] = e->seen[column * e->n + i] - f->mean_seen[i] + say_of(e, f, i) * noise;
+    }
+}
+
+/* Scratch for the columns of a fold. */
+typedef struct column_scratch {
+    size_t *column;
+    double *y;      /* [columns][n] */
+    double *solved; /* [columns][n] */
+    double *error;  /* [columns][K]: of z */
+    double *turned; /* [columns][K]: times the metric */
+} column_scratch;
+
+/* What is off in z of the columns, once they are solved. */
+static gonio_status find_errors(const gonio_i_expectation *x, const gonio_i_gaussian *e,
+                                const fold *f, size_t count, const column_scratch *s)
+{
+    const size_t k = x->components;
+    gonio_status status =
+        gonio_i_product(x->context, s->solved, count, e->n, f->cross, k, s->error);
+    for (size_t j = 0; j < count && status == GONIO_OK; j++) {
+        const double *z = x->prior->sample + s->column[j] * k;
+        for (size_t i = 0; i < k; i++) {
+            s->error[j * k + i] = z[i] - f->mean[i] - s->error[j * k + i];
+        }
+    }
+    return status == GONIO_OK
+               ? gonio_i_product(x->context, s->error, count, k, x->metric, k, s->turned)
+               : status;
+}
+
+/* Lessons from the columns that fold k leaves out, added to what is there. */
+static gonio_status learn_fold(const gonio_i_expectation *x, const gonio_i_gaussian *e, size_t k,
+                               const column_scratch *s, lesson *lessons, size_t *count)
+{
+    const fold *f = &x->fold[k];
+    size_t columns = 0;
+    for (size_t j = 0; j < x->measured; j++) {
+        if (is_of_fold(x, j, k)) {
+            read_column(e, f, j, s->y + columns * e->n);
+            s->column[columns++] = j;
+        }
+    }
+    memcpy(s->solved, s->y, columns * e->n * sizeof *s->y);
+    solver with = {0};
+    gonio_status status = begin_solver(x, e, f, &with);
+    if (status == GONIO_OK) {
+        solve(&with, columns, e->n, s->solved);
+        status = find_errors(x, e, f, columns, s);
+    }
+    for (size_t j = 0; j < columns && status == GONIO_OK; j++) {
+        lesson *l = &lessons[(*count)++];
+        find_features(e, f, s->y + j * e->n, s->solved + j * e->n, with.diagonal, l->feature);
+        l->square =
+            gonio_i_dot(s->error + j * x->components, s->turned + j * x->components, x->components);
+    }
+    end_solver(&with);
+    return status;
+}
+
+static gonio_status learn_folds(const gonio_i_expectation *x, const gonio_i_gaussian *e,
+                                lesson *lessons)
+{
+    const size_t most = (x->prior->view.materials / FOLDS + 1) * x->each;
+    column_scratch s = {gonio_i_allocate(x->context, most, sizeof *s.column),
+                        gonio_i_allocate(x->context, most * e->n, sizeof *s.y),
+                        gonio_i_allocate(x->context, most * e->n, sizeof *s.solved),
+                        gonio_i_allocate(x->context, most * x->components, sizeof *s.error),
+                        gonio_i_allocate(x->context, most * x->components, sizeof *s.turned)};
+    const bool done = s.column && s.y && s.solved && s.error && s.turned;
+    gonio_status status = done ? GONIO_OK : GONIO_ERROR_MEMORY;
+    size_t count = 0;
+    for (size_t k = 0; k < FOLDS && status == GONIO_OK; k++) {
+        status = learn_fold(x, e, k, &s, lessons, &count);
+    }
+    free(s.column);
+    free(s.y);
+    free(s.solved);
+    free(s.error);
+    free(s.turned);
+    return status;
+}
+
+/* The features of the readings themselves. */
+static gonio_status look(const gonio_i_expectation *x, const gonio_i_gaussian *e, double *feature)
+{
+    const fold *f = &x->fold[FOLDS];
+    double *y = gonio_i_allocate(x->context, 2 * e->n, sizeof *y);
+    solver with = {0};
+    gonio_status status = y == NULL ? GONIO_ERROR_MEMORY : begin_solver(x, e, f, &with);
+    if (status == GONIO_OK) {
+        for (size_t i = 0; i < e->n; i++) {
+            y[i] = e->y[i] - f->mean_seen[i];
+            y[e->n + i] = y[i];
+        }
+        solve(&with, 1, e->n, y + e->n);
+        find_features(e, f, y, y + e->n, with.diagonal, feature);
+    }
+    end_solver(&with);
+    free(y);
+    return status;
+}
+
+/* ---- regression ---- */
+
+typedef struct scaling {
+    double mean[FEATURES];
+    double deviation[FEATURES];
+} scaling;
+
+static scaling scale_of(const lesson *lessons, size_t count)
+{
+    scaling s = {0};
+    for (int k = 0; k < FEATURES; k++) {
+        double square = 0.0;
+        for (size_t j = 0; j < count; j++) {
+            s.mean[k] += lessons[j].feature[k] / (double)count;
+            square += lessons[j].feature[k] * lessons[j].feature[k] / (double)count;
+        }
+        s.deviation[k] = sqrt(fmax(square - s.mean[k] * s.mean[k], 0.0)) + 1e-9;
+    }
+    return s;
+}
+
+static void fill_row(const scaling *s, const double *feature, double *row)
+{
+    row[FEATURES] = 1.0;
+    for (int k = 0; k < FEATURES; k++) {
+        row[k] = (feature[k] - s->mean[k]) / s->deviation[k];
+    }
+}
+
+static double fit_of(const double *row, const double *slope)
+{
+    return gonio_i_dot(row, slope, FEATURES + 1);
+}
+
+/* The ridge is FEATURES equations more, slope = 0 each. */
+static gonio_status regress(gonio_context *context, const lesson *lessons, size_t count,
+                            const double *feature, double *square)
+{
+    enum { UNKNOWNS = FEATURES + 1 };
+    const scaling s = scale_of(lessons, count);
+    const size_t equations = count + FEATURES;
+    double *a = gonio_i_allocate(context, equations * UNKNOWNS, sizeof *a);
+    double *b = gonio_i_allocate(context, equations, sizeof *b);
+    double slope[UNKNOWNS] = {0};
+    double row[UNKNOWNS];
+    double condition = 0.0;
+    size_t rank = 0;
+    gonio_status status = a == NULL || b == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    if (status == GONIO_OK) {
+        for (size_t j = 0; j < count; j++) {
+            fill_row(&s, lessons[j].feature, a + j * UNKNOWNS);
+            b[j] = log(lessons[j].square + 1e-12);
+        }
+        for (size_t k = 0; k < FEATURES; k++) {
+            a[(count + k) * UNKNOWNS + k] = sqrt(RIDGE);
+        }
+        status =
+            gonio_i_least_squares(context, a, equations, UNKNOWNS, b, 1, slope, &rank, &condition);
+    }
+    if (status == GONIO_OK) {
+        double smearing = 0.0;
+        for (size_t j = 0; j < count; j++) {
+            fill_row(&s, lessons[j].feature, row);
+            smearing += exp(0.5 * (b[j] - fit_of(row, slope))) / (double)count;
+        }
+        fill_row(&s, feature, row);
+        *square = smearing * smearing * exp(fit_of(row, slope));
+    }
+    free(a);
+    free(b);
+    return status;
+}
+
+gonio_status gonio_i_expectation_find(gonio_i_expectation *x, const gonio_i_gaussian *e,
+                                      double *square)
+{
+    double feature[FEATURES];
+    lesson *lessons = gonio_i_allocate(x->context, x->measured, sizeof *lessons);
+    gonio_status status = lessons == NULL ? GONIO_ERROR_MEMORY : visit(x, e);
+    if (status == GONIO_OK) {
+        status = learn_folds(x, e, lessons);
+    }
+    if (status == GONIO_OK) {
+        status = look(x, e, feature);
+    }
+    if (status == GONIO_OK) {
+        status = regress(x->context, lessons, x->measured, feature, square);
+    }
+    free(lessons);
+    return status;
+}
