@@ -3,7 +3,8 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
+
+#include "probe.h"
 
 /* Narrow peaks only where there is much that the database does not know: for materials like its own
  * they cost a tenth. */
@@ -17,11 +18,10 @@ static const struct remainder {
  * other, say the same again, and a sum over all of them is far too sure. */
 static const double SHARE = 1.0 / 8.0;
 
-/* What a model is the less likely for beforehand, in ln: those that suppose less come first. All
- * three were found on two splits of the neural MERL materials (docs/accuracy.md). */
-static const double FOR_REMAINDERS =
-    2.0 / 3.0;                             /* for each factor of e from the smallest alpha on */
-static const double FOR_PLAIN = 2.0 / 3.0; /* for a plain Gaussian instead of a mixture */
+/* What a plain Gaussian is the less likely for beforehand than a mixture, in ln. Found, as the
+ * share and what counts against remainders, on two splits of the neural MERL materials
+ * (docs/accuracy.md). */
+static const double FOR_PLAIN = 2.0 / 3.0;
 
 /* Models with less weight than this beside the likeliest are left out. */
 static const double NEGLIGIBLE = 0.02;
@@ -29,8 +29,6 @@ static const double NEGLIGIBLE = 0.02;
 enum {
     ALL_REMAINDERS = sizeof REMAINDERS / sizeof *REMAINDERS,
     CHOICES = 2 * ALL_REMAINDERS, /* as a mixture around the columns and as a plain Gaussian */
-    MOST_TRIED = 128,             /* readings of a column that models are weighed by */
-    MOST_COLUMNS_TRIED = 8,       /* columns that they are weighed by */
 };
 
 static gonio_i_model choice(int k, size_t readings)
@@ -45,63 +43,8 @@ static double log_prior(int k)
 {
     const double least = REMAINDERS[1].alpha;
     const double alpha = fmax(REMAINDERS[k % ALL_REMAINDERS].alpha, least);
-    return -FOR_REMAINDERS * log(alpha / least) - (k < ALL_REMAINDERS ? 0.0 : FOR_PLAIN);
-}
-
-/* The model while wrong readings are looked for: found only afterwards, they would pass for a
- * remainder. */
-static const gonio_i_model SETTLING = {GONIO_I_KERNEL_WIDTH, 0.12, 0.0};
-
-/* What a direction that was read wrongly has to explain, in ln of the density: readings of unknown
- * kinds of materials that look wrong explain 0 to 15 a direction (40 readings), wrong ones 24 and
- * more. */
-static const double FOR_WRONG_DIRECTION = 14.0;
-
-/* Readings are wrong more often than Gaussians say: what is left out is scored by Student's t with
- * this many degrees of freedom. */
-static const double FREEDOM = 4.0;
-
-/* ln of Student's density of a difference, but for a constant. */
-static double score_of(double difference, double variance)
-{
-    const double square = difference * difference / variance;
-    return -0.5 * log(variance) - 0.5 * (FREEDOM + 1.0) * log1p(square / FREEDOM);
-}
-
-static gonio_status add_scores(gonio_i_gaussian *e, size_t readings, double score[CHOICES])
-{
-    double *difference = gonio_i_allocate(e->context, e->n, sizeof *difference);
-    double *variance = gonio_i_allocate(e->context, e->n, sizeof *variance);
-    gonio_status status = difference == NULL || variance == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
-    for (int k = 0; k < CHOICES && status == GONIO_OK; k++) {
-        const gonio_i_model model = choice(k, readings);
-        status = gonio_i_gaussian_solve(e, &model);
-        if (status == GONIO_OK) {
-            status = gonio_i_gaussian_leave_one_out(e, difference, variance);
-        }
-        for (size_t i = 0; i < e->n && status == GONIO_OK; i++) {
-            score[k] += score_of(difference[i], variance[i]);
-        }
-    }
-    free(difference);
-    free(variance);
-    return status;
-}
-
-/* At most MOST_TRIED readings of a column, evenly spaced. */
-static gonio_status thin(gonio_context *context, const gonio_i_column *column,
-                         gonio_i_column *thinned)
-{
-    const size_t count = column->count < MOST_TRIED ? column->count : MOST_TRIED;
-    thinned->observation = gonio_i_allocate(context, count, sizeof *thinned->observation);
-    thinned->count = count;
-    if (thinned->observation == NULL) {
-        return GONIO_ERROR_MEMORY;
-    }
-    for (size_t i = 0; i < count; i++) {
-        thinned->observation[i] = column->observation[i * column->count / count];
-    }
-    return GONIO_OK;
+    return -SHARE * GONIO_I_FOR_REMAINDERS * log(alpha / least) -
+           (k < ALL_REMAINDERS ? 0.0 : FOR_PLAIN);
 }
 
 /* What the readings say of every model, with doubt or without. */
@@ -111,45 +54,34 @@ typedef struct opinion {
 } opinion;
 
 static gonio_status score_column(gonio_context *context, const gonio_i_prior *prior,
-                                 const gonio_i_column *column, bool doubt, opinion *o)
+                                 const gonio_i_column *column, size_t readings, bool doubt,
+                                 opinion *o)
 {
-    gonio_i_column thinned = {0};
     gonio_i_gaussian e = {0};
     size_t outlying = 0;
-    gonio_status status = thin(context, column, &thinned);
+    gonio_status status = gonio_i_gaussian_begin(context, prior, column, &e);
     if (status == GONIO_OK) {
-        status = gonio_i_gaussian_begin(context, prior, &thinned, &e);
-    }
-    if (status == GONIO_OK) {
-        status = gonio_i_gaussian_solve(&e, &SETTLING);
+        status = gonio_i_gaussian_solve(&e, &GONIO_I_SETTLING);
     }
     if (status == GONIO_OK) {
         status = gonio_i_gaussian_settle(&e, doubt, &outlying);
     }
-    if (status == GONIO_OK) {
-        o->outlying += outlying;
-        status = add_scores(&e, column->count, o->score);
+    o->outlying += outlying;
+    for (int k = 0; k < CHOICES && status == GONIO_OK; k++) {
+        const gonio_i_model model = choice(k, readings);
+        status = gonio_i_probe_score(&e, &model, &o->score[k]);
     }
     gonio_i_gaussian_end(&e);
-    free(thinned.observation);
     return status;
 }
 
-static size_t tried_of(size_t columns)
-{
-    return columns < MOST_COLUMNS_TRIED ? columns : MOST_COLUMNS_TRIED;
-}
-
 static gonio_status score_columns(gonio_context *context, const gonio_i_prior *prior,
-                                  const gonio_i_column *columns, size_t count, bool doubt,
-                                  opinion *o)
+                                  const gonio_i_probe *probe, bool doubt, opinion *o)
 {
-    const size_t tried = tried_of(count);
     gonio_status status = GONIO_OK;
-    for (size_t k = 0; k < tried && status == GONIO_OK; k++) {
-        const gonio_i_column *column = &columns[k * count / tried];
-        if (column->count > 1) {
-            status = score_column(context, prior, column, doubt, o);
+    for (size_t k = 0; k < probe->count && status == GONIO_OK; k++) {
+        if (probe->readings[k] > 1) {
+            status = score_column(context, prior, &probe->column[k], probe->readings[k], doubt, o);
         }
     }
     return status;
@@ -199,9 +131,9 @@ static bool is_doubtful(const gonio_i_prior *prior, size_t columns, const opinio
                         const opinion *believing)
 {
     const bool joint = prior->view.channels == GONIO_JOINT;
-    const double values = (double)(joint ? GONIO_CHANNELS : tried_of(columns));
+    const double values = (double)(joint ? GONIO_CHANNELS : columns);
     const double directions = (double)doubting->outlying / values;
-    return best_score(doubting) - best_score(believing) > FOR_WRONG_DIRECTION * directions;
+    return best_score(doubting) - best_score(believing) > GONIO_I_FOR_WRONG_DIRECTION * directions;
 }
 
 gonio_status gonio_i_models_weigh(gonio_context *context, const gonio_i_prior *prior,
@@ -212,15 +144,21 @@ gonio_status gonio_i_models_weigh(gonio_context *context, const gonio_i_prior *p
     double log_weight[CHOICES];
     opinion doubting = {0};
     opinion believing = {0};
-    gonio_status status = score_columns(context, prior, columns, count, true, &doubting);
-    if (status == GONIO_OK && doubting.outlying > 0) {
-        status = score_columns(context, prior, columns, count, false, &believing);
+    gonio_i_probe probe;
+    gonio_status status = gonio_i_probe_begin(context, columns, count, &probe);
+    if (status == GONIO_OK) {
+        status = score_columns(context, prior, &probe, true, &doubting);
     }
-    const bool doubt = doubting.outlying == 0 || is_doubtful(prior, count, &doubting, &believing);
+    if (status == GONIO_OK && doubting.outlying > 0) {
+        status = score_columns(context, prior, &probe, false, &believing);
+    }
+    const bool doubt =
+        doubting.outlying == 0 || is_doubtful(prior, probe.count, &doubting, &believing);
     const opinion *says = doubt ? &doubting : &believing;
     for (int k = 0; k < CHOICES; k++) {
         log_weight[k] = SHARE * says->score[k] + log_prior(k);
     }
     *models = normalise(log_weight, columns[0].count);
+    gonio_i_probe_end(&probe);
     return status;
 }

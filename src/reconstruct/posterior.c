@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "../linalg/linalg.h"
+#include "doubt.h"
 #include "equations.h"
 #include "expectation.h"
 #include "merge.h"
@@ -290,6 +291,57 @@ static void conclude(const finding *found, size_t count)
     p->smoothness = found->models.best.alpha;
 }
 
+/* Copies, as what is read wrongly gets another variance. */
+static gonio_status copy_columns(gonio_context *context, const gonio_i_column *columns,
+                                 size_t count, gonio_i_column *copies)
+{
+    for (size_t k = 0; k < count; k++) {
+        const size_t bytes = columns[k].count * sizeof *copies[k].observation;
+        copies[k].observation =
+            gonio_i_allocate(context, columns[k].count, sizeof *copies[k].observation);
+        if (copies[k].observation == NULL) {
+            return GONIO_ERROR_MEMORY;
+        }
+        copies[k].count = columns[k].count;
+        if (bytes > 0) {
+            memcpy(copies[k].observation, columns[k].observation, bytes);
+        }
+    }
+    return GONIO_OK;
+}
+
+static gonio_status find(finding *found, const gonio_i_column *columns, size_t count)
+{
+    const gonio_status status =
+        gonio_i_expectation_create(found->context, found->prior, &found->expectation);
+    return status == GONIO_OK ? find_columns(found, columns, count) : status;
+}
+
+/* Directions that were read wrongly are set aside and models weighed without them first. */
+static gonio_status doubt_and_find(finding *found, const gonio_i_column *columns, size_t count)
+{
+    gonio_context *context = found->context;
+    gonio_i_column *copies = gonio_i_allocate(context, count, sizeof *copies);
+    size_t wrong = 0;
+    gonio_status status =
+        copies == NULL ? GONIO_ERROR_MEMORY : copy_columns(context, columns, count, copies);
+    if (status == GONIO_OK) {
+        status = gonio_i_doubt(context, found->prior, copies, count, &wrong);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_models_weigh(context, found->prior, copies, count, &found->models);
+    }
+    found->p->outlying += wrong;
+    if (status == GONIO_OK) {
+        status = find(found, copies, count);
+    }
+    for (size_t k = 0; copies != NULL && k < count; k++) {
+        free(copies[k].observation);
+    }
+    free(copies);
+    return status;
+}
+
 gonio_status gonio_i_posterior_find(gonio_context *context, const gonio_i_prior *prior,
                                     const gonio_i_column *columns, size_t count,
                                     const gonio_i_posterior_options *options, gonio_i_posterior *p)
@@ -300,19 +352,11 @@ gonio_status gonio_i_posterior_find(gonio_context *context, const gonio_i_prior 
                          (gonio_i_model){GONIO_I_KERNEL_WIDTH, options->smoothness, 0.0}),
                      .most = options->most > 0 ? options->most : MOST_READINGS,
                      .p = p};
-    gonio_status status = GONIO_OK;
     p->outlying = 0;
     p->residual = 0.0;
     p->surprise = 0.0;
-    if (!(options->smoothness >= 0.0)) {
-        status = gonio_i_models_weigh(context, prior, columns, count, &found.models);
-    }
-    if (status == GONIO_OK) {
-        status = gonio_i_expectation_create(context, prior, &found.expectation);
-    }
-    if (status == GONIO_OK) {
-        status = find_columns(&found, columns, count);
-    }
+    const gonio_status status = options->smoothness >= 0.0 ? find(&found, columns, count)
+                                                           : doubt_and_find(&found, columns, count);
     if (status == GONIO_OK) {
         conclude(&found, count);
     }

@@ -9,6 +9,7 @@
 
 #include "../unit/made_basis.h"
 #include "core/random.h"
+#include "reconstruct/doubt.h"
 #include "reconstruct/models.h"
 
 enum { MOST = 60 };
@@ -500,6 +501,110 @@ static void test_a_reading_ten_times_too_large(void **state)
 /* ---- models ---- */
 
 /* The reconstruction is the mean over the models, and nothing else. */
+/* ---- directions that were read wrongly ---- */
+
+enum { COLUMNS = 3, WRONG = 24 };
+
+static const double TENFOLD = 2.302585;
+
+/* Three columns of WRONG readings in the same directions, each drawn from the prior. */
+typedef struct drawn_columns {
+    gonio_i_observation reading[COLUMNS][WRONG];
+    gonio_i_column column[COLUMNS];
+} drawn_columns;
+
+static void draw_columns(uint64_t seed, drawn_columns *d)
+{
+    const drawn first = draw(seed, 0.02);
+    for (size_t c = 0; c < COLUMNS; c++) {
+        const drawn other = draw(seed + 100 * c, 0.02);
+        for (size_t i = 0; i < WRONG; i++) {
+            d->reading[c][i] = first.reading[i];
+            d->reading[c][i].g +=
+                truth_at(other.z, first.reading[i].at) - truth_at(first.z, first.reading[i].at);
+        }
+        d->column[c] = (gonio_i_column){WRONG, d->reading[c]};
+        free(other.z);
+    }
+    free(first.z);
+}
+
+/* Directions that are doubted; of all columns alike. */
+static size_t doubted(drawn_columns *d, bool *is)
+{
+    size_t wrong = 0;
+    size_t directions = 0;
+    assert_int_equal(gonio_i_doubt(context, mixture, d->column, COLUMNS, &wrong), GONIO_OK);
+    for (size_t i = 0; i < WRONG; i++) {
+        is[i] = d->reading[0][i].variance > 1.0;
+        directions += is[i];
+        for (size_t c = 1; c < COLUMNS; c++) {
+            assert_int_equal(d->reading[c][i].variance > 1.0, is[i]);
+        }
+    }
+    assert_int_equal(wrong, COLUMNS * directions);
+    return directions;
+}
+
+static void mistake(drawn_columns *d, size_t i, double by)
+{
+    for (size_t c = 0; c < COLUMNS; c++) {
+        d->reading[c][i].g += by;
+    }
+}
+
+static void test_directions_that_were_read_wrongly(void **state)
+{
+    (void)state;
+    bool is[WRONG];
+    size_t twos = 0;
+    for (uint64_t seed = 40; seed < 48; seed++) {
+        drawn_columns d;
+        draw_columns(seed, &d);
+        assert_int_equal(doubted(&d, is), 0);
+        mistake(&d, seed % WRONG, TENFOLD);
+        assert_int_equal(doubted(&d, is), 1);
+        assert_true(is[seed % WRONG]);
+        /* Two, of which the second is too low: one can hide the other. */
+        draw_columns(seed, &d);
+        mistake(&d, seed % WRONG, TENFOLD);
+        mistake(&d, (seed + 7) % WRONG, -TENFOLD);
+        const size_t of_two = doubted(&d, is);
+        assert_int_equal(of_two, is[seed % WRONG] + is[(seed + 7) % WRONG]);
+        twos += of_two;
+        /* So many that the material may as well be unusual: a tenth and one at most. */
+        draw_columns(seed, &d);
+        for (size_t i = 0; i < WRONG; i += 2) {
+            mistake(&d, i, i % 4 == 0 ? TENFOLD : -TENFOLD);
+        }
+        assert_true(doubted(&d, is) <= 1 + WRONG / 10);
+    }
+    print_message("%zu of 16 found where there are two\n", twos);
+    assert_true(twos >= 12);
+}
+
+/* Whole reconstructions: with a wrong direction as good as without it. */
+static void test_a_wrong_direction_hardly_counts(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 40; seed < 48; seed++) {
+        drawn_columns d;
+        draw_columns(seed, &d);
+        const size_t i = seed % WRONG;
+        const found before = find(mixture, d.reading[0], WRONG, -1.0);
+        mistake(&d, i, 2.0 * TENFOLD);
+        const found with = find(mixture, d.reading[0], WRONG, -1.0);
+        d.reading[0][i] = d.reading[0][WRONG - 1];
+        const found without = find(mixture, d.reading[0], WRONG - 1, -1.0);
+        assert_true(with.posterior.outlying >= 1);
+        assert_true(difference(&with, &without) < 0.02 + difference(&before, &without));
+        found all[] = {before, with, without};
+        for (int k = 0; k < 3; k++) {
+            drop(&all[k]);
+        }
+    }
+}
+
 static void test_the_mean_over_the_models(void **state)
 {
     (void)state;
@@ -704,6 +809,8 @@ int main(void)
         cmocka_unit_test(test_deviations_shrink),
         cmocka_unit_test(test_bounds),
         cmocka_unit_test(test_a_reading_ten_times_too_large),
+        cmocka_unit_test(test_directions_that_were_read_wrongly),
+        cmocka_unit_test(test_a_wrong_direction_hardly_counts),
         cmocka_unit_test(test_the_mean_over_the_models),
         cmocka_unit_test(test_an_unusual_material),
         cmocka_unit_test(test_what_comes_out_is_sane),

@@ -1,0 +1,307 @@
+/* Directions that were read wrongly: see doubt.h. */
+#include "doubt.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "probe.h"
+
+/* Remainders that an unknown kind of material may have: smooth ones, and with narrow peaks. */
+static const struct remainder {
+    double alpha;
+    double peak;
+} REMAINDERS[] = {{0.03, 0.0}, {0.12, 0.0}, {0.5, 0.0}, {0.12, 8.0}, {0.5, 8.0}};
+
+/* Directions that are as far off as this, in deviations, may be left out; this many of the worst
+ * are tried. */
+static const double SUSPECT = 1.5;
+
+enum { SUSPECTS = 6, MODELS = sizeof REMAINDERS / sizeof *REMAINDERS };
+
+/* Log units: a few readings' worth of the largest mistakes. */
+static const double HARDLY_A_SAY = 1e3;
+
+/* Mistakes are gross: a factor of more than three, in log units. */
+static const double GROSS = 1.2;
+
+/* If more of the directions than this seem wrong, and one, it is the material that is unusual. */
+static const double MOST_WRONG = 0.1;
+
+/* What leaving out a direction has to explain, in ln of the density of three columns: nine tenths
+ * of the suspects that were read wrongly do (docs/accuracy.md), and a third of the right readings
+ * of unusual materials that are suspect. */
+static const double DUE = 20.0;
+
+/* More columns say the same again. */
+static double due(size_t columns)
+{
+    return DUE * fmax((double)columns / GONIO_CHANNELS, 1.0);
+}
+
+/* A direction, in all columns of the probe. */
+typedef struct direction {
+    gonio_half_difference at;
+    size_t readings;
+    bool wrong;
+    double off; /* mean square of the readings' differences to what the others say, in deviations */
+    double gap; /* the same in log units */
+} direction;
+
+typedef struct doubter {
+    gonio_context *context;
+    gonio_i_probe probe;
+    gonio_i_gaussian column[GONIO_I_PROBE_COLUMNS];
+    size_t *number[GONIO_I_PROBE_COLUMNS]; /* of each reading's direction */
+    size_t directions;
+    direction *direction; /* [directions] */
+} doubter;
+
+static bool same(const gonio_half_difference *a, const gonio_half_difference *b)
+{
+    return a->theta_h == b->theta_h && a->theta_d == b->theta_d && a->phi_d == b->phi_d;
+}
+
+/* The number of a reading's direction; a new one if it was not met before. */
+static size_t number_of(doubter *d, const gonio_half_difference *at)
+{
+    size_t k = 0;
+    while (k < d->directions && !same(&d->direction[k].at, at)) {
+        k++;
+    }
+    if (k == d->directions) {
+        d->direction[d->directions++].at = *at;
+    }
+    d->direction[k].readings++;
+    return k;
+}
+
+static gonio_status number_directions(doubter *d)
+{
+    size_t readings = 0;
+    for (size_t c = 0; c < d->probe.count; c++) {
+        readings += d->probe.column[c].count;
+    }
+    d->direction = gonio_i_allocate(d->context, readings, sizeof *d->direction);
+    bool done = d->direction != NULL;
+    for (size_t c = 0; c < d->probe.count && done; c++) {
+        const gonio_i_column *column = &d->probe.column[c];
+        d->number[c] = gonio_i_allocate(d->context, column->count, sizeof *d->number[c]);
+        done = d->number[c] != NULL;
+        for (size_t i = 0; i < column->count && done; i++) {
+            d->number[c][i] = number_of(d, &column->observation[i].at);
+        }
+    }
+    return done ? GONIO_OK : GONIO_ERROR_MEMORY;
+}
+
+static gonio_status begin_column(doubter *d, const gonio_i_prior *prior, size_t c)
+{
+    gonio_i_gaussian *e = &d->column[c];
+    size_t outlying = 0;
+    gonio_status status = gonio_i_gaussian_begin(d->context, prior, &d->probe.column[c], e);
+    if (status == GONIO_OK) {
+        status = gonio_i_gaussian_solve(e, &GONIO_I_SETTLING);
+    }
+    return status == GONIO_OK ? gonio_i_gaussian_settle(e, false, &outlying) : status;
+}
+
+static gonio_status begin(doubter *d, const gonio_i_prior *prior, const gonio_i_column *columns,
+                          size_t count)
+{
+    gonio_status status = gonio_i_probe_begin(d->context, columns, count, &d->probe);
+    if (status == GONIO_OK) {
+        status = number_directions(d);
+    }
+    for (size_t c = 0; c < d->probe.count && status == GONIO_OK; c++) {
+        status = begin_column(d, prior, c);
+    }
+    return status;
+}
+
+static void end(doubter *d)
+{
+    for (size_t c = 0; c < d->probe.count; c++) {
+        gonio_i_gaussian_end(&d->column[c]);
+        free(d->number[c]);
+    }
+    free(d->direction);
+    gonio_i_probe_end(&d->probe);
+}
+
+/* Takes a direction out, or back in. */
+static void leave_out(doubter *d, size_t number, bool out)
+{
+    d->direction[number].wrong = out;
+    for (size_t c = 0; c < d->probe.count; c++) {
+        gonio_i_gaussian *e = &d->column[c];
+        for (size_t i = 0; i < e->n; i++) {
+            if (d->number[c][i] == number) {
+                e->variance[i] = out ? HARDLY_A_SAY : d->probe.column[c].observation[i].variance;
+            }
+        }
+    }
+}
+
+static gonio_i_model model_of(const doubter *d, size_t column, size_t k)
+{
+    return (gonio_i_model){gonio_i_kernel_width(d->probe.readings[column]), REMAINDERS[k].alpha,
+                           REMAINDERS[k].peak};
+}
+
+/* How well the readings explain each other, with the remainder that they like best: that of model
+ * `best`. */
+static gonio_status score(doubter *d, double *value, size_t *best)
+{
+    gonio_status status = GONIO_OK;
+    *value = -INFINITY;
+    for (size_t k = 0; k < MODELS && status == GONIO_OK; k++) {
+        double sum = -GONIO_I_FOR_REMAINDERS * log(REMAINDERS[k].alpha / REMAINDERS[0].alpha);
+        for (size_t c = 0; c < d->probe.count && status == GONIO_OK; c++) {
+            const gonio_i_model model = model_of(d, c, k);
+            status = gonio_i_probe_score(&d->column[c], &model, &sum);
+        }
+        *best = sum > *value ? k : *best;
+        *value = fmax(*value, sum);
+    }
+    return status;
+}
+
+static gonio_status add_off(doubter *d, size_t c, const gonio_i_model *model)
+{
+    gonio_i_gaussian *e = &d->column[c];
+    double *difference = gonio_i_allocate(d->context, 2 * e->n, sizeof *difference);
+    gonio_status status = difference == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    if (status == GONIO_OK) {
+        status = gonio_i_gaussian_solve(e, model);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_gaussian_leave_one_out(e, difference, difference + e->n);
+    }
+    for (size_t i = 0; i < e->n && status == GONIO_OK; i++) {
+        direction *at = &d->direction[d->number[c][i]];
+        const double square = difference[i] * difference[i] / (double)at->readings;
+        at->off += square / difference[e->n + i];
+        at->gap += square;
+    }
+    free(difference);
+    return status;
+}
+
+/* How far each direction is off by a model. */
+static gonio_status find_off(doubter *d, size_t k)
+{
+    gonio_status status = GONIO_OK;
+    for (size_t j = 0; j < d->directions; j++) {
+        d->direction[j].off = 0.0;
+        d->direction[j].gap = 0.0;
+    }
+    for (size_t c = 0; c < d->probe.count && status == GONIO_OK; c++) {
+        const gonio_i_model model = model_of(d, c, k);
+        status = add_off(d, c, &model);
+    }
+    return status;
+}
+
+/* The direction that is off most, and taken off the list; or as many as there are, for none. */
+static size_t next_suspect(doubter *d)
+{
+    size_t worst = d->directions;
+    double most = SUSPECT * SUSPECT;
+    for (size_t j = 0; j < d->directions; j++) {
+        const direction *at = &d->direction[j];
+        if (!at->wrong && at->gap > GROSS * GROSS && at->off > most) {
+            most = at->off;
+            worst = j;
+        }
+    }
+    if (worst < d->directions) {
+        d->direction[worst].off = 0.0;
+    }
+    return worst;
+}
+
+/* Of the suspects the one without which the others explain each other best. */
+static gonio_status try_suspects(doubter *d, size_t *suspect, double *value, size_t *model)
+{
+    gonio_status status = GONIO_OK;
+    *suspect = d->directions;
+    *value = -INFINITY;
+    for (int k = 0; k < SUSPECTS && status == GONIO_OK; k++) {
+        const size_t number = next_suspect(d);
+        if (number == d->directions) {
+            break;
+        }
+        double without = 0.0;
+        size_t best = 0;
+        leave_out(d, number, true);
+        status = score(d, &without, &best);
+        leave_out(d, number, false);
+        if (status == GONIO_OK && without > *value) {
+            *value = without;
+            *suspect = number;
+            *model = best;
+        }
+    }
+    return status;
+}
+
+/* One after the other, until none is worth it. found: how many. */
+static gonio_status find_wrong(doubter *d, size_t *found)
+{
+    const size_t most = 1 + (size_t)(MOST_WRONG * (double)d->directions);
+    double value = 0.0;
+    size_t model = 0;
+    bool more = true;
+    gonio_status status = score(d, &value, &model);
+    while (more && *found <= most && status == GONIO_OK) {
+        size_t suspect = 0;
+        size_t then = 0;
+        double without = 0.0;
+        status = find_off(d, model);
+        if (status == GONIO_OK) {
+            status = try_suspects(d, &suspect, &without, &then);
+        }
+        more = status == GONIO_OK && without - value > due(d->probe.count);
+        if (more) {
+            leave_out(d, suspect, true);
+            value = without;
+            model = then;
+            (*found)++;
+        }
+    }
+    *found = *found > most ? 0 : *found;
+    return status;
+}
+
+/* Leaves a column's readings of wrong directions hardly a say; how many there are. */
+static size_t widen(const doubter *d, gonio_i_column *column)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < column->count; i++) {
+        for (size_t j = 0; j < d->directions; j++) {
+            const direction *at = &d->direction[j];
+            if (at->wrong && same(&at->at, &column->observation[i].at)) {
+                column->observation[i].variance = HARDLY_A_SAY;
+                count++;
+            }
+        }
+    }
+    return count;
+}
+
+gonio_status gonio_i_doubt(gonio_context *context, const gonio_i_prior *prior,
+                           gonio_i_column *columns, size_t count, size_t *wrong)
+{
+    doubter d = {.context = context};
+    size_t found = 0;
+    gonio_status status = begin(&d, prior, columns, count);
+    if (status == GONIO_OK) {
+        status = find_wrong(&d, &found);
+    }
+    *wrong = 0;
+    for (size_t k = 0; k < count && found > 0 && status == GONIO_OK; k++) {
+        *wrong += widen(&d, &columns[k]);
+    }
+    end(&d);
+    return status;
+}

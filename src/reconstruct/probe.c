@@ -1,0 +1,72 @@
+/* Readings that models and doubts are tried on: see probe.h. */
+#include "probe.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { MOST_READINGS = 128 };
+
+/* Degrees of freedom of Student's t. */
+static const double FREEDOM = 4.0;
+
+/* At most MOST_READINGS readings of a column, evenly spaced. */
+static gonio_status thin(gonio_context *context, const gonio_i_column *column,
+                         gonio_i_column *thinned)
+{
+    const size_t count = column->count < MOST_READINGS ? column->count : MOST_READINGS;
+    thinned->observation = gonio_i_allocate(context, count, sizeof *thinned->observation);
+    thinned->count = count;
+    if (thinned->observation == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    for (size_t i = 0; i < count; i++) {
+        thinned->observation[i] = column->observation[i * column->count / count];
+    }
+    return GONIO_OK;
+}
+
+gonio_status gonio_i_probe_begin(gonio_context *context, const gonio_i_column *columns,
+                                 size_t count, gonio_i_probe *probe)
+{
+    gonio_status status = GONIO_OK;
+    *probe = (gonio_i_probe){0};
+    probe->count = count < GONIO_I_PROBE_COLUMNS ? count : GONIO_I_PROBE_COLUMNS;
+    for (size_t k = 0; k < probe->count && status == GONIO_OK; k++) {
+        const gonio_i_column *column = &columns[k * count / probe->count];
+        probe->readings[k] = column->count;
+        status = thin(context, column, &probe->column[k]);
+    }
+    return status;
+}
+
+void gonio_i_probe_end(gonio_i_probe *probe)
+{
+    for (size_t k = 0; k < probe->count; k++) {
+        free(probe->column[k].observation);
+    }
+    *probe = (gonio_i_probe){0};
+}
+
+/* ln of Student's density of a difference, but for a constant. */
+static double score_of(double difference, double variance)
+{
+    const double square = difference * difference / variance;
+    return -0.5 * log(variance) - 0.5 * (FREEDOM + 1.0) * log1p(square / FREEDOM);
+}
+
+gonio_status gonio_i_probe_score(gonio_i_gaussian *e, const gonio_i_model *model, double *score)
+{
+    double *difference = gonio_i_allocate(e->context, 2 * e->n, sizeof *difference);
+    gonio_status status = difference == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    if (status == GONIO_OK) {
+        status = gonio_i_gaussian_solve(e, model);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_gaussian_leave_one_out(e, difference, difference + e->n);
+    }
+    for (size_t i = 0; i < e->n && status == GONIO_OK; i++) {
+        *score += score_of(difference[i], difference[e->n + i]);
+    }
+    free(difference);
+    return status;
+}

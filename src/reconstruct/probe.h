@@ -1,0 +1,40 @@
+/* What is tried out on the readings, models and doubts: on at most 128 readings of at most 8
+ * columns, by what the readings say of each other. */
+#ifndef GONIO_PROBE_H
+#define GONIO_PROBE_H
+
+#include "equations.h"
+
+enum { GONIO_I_PROBE_COLUMNS = 8 };
+
+/* The readings, evenly spaced among all. */
+typedef struct gonio_i_probe {
+    size_t count;
+    gonio_i_column column[GONIO_I_PROBE_COLUMNS];
+    size_t readings[GONIO_I_PROBE_COLUMNS]; /* of the whole column */
+} gonio_i_probe;
+
+/* To be ended in any case. Errors: _MEMORY. */
+gonio_status gonio_i_probe_begin(gonio_context *context, const gonio_i_column *columns,
+                                 size_t count, gonio_i_probe *probe);
+void gonio_i_probe_end(gonio_i_probe *probe);
+
+/* The model while wrong readings are looked for: found only afterwards, they would pass for a
+ * remainder. */
+static const gonio_i_model GONIO_I_SETTLING = {GONIO_I_KERNEL_WIDTH, 0.12, 0.0};
+
+/* What a direction that was read wrongly has to explain, in ln of the density of three columns:
+ * readings of unknown kinds of materials that look wrong explain 0 to 15 a direction (40 readings),
+ * wrong ones 24 and more. */
+static const double GONIO_I_FOR_WRONG_DIRECTION = 14.0;
+
+/* What a model is the less likely for beforehand, for each factor of e in alpha, in the same
+ * unit. */
+static const double GONIO_I_FOR_REMAINDERS = 16.0 / 3.0;
+
+/* Solves for the model and adds ln of the density of each reading given the others. Readings are
+ * wrong more often than Gaussians say, so it is Student's. Errors: _MEMORY, _NUMERICAL. */
+gonio_status gonio_i_probe_score(gonio_i_gaussian *gaussian, const gonio_i_model *model,
+                                 double *score);
+
+#endif
