@@ -216,10 +216,12 @@ static void add_loadings(const gonio_basis *basis, gonio_fingerprint *fingerprin
     gonio_fingerprint_add(fingerprint, basis->loadings,
                           gonio_i_basis_columns(basis) * basis->components *
                               sizeof *basis->loadings);
-    if (basis->parents != NULL) {
-        gonio_fingerprint_add(fingerprint, basis->parents,
-                              2 * basis->mixtures * sizeof *basis->parents);
-    }
+}
+
+static void add_parents(const gonio_basis *basis, gonio_fingerprint *fingerprint)
+{
+    gonio_fingerprint_add(fingerprint, basis->parents,
+                          2 * basis->mixtures * sizeof *basis->parents);
 }
 
 static gonio_status hash(const gonio_basis *basis,
@@ -243,6 +245,9 @@ gonio_status gonio_i_basis_finish(gonio_context *context, gonio_basis *basis)
     }
     if (status == GONIO_OK && basis->loadings != NULL) {
         status = hash(basis, add_loadings, &basis->loadings_checksum);
+    }
+    if (status == GONIO_OK && basis->parents != NULL) {
+        status = hash(basis, add_parents, &basis->parents_checksum);
     }
     return status == GONIO_OK ? gonio_i_basis_map_cells(context, basis) : status;
 }

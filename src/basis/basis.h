@@ -27,7 +27,8 @@ struct gonio_basis {
     int32_t *parents;           /* [mixtures][2]; NULL without mixtures, or where a file has none */
     uint64_t fingerprint;       /* what it is, the same on every processor */
     uint64_t checksum;          /* of every bit of it but the loadings, against damage */
-    uint64_t loadings_checksum; /* the same of the loadings and parents; 0 without */
+    uint64_t loadings_checksum; /* the same of the loadings; 0 without */
+    uint64_t parents_checksum;  /* the same of the parents; 0 without */
     char *program;
     char *command;
     int32_t *position; /* of the whole grid: which of `cell` stands for it */

@@ -76,8 +76,9 @@ static bool write_parents(hid_t file, const gonio_basis *basis)
 {
     const size_t shape[2] = {basis->mixtures, 2};
     return basis->parents == NULL ||
-           gonio_i_hdf_write_array(file, "mixture_parents", 2, shape, H5T_NATIVE_INT32,
-                                   H5T_STD_I32LE, basis->parents);
+           (write_hash(file, "mixture_parents_checksum", basis->parents_checksum) &&
+            gonio_i_hdf_write_array(file, "mixture_parents", 2, shape, H5T_NATIVE_INT32,
+                                    H5T_STD_I32LE, basis->parents));
 }
 
 static bool write_contents(hid_t file, const gonio_basis *basis, const char *command)
@@ -155,7 +156,7 @@ typedef struct contents {
     size_t cells, rows, components, variance_count, materials, mixtures;
     char **names;
     char *program, *command;
-    uint64_t fingerprint, checksum, loadings_checksum;
+    uint64_t fingerprint, checksum, loadings_checksum, parents_checksum;
 } contents;
 
 static gonio_status damaged(const contents *c, const char *what, const char *problem)
@@ -388,7 +389,8 @@ static gonio_status read_parents(contents *c)
     if (problem == NULL && (shape[0] != c->mixtures || shape[1] != 2)) {
         problem = "has a shape that does not fit the mixtures";
     }
-    return problem != NULL ? damaged(c, "mixture_parents", problem) : GONIO_OK;
+    return problem != NULL ? damaged(c, "mixture_parents", problem)
+                           : read_hash(c, "mixture_parents_checksum", &c->parents_checksum);
 }
 
 static gonio_status read_contents(contents *c)
@@ -577,6 +579,10 @@ static gonio_status assemble(contents *c, gonio_basis **basis)
     }
     if (status == GONIO_OK) {
         status = check_hash(c, "loadings_checksum", c->loadings_checksum, made->loadings_checksum);
+    }
+    if (status == GONIO_OK) {
+        status =
+            check_hash(c, "mixture_parents_checksum", c->parents_checksum, made->parents_checksum);
     }
     if (status != GONIO_OK) {
         gonio_basis_free(&made);

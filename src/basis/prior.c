@@ -149,6 +149,16 @@ gonio_half_difference gonio_i_row_coordinates(const gonio_basis_view *view, size
     return at;
 }
 
+size_t gonio_i_sample_step(size_t rows)
+{
+    /* Without a divisor of 3 channels and 12 sectors. */
+    size_t step = rows / 4096 + 1;
+    while (step > 1 && (step % 2 == 0 || step % 3 == 0)) {
+        step--;
+    }
+    return step;
+}
+
 double gonio_i_cell_bins(gonio_representation representation, int32_t cell)
 {
     const int depth = GONIO_BINS / gonio_grid_cells(representation);

@@ -66,6 +66,9 @@ double gonio_i_remainder(const gonio_i_place *a, const gonio_i_place *b, double 
 gonio_half_difference gonio_i_row_coordinates(const gonio_basis_view *view, size_t row,
                                               int *channel);
 
+/* Every so manieth row makes a sample of some 4,096 rows, of all channels and sectors alike. */
+size_t gonio_i_sample_step(size_t rows);
+
 /* Valid bins of the grid that a cell stands for. */
 double gonio_i_cell_bins(gonio_representation representation, int32_t cell);
 

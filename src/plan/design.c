@@ -302,8 +302,9 @@ static double open_part(const place_list *p, double reciprocal)
     return 100.0 * LEFT_OPEN * sqrt(all) * reciprocal;
 }
 
-/* From the loss that is left to E6. Of a material that was read, what was expected before shrinks
- * with the loss; down to what the model leaves open. */
+/* From the loss that is left to E6. Of a material that was read, what its covariance lets expect
+ * shrinks with the loss, down to what the model leaves open; and what is expected, in proportion.
+ */
 static gonio_status fill_expected(const place_list *p, const double *remaining, gonio_plan *plan)
 {
     double reciprocal = 0.0;
@@ -315,11 +316,13 @@ static gonio_status fill_expected(const place_list *p, const double *remaining, 
     }
     const double open = open_part(p, reciprocal);
     double scale = 100.0 * 100.0 * reciprocal * reciprocal;
+    double factor = 1.0;
     if (p->known != NULL) {
-        scale = fmax(p->known->expected * p->known->expected - open * open, 0.0) / remaining[0];
+        scale = fmax(p->known->variance * p->known->variance - open * open, 0.0) / remaining[0];
+        factor = p->known->expected / p->known->variance;
     }
     for (size_t k = 0; k < plan->count; k++) {
-        plan->expected[k] = sqrt(scale * fmax(remaining[k + 1], 0.0) + open * open);
+        plan->expected[k] = factor * sqrt(scale * fmax(remaining[k + 1], 0.0) + open * open);
     }
     return status;
 }

@@ -15,7 +15,8 @@ typedef struct gonio_i_known {
     const double *covariance;          /* [K][K]: of z */
     const gonio_half_difference *read; /* [count]: directions that are not to be read again */
     size_t count;
-    double expected; /* the E6 to expect without another reading, per cent */
+    double expected; /* the E6 to expect without another reading, per cent; */
+    double variance; /* and by the covariance alone */
     double norm;     /* root of the sum of g^2 over the bins of the grid, which E6 is relative to */
 } gonio_i_known;
 

@@ -18,7 +18,7 @@ static const double SUSPECT = 1.5;
 
 enum { SUSPECTS = 6, MODELS = sizeof REMAINDERS / sizeof *REMAINDERS };
 
-/* Log units: a few readings' worth of the largest mistakes. */
+/* A variance, in squares of log units: far more than any mistake has. */
 static const double HARDLY_A_SAY = 1e3;
 
 /* Mistakes are gross: a factor of more than three, in log units. */
@@ -32,11 +32,8 @@ static const double MOST_WRONG = 0.1;
  * of unusual materials that are suspect. */
 static const double DUE = 20.0;
 
-/* More columns say the same again. */
-static double due(size_t columns)
-{
-    return DUE * fmax((double)columns / GONIO_CHANNELS, 1.0);
-}
+/* Fewer directions have too few others to be judged by. */
+enum { FEW = 5 };
 
 /* A direction, in all columns of the probe. */
 typedef struct direction {
@@ -46,6 +43,12 @@ typedef struct direction {
     double off; /* mean square of the readings' differences to what the others say, in deviations */
     double gap; /* the same in log units */
 } direction;
+
+/* More columns than three say the same again. */
+static double due(const direction *at)
+{
+    return DUE * (double)at->readings / GONIO_CHANNELS;
+}
 
 typedef struct doubter {
     gonio_context *context;
@@ -233,8 +236,11 @@ static gonio_status try_suspects(doubter *d, size_t *suspect, double *value, siz
         }
         double without = 0.0;
         size_t best = 0;
+        status = gonio_i_progress(d->context, "reconstructing", 0.0);
         leave_out(d, number, true);
-        status = score(d, &without, &best);
+        if (status == GONIO_OK) {
+            status = score(d, &without, &best);
+        }
         leave_out(d, number, false);
         if (status == GONIO_OK && without > *value) {
             *value = without;
@@ -261,7 +267,8 @@ static gonio_status find_wrong(doubter *d, size_t *found)
         if (status == GONIO_OK) {
             status = try_suspects(d, &suspect, &without, &then);
         }
-        more = status == GONIO_OK && without - value > due(d->probe.count);
+        more = status == GONIO_OK && suspect < d->directions &&
+               without - value > due(&d->direction[suspect]);
         if (more) {
             leave_out(d, suspect, true);
             value = without;
@@ -295,7 +302,7 @@ gonio_status gonio_i_doubt(gonio_context *context, const gonio_i_prior *prior,
     doubter d = {.context = context};
     size_t found = 0;
     gonio_status status = begin(&d, prior, columns, count);
-    if (status == GONIO_OK) {
+    if (status == GONIO_OK && d.directions >= FEW) {
         status = find_wrong(&d, &found);
     }
     *wrong = 0;

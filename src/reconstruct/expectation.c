@@ -11,7 +11,6 @@
 enum {
     FOLDS = 10, /* parts of the database that are left out in turn */
     FEW_MATERIALS = 10,
-    SAMPLE = 4096, /* rows that stand for the grid */
     FEATURES = 4,
 };
 
@@ -21,6 +20,9 @@ static const double RIDGE = 10.0;
 /* What keeps logarithms of squares, in deviations, and of spreads, in log units, finite. */
 static const double LEAST_SQUARE = 0.01;
 static const double LEAST_SPREAD = 0.1;
+
+/* A feature that is the same of all columns says nothing: of one reading, how they differ. */
+static const double LEAST_DEVIATION = 1e-3;
 
 /* The Gaussian of the columns that are not left out, at the readings. */
 typedef struct fold {
@@ -34,16 +36,15 @@ struct gonio_i_expectation {
     gonio_context *context;
     const gonio_i_prior *prior;
     size_t components;
-    size_t measured; /* columns of materials */
-    size_t each;     /* columns of a material */
-    double *metric;  /* [K][K]: mean over the bins of f' f */
-    size_t n;        /* of the readings that `folds` are for */
-    gonio_i_place *place;
+    size_t measured;      /* columns of materials */
+    size_t each;          /* columns of a material */
+    double *metric;       /* [K][K]: mean over the bins of f' f */
+    size_t n;             /* of the readings that `folds` are for */
+    double *f;            /* [n][K]: what these readings see */
     fold fold[FOLDS + 1]; /* the last one leaves out nothing */
 };
 
-/* A column that is reconstructed, or some of one fold: what its readings look like, and what was
- * found. */
+/* A column of the database that was left out: what its readings look like, and what was found. */
 typedef struct lesson {
     double feature[FEATURES];
     double square; /* of its error */
@@ -61,7 +62,7 @@ static gonio_status find_metric(gonio_i_expectation *x)
 {
     const gonio_basis_view *view = &x->prior->view;
     const size_t channels = view->channels == GONIO_JOINT ? GONIO_CHANNELS : 1;
-    const size_t step = view->rows / SAMPLE + 1;
+    const size_t step = gonio_i_sample_step(view->rows);
     const size_t count = (view->rows + step - 1) / step;
     double *rows = gonio_i_allocate(x->context, count * x->components, sizeof *rows);
     if (rows == NULL) {
@@ -112,7 +113,7 @@ gonio_status gonio_i_expectation_create(gonio_context *context, const gonio_i_pr
     return status;
 }
 
-static void forget_places(gonio_i_expectation *x)
+static void forget_folds(gonio_i_expectation *x)
 {
     for (size_t k = 0; k <= FOLDS; k++) {
         free(x->fold[k].mean_seen);
@@ -121,8 +122,8 @@ static void forget_places(gonio_i_expectation *x)
         free(x->fold[k].cross);
         x->fold[k] = (fold){0};
     }
-    free(x->place);
-    x->place = NULL;
+    free(x->f);
+    x->f = NULL;
     x->n = 0;
 }
 
@@ -131,7 +132,7 @@ void gonio_i_expectation_free(gonio_i_expectation **expectation)
     if (expectation == NULL || *expectation == NULL) {
         return;
     }
-    forget_places(*expectation);
+    forget_folds(*expectation);
     free((*expectation)->metric);
     free(*expectation);
     *expectation = NULL;
@@ -213,31 +214,31 @@ static gonio_status fill_fold(gonio_i_expectation *x, const gonio_i_gaussian *e,
                               : status;
 }
 
-/* Makes all folds, unless they are of the same places already. */
+/* Makes all folds, unless they are of the same readings already. */
 static gonio_status visit(gonio_i_expectation *x, const gonio_i_gaussian *e)
 {
-    if (x->place != NULL && x->n == e->n &&
-        memcmp(x->place, e->place, e->n * sizeof *x->place) == 0) {
+    const size_t values = e->n * x->components;
+    if (x->f != NULL && x->n == e->n && memcmp(x->f, e->f, values * sizeof *x->f) == 0) {
         return GONIO_OK;
     }
-    forget_places(x);
+    forget_folds(x);
     const size_t samples = x->prior->samples;
     fold_scratch s = {gonio_i_allocate(x->context, samples, sizeof *s.share),
                       gonio_i_allocate(x->context, samples * e->n, sizeof *s.seen),
                       gonio_i_allocate(x->context, samples * x->components, sizeof *s.z)};
-    gonio_i_place *place = gonio_i_allocate(x->context, e->n, sizeof *place);
-    gonio_status status = s.share == NULL || s.seen == NULL || s.z == NULL || place == NULL
+    double *copy = gonio_i_allocate(x->context, values, sizeof *copy);
+    gonio_status status = s.share == NULL || s.seen == NULL || s.z == NULL || copy == NULL
                               ? GONIO_ERROR_MEMORY
                               : GONIO_OK;
     for (size_t k = 0; k <= FOLDS && status == GONIO_OK; k++) {
         status = fill_fold(x, e, k, &s);
     }
     if (status == GONIO_OK) {
-        memcpy(place, e->place, e->n * sizeof *place);
-        x->place = place;
+        memcpy(copy, e->f, values * sizeof *copy);
+        x->f = copy;
         x->n = e->n;
     } else {
-        free(place);
+        free(copy);
     }
     free(s.share);
     free(s.seen);
@@ -254,8 +255,13 @@ static double say_of(const gonio_i_gaussian *e, const fold *f, size_t i)
     return prior / (prior + gonio_i_gaussian_noise(e, i));
 }
 
-/* y: readings less the fold's mean; solved: S^-1 y; diagonal: of S^-1. The mean of the database is
- * put back where brightness counts. */
+/* g of a reading: the mean of the database is put back. */
+static double value_of(const gonio_i_gaussian *e, const fold *f, const double *y, size_t i)
+{
+    return e->mean[i] + f->mean_seen[i] + y[i];
+}
+
+/* y: readings less the fold's mean; solved: S^-1 y; diagonal: of S^-1. */
 static void find_features(const gonio_i_gaussian *e, const fold *f, const double *y,
                           const double *solved, const double *diagonal, double *feature)
 {
@@ -266,18 +272,20 @@ static void find_features(const gonio_i_gaussian *e, const fold *f, const double
     double square = 0.0;
     for (size_t i = 0; i < e->n; i++) {
         const double say = say_of(e, f, i);
-        const double g = e->mean[i] + f->mean_seen[i] + y[i];
         all += say;
         surprise += say * solved[i] * solved[i] / diagonal[i];
         distance += y[i] * solved[i];
-        mean += say * g;
-        square += say * g * g;
+        mean += say * value_of(e, f, y, i);
     }
     mean /= all;
+    for (size_t i = 0; i < e->n; i++) {
+        const double off = value_of(e, f, y, i) - mean;
+        square += say_of(e, f, i) * off * off;
+    }
     feature[0] = log(surprise / all + LEAST_SQUARE); /* of each reading to the others */
     feature[1] = log(distance / all + LEAST_SQUARE); /* Mahalanobis' */
     feature[2] = mean;
-    feature[3] = log(sqrt(fmax(square / all - mean * mean, 0.0)) + LEAST_SPREAD);
+    feature[3] = log(sqrt(square / all) + LEAST_SPREAD);
 }
 
 /* S = L L' of a fold, and the diagonal of S^-1. */
@@ -316,14 +324,17 @@ static void solve(const solver *s, size_t count, size_t n, double *y)
     gonio_i_divide_lower(y, count, n, s->lower);
 }
 
-/* What is read of a measured column, less the fold's mean: with noise, the same every time. */
+/* What is read of a measured column, less the fold's mean: with noise, the same every time, but of
+ * readings that have no say; saturated where the material is. */
 static void read_column(const gonio_i_gaussian *e, const fold *f, size_t column, double *y)
 {
     gonio_i_random random;
     gonio_i_random_seed(&random, 0, column);
     for (size_t i = 0; i < e->n; i++) {
         const double noise = sqrt(gonio_i_gaussian_noise(e, i)) * gonio_i_random_normal(&random);
-        y[i] = e->seen[column * e->n + i] - f->mean_seen[i] + say_of(e, f, i) * noise;
+        const double seen = e->seen[column * e->n + i] + say_of(e, f, i) * noise;
+        const bool saturated = e->bound[i] > 0 && !e->left_out[i];
+        y[i] = (saturated ? fmin(seen, e->y[i]) : seen) - f->mean_seen[i];
     }
 }
 
@@ -442,7 +453,7 @@ static scaling scale_of(const lesson *lessons, size_t count)
             s.mean[k] += lessons[j].feature[k] / (double)count;
             square += lessons[j].feature[k] * lessons[j].feature[k] / (double)count;
         }
-        s.deviation[k] = sqrt(fmax(square - s.mean[k] * s.mean[k], 0.0)) + 1e-9;
+        s.deviation[k] = fmax(sqrt(fmax(square - s.mean[k] * s.mean[k], 0.0)), LEAST_DEVIATION);
     }
     return s;
 }
@@ -484,6 +495,10 @@ static gonio_status regress(gonio_context *context, const lesson *lessons, size_
         }
         status =
             gonio_i_least_squares(context, a, equations, UNKNOWNS, b, 1, slope, &rank, &condition);
+    }
+    if (status == GONIO_OK && rank < UNKNOWNS) {
+        status = gonio_i_fail(context, GONIO_ERROR_NUMERICAL,
+                              "the error to expect cannot be learned from the basis");
     }
     if (status == GONIO_OK) {
         double smearing = 0.0;

@@ -3,11 +3,12 @@
  * How far off a reconstruction is shows in its readings, to a degree: in how much they contradict
  * each other and the prior, how bright they are and how much they differ. How that shows, the
  * database tells. A tenth of its materials at a time is left out, with every mixture made of one;
- * their columns are read at the same directions with the same noise, and reconstructed from the
- * other columns by their Gaussian (posterior.h with h = 1 and alpha = 0). Ridge regression (Hoerl
- * and Kennard 1970) of the logarithm of the error's mean square on four features of the readings
- * says what to expect of the new material; from logarithms back by Duan's smearing (1983), so that
- * it is the error expected on average. */
+ * their columns are read at the same directions with noise of the same variance (but of readings
+ * that have no say) and reconstructed from the other columns by their Gaussian (posterior.h with h
+ * = 1 and alpha = 0). Ridge regression (Hoerl and Kennard 1970) of the logarithm of the error's
+ * mean square on four features of the readings says what to expect of the new material; from
+ * logarithms of errors back by Duan's smearing (1983), so that it is the error expected on average.
+ */
 #ifndef GONIO_EXPECTATION_H
 #define GONIO_EXPECTATION_H
 
@@ -24,9 +25,10 @@ void gonio_i_expectation_free(gonio_i_expectation **expectation);
 /* Readings of a column from which on _find takes long; fewer can be had by merging (merge.h). */
 enum { GONIO_I_EXPECTATION_MOST = 400 };
 
-/* The mean square of the error of g to expect over the bins of the grid, for a column of readings
- * (settled: their variances are what is believed of them). Columns that were read at the same
- * places cost little after the first. Errors: _MEMORY, _NUMERICAL. */
+/* The square of the root mean square over the bins of the grid of the error of g that is expected
+ * on average, for a column of readings (settled: their variances are what is believed of them).
+ * Columns that were read at the same places cost little after the first. Errors: _MEMORY,
+ * _NUMERICAL. */
 gonio_status gonio_i_expectation_find(gonio_i_expectation *expectation,
                                       const gonio_i_gaussian *gaussian, double *square);
 

@@ -47,6 +47,11 @@ static double log_prior(int k)
            (k < ALL_REMAINDERS ? 0.0 : FOR_PLAIN);
 }
 
+/* What setting aside single readings has to explain, for each direction's worth of them, in the
+ * unit of scores: readings of unknown kinds of materials that look wrong explain 0 to 15 a
+ * direction (40 readings), wrong ones 24 and more. */
+static const double FOR_WRONG_DIRECTION = 14.0;
+
 /* What the readings say of every model, with doubt or without. */
 typedef struct opinion {
     double score[CHOICES];
@@ -133,7 +138,7 @@ static bool is_doubtful(const gonio_i_prior *prior, size_t columns, const opinio
     const bool joint = prior->view.channels == GONIO_JOINT;
     const double values = (double)(joint ? GONIO_CHANNELS : columns);
     const double directions = (double)doubting->outlying / values;
-    return best_score(doubting) - best_score(believing) > GONIO_I_FOR_WRONG_DIRECTION * directions;
+    return best_score(doubting) - best_score(believing) > FOR_WRONG_DIRECTION * directions;
 }
 
 gonio_status gonio_i_models_weigh(gonio_context *context, const gonio_i_prior *prior,

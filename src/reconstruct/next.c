@@ -87,7 +87,11 @@ gonio_status gonio_plan_next(gonio_context *context, const gonio_basis *basis,
     }
     if (status == GONIO_OK &&
         !(plan_options->target > 0.0 && *expected_now <= plan_options->target)) {
-        const gonio_i_known known = {n.posterior.covariance, n.read, readings->count, *expected_now,
+        const gonio_i_known known = {n.posterior.covariance,
+                                     n.read,
+                                     readings->count,
+                                     *expected_now,
+                                     n.posterior.predicted_by_variance,
                                      n.posterior.norm};
         gonio_plan_options all = *plan_options;
         all.target = 0.0; /* what was read counts; the plan is as long as asked for */

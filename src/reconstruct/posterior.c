@@ -263,10 +263,10 @@ static gonio_status find_columns(finding *found, const gonio_i_column *columns, 
     return status;
 }
 
-/* Root of the square of an error by that of g, of which the estimate is smaller by the error. */
+/* 100 times the root of an error's square by g's: the estimate is shorter than g by the error. */
 static double relative(const finding *found, double error)
 {
-    return sqrt(error / (found->sums.square + error));
+    return 100.0 * sqrt(error / (found->sums.square + error));
 }
 
 /* From sums over the columns to what they stand for. Of the error the Gaussian of the likeliest
@@ -284,8 +284,8 @@ static void conclude(const finding *found, size_t count)
     }
     const double readings = fmax((double)found->readings, 1.0);
     p->norm = sqrt((found->sums.square + found->sums.error) / (double)count);
-    p->predicted =
-        100.0 * sqrt(relative(found, found->sums.error) * relative(found, found->expected));
+    p->predicted_by_variance = relative(found, found->sums.error);
+    p->predicted = sqrt(p->predicted_by_variance * relative(found, found->expected));
     p->residual = sqrt(p->residual / readings);
     p->surprise = sqrt(p->surprise / readings);
     p->smoothness = found->models.best.alpha;

@@ -13,9 +13,10 @@
  *     c = z + h^2 F' S^-1 (y - F z),   g(x) = m(x) + f(x) c + alpha^2 k(x, .) S^-1 (y - F z).
  *
  * The field is the mean over models of different h, alpha and peak of k, weighed by leaving
- * readings out one at a time, all columns together (models.h); deviations are the likeliest
- * model's. A reading that the others contradict by more than `OUTLYING` deviations counts with a
- * variance to match. */
+ * readings out one at a time, all columns together (models.h), once directions that were read
+ * wrongly are set aside (doubt.h); deviations are the likeliest model's, and the error to expect is
+ * in equal shares what its variance and what the database says (expectation.h). A reading that the
+ * others contradict by more than `OUTLYING` deviations counts with a variance to match. */
 #ifndef GONIO_POSTERIOR_H
 #define GONIO_POSTERIOR_H
 
@@ -50,16 +51,17 @@ typedef struct gonio_i_posterior_options {
 
 /* What is found; arrays belong to the caller and are filled in. */
 typedef struct gonio_i_posterior {
-    double *coefficients; /* [columns][K], of V */
-    double *field;        /* [columns][rows]: g */
-    double *deviation;    /* [columns][rows] of g, or NULL */
-    double smoothness;    /* alpha of the likeliest model */
-    double predicted;     /* of E6, per cent */
-    double surprise;      /* root mean square of (reading - what the others say) / its deviation */
-    double *covariance;   /* [K][K], of z, the mean over the columns; or NULL */
-    double norm;          /* root of the mean over the columns of the sum of g^2 over the grid */
-    size_t outlying;      /* readings that the others contradict, all columns */
-    double residual;      /* root mean square of what the others leave, log units */
+    double *coefficients;         /* [columns][K], of V */
+    double *field;                /* [columns][rows]: g */
+    double *deviation;            /* [columns][rows] of g, or NULL */
+    double smoothness;            /* alpha of the likeliest model */
+    double predicted;             /* of E6, per cent; */
+    double predicted_by_variance; /* and by the variance of the likeliest model alone */
+    double surprise;    /* root mean square of (reading - what the others say) / its deviation */
+    double *covariance; /* [K][K], of z, the mean over the columns; or NULL */
+    double norm;        /* root of the mean over the columns of the sum of g^2 over the grid */
+    size_t outlying;    /* readings that the others contradict, all columns */
+    double residual;    /* root mean square of what the others leave, log units */
 } gonio_i_posterior;
 
 /* Errors: _MEMORY, _NUMERICAL, _CANCELLED. */

@@ -23,13 +23,8 @@ void gonio_i_probe_end(gonio_i_probe *probe);
  * remainder. */
 static const gonio_i_model GONIO_I_SETTLING = {GONIO_I_KERNEL_WIDTH, 0.12, 0.0};
 
-/* What a direction that was read wrongly has to explain, in ln of the density of three columns:
- * readings of unknown kinds of materials that look wrong explain 0 to 15 a direction (40 readings),
- * wrong ones 24 and more. */
-static const double GONIO_I_FOR_WRONG_DIRECTION = 14.0;
-
-/* What a model is the less likely for beforehand, for each factor of e in alpha, in the same
- * unit. */
+/* What a model is the less likely for beforehand, for each factor of e in alpha, in the unit of
+ * scores. */
 static const double GONIO_I_FOR_REMAINDERS = 16.0 / 3.0;
 
 /* Solves for the model and adds ln of the density of each reading given the others. Readings are

@@ -14,7 +14,7 @@
 
 #include "../linalg/linalg.h"
 
-enum { BLOCK = 128, SAMPLE = 4096 /* rows that the predicted error is taken from */ };
+enum { BLOCK = 128 };
 
 /* Weights below this do not count among the samples. */
 static const double NEGLIGIBLE = 1e-7;
@@ -268,7 +268,7 @@ gonio_status gonio_i_spread_variance(const gonio_i_gaussian *gaussian, const dou
     s.n = gaussian->model.alpha > 0.0 ? gaussian->n : 0;
     s.size = gaussian->components + s.n;
     const size_t rows = gaussian->prior->view.rows;
-    const size_t step = deviation != NULL ? 1 : rows / SAMPLE + 1;
+    const size_t step = deviation != NULL ? 1 : gonio_i_sample_step(rows);
     const size_t blocks = (rows + BLOCK * step - 1) / (BLOCK * step);
     gonio_i_spread_sums *part = gonio_i_allocate(gaussian->context, blocks, sizeof *part);
     gonio_status status = part == NULL ? GONIO_ERROR_MEMORY : find_q(&s);

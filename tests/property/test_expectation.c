@@ -423,54 +423,103 @@ static void test_contradictions_and_numbers(void **state)
     }
 }
 
+static void plan_to(size_t count, const char *path)
+{
+    gonio_plan_options how;
+    gonio_plan *plan = NULL;
+    gonio_plan_options_default(&how);
+    how.count = count;
+    assert_int_equal(gonio_plan_create(context, basis, &how, &plan), GONIO_OK);
+    assert_int_equal(gonio_plan_write(context, plan, NULL, path), GONIO_OK);
+    gonio_plan_free(&plan);
+}
+
+/* A material, read as planned. */
+static gonio_readings *read_material(const char *path, const gonio_material *material)
+{
+    const gonio_readings_options as = {.values_needed = false};
+    gonio_instrument_options instrument;
+    gonio_readings *readings = NULL;
+    gonio_table *table = NULL;
+    gonio_instrument_options_default(&instrument);
+    assert_int_equal(gonio_readings_read(context, path, &as, &readings), GONIO_OK);
+    assert_int_equal(gonio_table_load(context, material, &table), GONIO_OK);
+    assert_int_equal(gonio_measure(context, readings, table, &instrument), GONIO_OK);
+    gonio_table_free(&table);
+    return readings;
+}
+
+/* ln of the expected error over the true one. */
+static double judge(const char *path, const char *name)
+{
+    gonio_reconstruct_options options;
+    gonio_material *original = NULL;
+    gonio_material *made = NULL;
+    gonio_reconstruction *r = NULL;
+    gonio_comparison comparison;
+    gonio_reconstruct_options_default(&options);
+    assert_int_equal(gonio_material_open(context, name, &original), GONIO_OK);
+    gonio_readings *readings = read_material(path, original);
+    assert_int_equal(gonio_reconstruct(context, basis, readings, &options, &r), GONIO_OK);
+    assert_int_equal(gonio_reconstruction_material(context, basis, r, "made", &made), GONIO_OK);
+    assert_int_equal(gonio_compare(context, original, made, &comparison), GONIO_OK);
+    print_message("%s: E6 %.2f %%, expected %.2f %%\n", name, comparison.all.e6, r->predicted_e6);
+    const double off = log(r->predicted_e6 / comparison.all.e6);
+    gonio_material_free(&made);
+    gonio_reconstruction_free(&r);
+    gonio_readings_free(&readings);
+    gonio_material_free(&original);
+    return off;
+}
+
 /* Of the materials that were not learned from: the error that a reconstruction expects, and the one
  * it has. */
 static void test_materials_left_out(void **state)
 {
     (void)state;
-    gonio_plan_options how;
-    gonio_plan_options_default(&how);
-    how.count = 10;
-    gonio_plan *plan = NULL;
     char *folder = support_folder();
     char path[256];
-    snprintf(path, sizeof path, "%s/p.csv", folder);
-    assert_int_equal(gonio_plan_create(context, basis, &how, &plan), GONIO_OK);
-    assert_int_equal(gonio_plan_write(context, plan, NULL, path), GONIO_OK);
     double sum = 0.0;
+    snprintf(path, sizeof path, "%s/p.csv", folder);
+    plan_to(10, path);
     for (size_t k = LEARNED; k < MATERIALS; k++) {
-        const gonio_readings_options as = {.values_needed = false};
-        gonio_instrument_options instrument;
-        gonio_reconstruct_options options;
-        gonio_material *original = NULL;
-        gonio_material *made = NULL;
-        gonio_table *table = NULL;
-        gonio_readings *readings = NULL;
-        gonio_reconstruction *r = NULL;
-        gonio_comparison comparison;
-        gonio_instrument_options_default(&instrument);
-        gonio_reconstruct_options_default(&options);
-        assert_int_equal(gonio_readings_read(context, path, &as, &readings), GONIO_OK);
-        assert_int_equal(gonio_material_open(context, names[k], &original), GONIO_OK);
-        assert_int_equal(gonio_table_load(context, original, &table), GONIO_OK);
-        assert_int_equal(gonio_measure(context, readings, table, &instrument), GONIO_OK);
-        assert_int_equal(gonio_reconstruct(context, basis, readings, &options, &r), GONIO_OK);
-        assert_int_equal(gonio_reconstruction_material(context, basis, r, "made", &made), GONIO_OK);
-        assert_int_equal(gonio_compare(context, original, made, &comparison), GONIO_OK);
-        print_message("%s: E6 %.2f %%, expected %.2f %%\n", names[k], comparison.all.e6,
-                      r->predicted_e6);
-        sum += log(r->predicted_e6 / comparison.all.e6);
-        gonio_material_free(&made);
-        gonio_reconstruction_free(&r);
-        gonio_readings_free(&readings);
-        gonio_table_free(&table);
-        gonio_material_free(&original);
+        sum += judge(path, names[k]);
     }
-    gonio_plan_free(&plan);
     support_remove(folder);
     const double ratio = exp(sum / (MATERIALS - LEARNED));
     print_message("expected / true: %.2f\n", ratio);
     assert_true(ratio > 0.6 && ratio < 1.7);
+}
+
+/* However little is expected now, more readings never promise more. */
+static void test_what_comes_next_is_no_worse(void **state)
+{
+    (void)state;
+    char *folder = support_folder();
+    char path[256];
+    gonio_material *material = NULL;
+    gonio_reconstruct_options options;
+    gonio_plan_options more;
+    gonio_plan *plan = NULL;
+    double now = 0.0;
+    snprintf(path, sizeof path, "%s/p.csv", folder);
+    plan_to(80, path);
+    gonio_reconstruct_options_default(&options);
+    gonio_plan_options_default(&more);
+    more.count = 5;
+    assert_int_equal(gonio_material_open(context, "atlas:purple-vinyl", &material), GONIO_OK);
+    gonio_readings *readings = read_material(path, material);
+    assert_int_equal(gonio_plan_next(context, basis, readings, &options, &more, &now, &plan),
+                     GONIO_OK);
+    print_message("now %.3f %%, then %.3f %%\n", now, plan->expected[0]);
+    assert_true(plan->expected[0] > 0.0 && plan->expected[0] <= now);
+    for (size_t k = 1; k < plan->count; k++) {
+        assert_true(plan->expected[k] <= plan->expected[k - 1]);
+    }
+    gonio_plan_free(&plan);
+    gonio_readings_free(&readings);
+    gonio_material_free(&material);
+    support_remove(folder);
 }
 
 /* ---- what cannot tell ---- */
@@ -511,6 +560,7 @@ int main(void)
         cmocka_unit_test(test_against_dense_algebra),
         cmocka_unit_test(test_contradictions_and_numbers),
         cmocka_unit_test(test_materials_left_out),
+        cmocka_unit_test(test_what_comes_next_is_no_worse),
         cmocka_unit_test(test_who_cannot_tell),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

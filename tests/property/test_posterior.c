@@ -498,9 +498,6 @@ static void test_a_reading_ten_times_too_large(void **state)
     }
 }
 
-/* ---- models ---- */
-
-/* The reconstruction is the mean over the models, and nothing else. */
 /* ---- directions that were read wrongly ---- */
 
 enum { COLUMNS = 3, WRONG = 24 };
@@ -579,6 +576,18 @@ static void test_directions_that_were_read_wrongly(void **state)
         }
         assert_true(doubted(&d, is) <= 1 + WRONG / 10);
     }
+    /* Nobody else to say so. */
+    for (size_t n = 1; n < 5; n++) {
+        drawn_columns d;
+        size_t wrong = 0;
+        draw_columns(40, &d);
+        mistake(&d, 0, 3.0 * TENFOLD);
+        for (size_t c = 0; c < COLUMNS; c++) {
+            d.column[c].count = n;
+        }
+        assert_int_equal(gonio_i_doubt(context, mixture, d.column, COLUMNS, &wrong), GONIO_OK);
+        assert_int_equal(wrong, 0);
+    }
     print_message("%zu of 16 found where there are two\n", twos);
     assert_true(twos >= 12);
 }
@@ -587,6 +596,7 @@ static void test_directions_that_were_read_wrongly(void **state)
 static void test_a_wrong_direction_hardly_counts(void **state)
 {
     (void)state;
+    int alone = 0; /* found in a single column */
     for (uint64_t seed = 40; seed < 48; seed++) {
         drawn_columns d;
         draw_columns(seed, &d);
@@ -594,6 +604,9 @@ static void test_a_wrong_direction_hardly_counts(void **state)
         const found before = find(mixture, d.reading[0], WRONG, -1.0);
         mistake(&d, i, 2.0 * TENFOLD);
         const found with = find(mixture, d.reading[0], WRONG, -1.0);
+        size_t wrong = 0;
+        assert_int_equal(gonio_i_doubt(context, mixture, d.column, 1, &wrong), GONIO_OK);
+        alone += wrong == 1 && d.reading[0][i].variance > 1.0;
         d.reading[0][i] = d.reading[0][WRONG - 1];
         const found without = find(mixture, d.reading[0], WRONG - 1, -1.0);
         assert_true(with.posterior.outlying >= 1);
@@ -603,8 +616,12 @@ static void test_a_wrong_direction_hardly_counts(void **state)
             drop(&all[k]);
         }
     }
+    assert_true(alone >= 6);
 }
 
+/* ---- models ---- */
+
+/* The reconstruction is the mean over the models, and nothing else. */
 static void test_the_mean_over_the_models(void **state)
 {
     (void)state;
