@@ -32,6 +32,9 @@ static const double MOST_WRONG = 0.1;
  * of unusual materials that are suspect. */
 static const double DUE = 20.0;
 
+/* Fewer directions than this know less of each other, and more is asked of them. */
+static const double ENOUGH = 40.0;
+
 /* Fewer directions have too few others to be judged by. */
 enum { FEW = 5 };
 
@@ -43,12 +46,6 @@ typedef struct direction {
     double off; /* mean square of the readings' differences to what the others say, in deviations */
     double gap; /* the same in log units */
 } direction;
-
-/* More columns than three say the same again. */
-static double due(const direction *at)
-{
-    return DUE * (double)at->readings / GONIO_CHANNELS;
-}
 
 typedef struct doubter {
     gonio_context *context;
@@ -251,6 +248,13 @@ static gonio_status try_suspects(doubter *d, size_t *suspect, double *value, siz
     return status;
 }
 
+/* More columns than three say the same again. */
+static double due(const doubter *d, const direction *at)
+{
+    const double fewer = fmax(ENOUGH / (double)d->directions, 1.0);
+    return DUE * sqrt(fewer) * (double)at->readings / GONIO_CHANNELS;
+}
+
 /* One after the other, until none is worth it. found: how many. */
 static gonio_status find_wrong(doubter *d, size_t *found)
 {
@@ -268,7 +272,7 @@ static gonio_status find_wrong(doubter *d, size_t *found)
             status = try_suspects(d, &suspect, &without, &then);
         }
         more = status == GONIO_OK && suspect < d->directions &&
-               without - value > due(&d->direction[suspect]);
+               without - value > due(d, &d->direction[suspect]);
         if (more) {
             leave_out(d, suspect, true);
             value = without;
