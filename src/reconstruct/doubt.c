@@ -169,14 +169,8 @@ static gonio_status score(doubter *d, double *value, size_t *best)
 static gonio_status add_off(doubter *d, size_t c, const gonio_i_model *model)
 {
     gonio_i_gaussian *e = &d->column[c];
-    double *difference = gonio_i_allocate(d->context, 2 * e->n, sizeof *difference);
-    gonio_status status = difference == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
-    if (status == GONIO_OK) {
-        status = gonio_i_gaussian_solve(e, model);
-    }
-    if (status == GONIO_OK) {
-        status = gonio_i_gaussian_leave_one_out(e, difference, difference + e->n);
-    }
+    double *difference = NULL;
+    const gonio_status status = gonio_i_probe_differences(e, model, &difference);
     for (size_t i = 0; i < e->n && status == GONIO_OK; i++) {
         direction *at = &d->direction[d->number[c][i]];
         const double square = difference[i] * difference[i] / (double)at->readings;

@@ -54,16 +54,20 @@ static double score_of(double difference, double variance)
     return -0.5 * log(variance) - 0.5 * (FREEDOM + 1.0) * log1p(square / FREEDOM);
 }
 
+gonio_status gonio_i_probe_differences(gonio_i_gaussian *e, const gonio_i_model *model,
+                                       double **difference)
+{
+    *difference = gonio_i_allocate(e->context, 2 * e->n, sizeof **difference);
+    const gonio_status status =
+        *difference == NULL ? GONIO_ERROR_MEMORY : gonio_i_gaussian_solve(e, model);
+    return status == GONIO_OK ? gonio_i_gaussian_leave_one_out(e, *difference, *difference + e->n)
+                              : status;
+}
+
 gonio_status gonio_i_probe_score(gonio_i_gaussian *e, const gonio_i_model *model, double *score)
 {
-    double *difference = gonio_i_allocate(e->context, 2 * e->n, sizeof *difference);
-    gonio_status status = difference == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
-    if (status == GONIO_OK) {
-        status = gonio_i_gaussian_solve(e, model);
-    }
-    if (status == GONIO_OK) {
-        status = gonio_i_gaussian_leave_one_out(e, difference, difference + e->n);
-    }
+    double *difference = NULL;
+    const gonio_status status = gonio_i_probe_differences(e, model, &difference);
     for (size_t i = 0; i < e->n && status == GONIO_OK; i++) {
         *score += score_of(difference[i], difference[e->n + i]);
     }

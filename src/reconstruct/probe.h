@@ -27,6 +27,11 @@ static const gonio_i_model GONIO_I_SETTLING = {GONIO_I_KERNEL_WIDTH, 0.12, 0.0};
  * scores. */
 static const double GONIO_I_FOR_REMAINDERS = 16.0 / 3.0;
 
+/* Solves for the model, and what the others say of each reading: the difference to it [n], then its
+ * variance [n]. difference belongs to the caller, in any case. Errors: _MEMORY, _NUMERICAL. */
+gonio_status gonio_i_probe_differences(gonio_i_gaussian *gaussian, const gonio_i_model *model,
+                                       double **difference);
+
 /* Solves for the model and adds ln of the density of each reading given the others. Readings are
  * wrong more often than Gaussians say, so it is Student's. Errors: _MEMORY, _NUMERICAL. */
 gonio_status gonio_i_probe_score(gonio_i_gaussian *gaussian, const gonio_i_model *model,
