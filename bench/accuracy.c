@@ -177,7 +177,6 @@ static gonio_reconstruct_options how_to_reconstruct(const setting *s)
     gonio_reconstruct_options how;
     gonio_reconstruct_options_default(&how);
     how.deviation = s->deviation;
-    how.believe = true;
     how.all_channels = true;
     how.noise = fmax(s->noise, how.noise);
     how.floor = fmax(s->floor, how.floor);

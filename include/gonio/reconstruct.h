@@ -30,7 +30,8 @@ typedef struct gonio_reconstruct_options {
     double floor;      /* standard deviation of a reading of darkness, 1/sr; default 1e-5 */
     double saturation; /* readings of this value or more, 1/sr, mean at least it; 0: none */
     bool deviation;    /* find the standard deviation of every cell too */
-    bool believe;      /* do not look for wrong units (gonio_reconstruction.suspicion) */
+    bool believe; /* do not look for wrong units (gonio_reconstruction.suspicion) nor for a dark
+                   * level (gonio_reconstruction.dark) */
 } gonio_reconstruct_options;
 
 GONIO_API void gonio_reconstruct_options_default(gonio_reconstruct_options *options);
@@ -59,18 +60,22 @@ typedef struct gonio_reconstruction {
     double *wavelength;  /* [wavelengths], nm */
     const char *suspicion; /* what would explain the readings far better than what they say they
                             * are ("the values include the cosine of theta_o"); NULL if nothing */
+    double *dark; /* [columns], 1/sr: what the instrument seems to take off too much, max(0, rho -
+                   * dark/cos theta_i) being read of rho; the field is without that. NULL if no
+                   * reading is zero, or such a level explains little */
 } gonio_reconstruction;
 
-/* What a reconstruction by posterior says of a reading at any directions: value[channels] in 1/sr,
- * and, unless it is NULL, the standard deviation of ln(1 + value/s) (needs
+/* What a reconstruction by posterior says of the material at any directions: value[channels] in
+ * 1/sr, and, unless it is NULL, the standard deviation of ln(1 + value/s) (needs
  * gonio_reconstruction.deviation). */
 GONIO_API void gonio_reconstruction_predict(const gonio_basis *basis,
                                             const gonio_reconstruction *reconstruction,
                                             gonio_half_difference at, double *value,
                                             double *deviation);
 
-/* The same for all directions of `readings`, whose values are replaced: as many channels as the
- * reconstruction has. Errors: _MEMORY; _ARGUMENT if it is not one by posterior. */
+/* What the instrument would read at all directions of `readings`, whose values are replaced: the
+ * same, less gonio_reconstruction.dark; as many channels as the reconstruction has. Errors:
+ * _MEMORY; _ARGUMENT if it is not one by posterior. */
 GONIO_API gonio_status gonio_reconstruction_predict_readings(
     gonio_context *context, const gonio_basis *basis, const gonio_reconstruction *reconstruction,
     gonio_readings *readings);

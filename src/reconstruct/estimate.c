@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dark.h"
 #include "method.h"
 
 static gonio_status check(gonio_context *context, const gonio_basis_view *view,
@@ -121,11 +122,21 @@ static gonio_status keep_wavelengths(gonio_context *context, const gonio_reading
 static gonio_status estimate(gonio_context *context, const gonio_i_prior *prior,
                              const gonio_readings *readings,
                              const gonio_reconstruct_options *options, gonio_reconstruction *r,
-                             const gonio_i_columns *columns)
+                             gonio_i_columns *columns)
 {
     gonio_status status = keep_wavelengths(context, readings, r);
+    if (status == GONIO_OK) {
+        status = gonio_i_dark_find(context, prior, readings, options, columns, &r->dark);
+    }
     if (status == GONIO_OK && !options->believe) {
-        status = gonio_i_suspect(context, prior, readings, options, &r->suspicion);
+        status = gonio_i_suspect(context, prior, readings, options, r->dark, &r->suspicion);
+    }
+    if (r->suspicion != NULL) {
+        free(r->dark); /* of readings that are not what they say */
+        r->dark = NULL;
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_dark_apply(context, &prior->view, readings, options, r->dark, columns);
     }
     return status == GONIO_OK ? find(context, prior, columns, options, r) : status;
 }

@@ -28,6 +28,7 @@ typedef struct gonio_i_transform {
     double factor;                       /* of the values; */
     bool by_cosine;                      /* which are divided by cos theta_o too */
     bool merl;                           /* and multiplied by s */
+    const double *dark;                  /* [channels]: added to them (dark.h), or NULL */
     gonio_pair (*turn)(gonio_pair pair); /* NULL: as they are */
 } gonio_i_transform;
 
@@ -37,6 +38,9 @@ gonio_status gonio_i_columns_create(gonio_context *context, const gonio_basis_vi
                                     const gonio_i_transform *transform, gonio_i_columns *columns);
 void gonio_i_columns_free(gonio_i_columns *columns);
 
+/* Keeps at most so many readings of a column, evenly spaced. */
+void gonio_i_column_thin(gonio_i_column *column, size_t most);
+
 /* What both need: a basis and options of the right kind; something in every column. `path`: of the
  * readings, for messages, or NULL. */
 gonio_status gonio_i_estimate_check(gonio_context *context, const gonio_basis *basis,
@@ -45,10 +49,11 @@ gonio_status gonio_i_estimate_check(gonio_context *context, const gonio_basis *b
 gonio_status gonio_i_columns_check(gonio_context *context, const gonio_i_columns *columns,
                                    const char *path);
 
-/* Sets gonio_reconstruction.suspicion. */
+/* Sets gonio_reconstruction.suspicion. dark: of the readings as they are (dark.h), or NULL. */
 gonio_status gonio_i_suspect(gonio_context *context, const gonio_i_prior *prior,
                              const gonio_readings *readings,
-                             const gonio_reconstruct_options *options, const char **suspicion);
+                             const gonio_reconstruct_options *options, const double *dark,
+                             const char **suspicion);
 
 /* ln of how much a transform stretches the values of a column around them: sum ln(dg'/dv). */
 double gonio_i_transform_logarithm(const gonio_readings *readings, size_t channel,

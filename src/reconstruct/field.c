@@ -6,6 +6,7 @@
 #include "../core/vector_math.h"
 #include "../direction/grid.h"
 #include "../measurement/readings.h"
+#include "dark.h"
 #include "estimate.h"
 #include "field.h"
 
@@ -90,6 +91,10 @@ gonio_status gonio_reconstruction_predict_readings(gonio_context *context, const
         gonio_reading *reading = &readings->reading[k];
         gonio_reconstruction_predict(basis, r, gonio_half_difference_from_pair(reading->pair),
                                      value, NULL);
+        for (size_t c = 0; c < channels_of(r); c++) {
+            const double missing = gonio_i_dark_missing(r->dark, c, reading->pair.incident.theta);
+            value[c] = fmax(value[c] - missing, 0.0);
+        }
         double *to = r->wavelengths > 0 ? readings->spectrum + k * r->wavelengths : reading->value;
         memcpy(to, value, channels_of(r) * sizeof *value);
     }

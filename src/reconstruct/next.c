@@ -7,6 +7,7 @@
 
 #include "../measurement/readings.h"
 #include "../plan/design.h"
+#include "dark.h"
 #include "estimate.h"
 
 typedef struct next {
@@ -49,6 +50,7 @@ static void release(next *n)
 static gonio_status find_posterior(next *n, const gonio_reconstruct_options *options)
 {
     const gonio_i_posterior_options how = {.smoothness = -1.0};
+    double *dark = NULL;
     gonio_status status = gonio_i_estimate_check(n->context, n->basis, n->readings, options);
     if (status == GONIO_OK) {
         status =
@@ -61,12 +63,19 @@ static gonio_status find_posterior(next *n, const gonio_reconstruct_options *opt
         status = gonio_i_prior_create(n->context, n->basis, &n->prior);
     }
     if (status == GONIO_OK) {
+        status = gonio_i_dark_find(n->context, n->prior, n->readings, options, &n->columns, &dark);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_dark_apply(n->context, &n->view, n->readings, options, dark, &n->columns);
+    }
+    if (status == GONIO_OK) {
         status = allocate(n);
     }
     if (status == GONIO_OK) {
         status = gonio_i_posterior_find(n->context, n->prior, n->columns.column, n->columns.count,
                                         &how, &n->posterior);
     }
+    free(dark);
     return status;
 }
 

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dark.h"
 #include "estimate.h"
 
 /* The variance of g = ln(1 + v/s) for noise of the value v. */
@@ -13,14 +14,21 @@ static double variance_of(double value, double s, const gonio_reconstruct_option
            GONIO_I_MODEL_DEVIATION * GONIO_I_MODEL_DEVIATION;
 }
 
-static double true_value(const gonio_reading *reading, double value, double s,
+/* What a value is multiplied by. */
+static double factor_of(const gonio_reading *reading, double s, const gonio_i_transform *transform)
+{
+    const double cosine = transform->by_cosine ? cos(reading->pair.outgoing.theta) : 1.0;
+    return transform->factor * (transform->merl ? s : 1.0) / fmax(cosine, 1e-3);
+}
+
+static double true_value(const gonio_reading *reading, size_t channel, double value, double s,
                          const gonio_i_transform *transform)
 {
     if (transform == NULL) {
         return value;
     }
-    const double cosine = transform->by_cosine ? cos(reading->pair.outgoing.theta) : 1.0;
-    return value * transform->factor * (transform->merl ? s : 1.0) / fmax(cosine, 1e-3);
+    return value * factor_of(reading, s, transform) +
+           gonio_i_dark_missing(transform->dark, channel, reading->pair.incident.theta);
 }
 
 static gonio_i_observation observe(const gonio_readings *readings, size_t index, size_t channel,
@@ -30,7 +38,7 @@ static gonio_i_observation observe(const gonio_readings *readings, size_t index,
     const gonio_reading *reading = &gonio_readings_describe(readings).reading[index];
     const double s = gonio_readings_scale(readings, channel);
     const double read = gonio_readings_value(readings, index, channel);
-    const double value = true_value(reading, read, s, transform);
+    const double value = true_value(reading, channel, read, s, transform);
     const bool turned = transform != NULL && transform->turn != NULL;
     const bool saturated = options->saturation > 0.0 && read >= options->saturation;
     return (gonio_i_observation){.at = gonio_half_difference_from_pair(
@@ -77,6 +85,15 @@ gonio_status gonio_i_columns_create(gonio_context *context, const gonio_basis_vi
     return status;
 }
 
+void gonio_i_column_thin(gonio_i_column *column, size_t most)
+{
+    const size_t count = column->count < most ? column->count : most;
+    for (size_t i = 0; i < count; i++) {
+        column->observation[i] = column->observation[i * column->count / count];
+    }
+    column->count = count;
+}
+
 void gonio_i_columns_free(gonio_i_columns *columns)
 {
     for (size_t k = 0; columns->column != NULL && k < columns->count; k++) {
@@ -95,8 +112,10 @@ double gonio_i_transform_logarithm(const gonio_readings *readings, size_t channe
     for (size_t k = 0; k < view.count; k++) {
         const double value = gonio_readings_value(readings, k, channel);
         if (!isnan(value)) {
-            const double factor = true_value(&view.reading[k], 1.0, s, transform);
-            sum += log(factor / (s + factor * value));
+            const double factor =
+                transform != NULL ? factor_of(&view.reading[k], s, transform) : 1.0;
+            sum +=
+                log(factor) - log(s + true_value(&view.reading[k], channel, value, s, transform));
         }
     }
     return sum;

@@ -32,9 +32,9 @@
 /* A reading of one column. */
 typedef struct gonio_i_observation {
     gonio_half_difference at;
-    int channel;     /* of the row, if the basis is joint */
     double g;        /* in log space */
     double variance; /* of noise, in log space, and of what the model leaves open */
+    int channel;     /* of the row, if the basis is joint */
     int bound;       /* 0; -1: g is at most this (a reading of zero); 1: at least (saturated) */
 } gonio_i_observation;
 

@@ -47,8 +47,7 @@ void gonio_i_probe_end(gonio_i_probe *probe)
     *probe = (gonio_i_probe){0};
 }
 
-/* ln of Student's density of a difference, but for a constant. */
-static double score_of(double difference, double variance)
+double gonio_i_probe_density(double difference, double variance)
 {
     const double square = difference * difference / variance;
     return -0.5 * log(variance) - 0.5 * (FREEDOM + 1.0) * log1p(square / FREEDOM);
@@ -69,7 +68,7 @@ gonio_status gonio_i_probe_score(gonio_i_gaussian *e, const gonio_i_model *model
     double *difference = NULL;
     const gonio_status status = gonio_i_probe_differences(e, model, &difference);
     for (size_t i = 0; i < e->n && status == GONIO_OK; i++) {
-        *score += score_of(difference[i], difference[e->n + i]);
+        *score += gonio_i_probe_density(difference[i], difference[e->n + i]);
     }
     free(difference);
     return status;

@@ -32,8 +32,12 @@ static const double GONIO_I_FOR_REMAINDERS = 16.0 / 3.0;
 gonio_status gonio_i_probe_differences(gonio_i_gaussian *gaussian, const gonio_i_model *model,
                                        double **difference);
 
-/* Solves for the model and adds ln of the density of each reading given the others. Readings are
- * wrong more often than Gaussians say, so it is Student's. Errors: _MEMORY, _NUMERICAL. */
+/* ln of Student's density of a difference, but for a constant: readings are wrong more often than
+ * Gaussians say. */
+double gonio_i_probe_density(double difference, double variance);
+
+/* Solves for the model and adds ln of the density of each reading given the others. Errors:
+ * _MEMORY, _NUMERICAL. */
 gonio_status gonio_i_probe_score(gonio_i_gaussian *gaussian, const gonio_i_model *model,
                                  double *score);
 

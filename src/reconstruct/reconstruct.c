@@ -25,6 +25,7 @@ void gonio_reconstruction_free(gonio_reconstruction **reconstruction)
     free((*reconstruction)->field);
     free((*reconstruction)->deviation);
     free((*reconstruction)->wavelength);
+    free((*reconstruction)->dark);
     free(*reconstruction);
     *reconstruction = NULL;
 }

@@ -77,15 +77,6 @@ static bool is_possible(const gonio_readings_view *view, const gonio_i_transform
     return true;
 }
 
-static void thin(gonio_i_column *column)
-{
-    const size_t count = column->count < MOST_TRIED ? column->count : MOST_TRIED;
-    for (size_t i = 0; i < count; i++) {
-        column->observation[i] = column->observation[i * column->count / count];
-    }
-    column->count = count;
-}
-
 /* ln of the density of the values under a transform and with a remainder of size alpha; of
  * MOST_TRIED of a column, scaled. */
 static gonio_status weigh(gonio_context *context, const gonio_i_prior *prior,
@@ -105,7 +96,7 @@ static gonio_status weigh(gonio_context *context, const gonio_i_prior *prior,
         if (all == 0) {
             continue;
         }
-        thin(column);
+        gonio_i_column_thin(column, MOST_TRIED);
         status = gonio_i_posterior_evidence(context, prior, column, alpha, PEAK, &mine);
         const double share = (double)column->count / (double)all;
         *evidence += mine + share * gonio_i_transform_logarithm(readings, index, transform);
@@ -116,9 +107,10 @@ static gonio_status weigh(gonio_context *context, const gonio_i_prior *prior,
 
 gonio_status gonio_i_suspect(gonio_context *context, const gonio_i_prior *prior,
                              const gonio_readings *readings,
-                             const gonio_reconstruct_options *options, const char **suspicion)
+                             const gonio_reconstruct_options *options, const double *dark,
+                             const char **suspicion)
 {
-    static const gonio_i_transform as_it_is = {.factor = 1.0};
+    const gonio_i_transform as_it_is = {.factor = 1.0, .dark = dark};
     const gonio_readings_view view = gonio_readings_describe(readings);
     double best = 0.0;
     double here = 0.0;

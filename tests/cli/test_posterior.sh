@@ -148,6 +148,22 @@ suspect elevation.csv 'theta is measured from the surface'
 expect_output '"suspicion": null' reconstruct b.gonio all.csv --json -o suspect.binary
 expect_true 'good readings are not suspicious' test ! -s "$root/work/stderr"
 
+# ---- what an instrument subtracts too much ----
+
+awk -F, -v OFS=, '/^#/ { next } /^t/ { print; next }
+    { for (k = NF - 2; k <= NF; k++) { $k -= 0.01 / cos($1 * 3.14159265358979 / 180); if ($k < 0) $k = 0 }
+      print }' all.csv >dark.csv
+expect_ok reconstruct b.gonio dark.csv --believe -o believed.binary
+expect_not_said 'seems to subtract' '--believe looks for no dark level'
+expect_ok reconstruct b.gonio dark.csv -o dark.binary
+expect_true 'what is subtracted is told' \
+    grep -q 'note: dark.binary: the instrument seems to subtract up to 0.*/cos(theta_i)' "$root/work/stderr"
+expect_true 'without it the paint is within 8 per cent' test "$(error $new dark.binary)" -lt 8
+expect_true 'with it it is not within 15' test "$(error $new believed.binary)" -ge 15
+expect_output '"dark_level_per_sr": [' reconstruct b.gonio dark.csv --json -o dark.binary
+expect_output '"dark_level_per_sr": null' reconstruct b.gonio all.csv --json -o dark.binary
+expect_ok next b.gonio dark.csv -n 2 -o dark-next.csv
+
 # ---- bad input ----
 
 learned='learn atlas:oak-sawn atlas:red-cotton -o x.gonio'

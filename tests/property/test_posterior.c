@@ -1,5 +1,5 @@
 /* The posterior against the textbook's formulas for Gaussians, computed densely; leaving out,
- * evidence, bounds, wrong readings, what comes out. */
+ * evidence, bounds, wrong readings, dark levels, what comes out. */
 #include "../support.h"
 
 #include <math.h>
@@ -9,6 +9,7 @@
 
 #include "../unit/made_basis.h"
 #include "core/random.h"
+#include "measurement/readings.h"
 #include "reconstruct/doubt.h"
 #include "reconstruct/models.h"
 
@@ -90,7 +91,7 @@ static bool is_whole(size_t row)
 
 static drawn draw(uint64_t seed, double deviation)
 {
-    drawn d = {.z = malloc(gaussian->components * sizeof *d.z)};
+    drawn d = {.z = calloc(gaussian->components, sizeof *d.z)};
     gonio_i_random random;
     gonio_i_random_seed(&random, seed, 0);
     for (size_t j = 0; j < gaussian->components; j++) {
@@ -697,7 +698,7 @@ static void test_an_unusual_material(void **state)
     }
 }
 
-/* ---- from readings to a material ---- */
+/* ---- readings from a file ---- */
 
 static gonio_readings *read_lines(const char *folder, const char *const *lines, size_t count)
 {
@@ -714,6 +715,135 @@ static gonio_readings *read_lines(const char *folder, const char *const *lines, 
     assert_int_equal(gonio_readings_read(context, path, NULL, &readings), GONIO_OK);
     return readings;
 }
+
+/* ---- the dark level ---- */
+
+enum { DIRECTIONS = 40 };
+
+/* A grey material of the prior, read by an instrument that subtracts dark / cos theta_i too much.
+ */
+static gonio_readings *read_in_the_dark(const char *folder, const double *z, uint64_t seed,
+                                        double dark)
+{
+    char text[DIRECTIONS][160];
+    const char *line[DIRECTIONS];
+    gonio_i_random random;
+    gonio_i_random_seed(&random, seed, 1);
+    for (size_t i = 0; i < DIRECTIONS; i++) {
+        const double theta_i = 1.4 * gonio_i_random_uniform(&random);
+        const double theta_o = 1.4 * gonio_i_random_uniform(&random);
+        const double phi_o = M_PI * gonio_i_random_uniform(&random);
+        const gonio_pair pair = {{theta_i, 0.0}, {theta_o, phi_o}};
+        const double g = truth_at(z, gonio_half_difference_from_pair(pair));
+        double read[GONIO_CHANNELS];
+        for (int c = 0; c < GONIO_CHANNELS; c++) {
+            read[c] = fmax(gonio_log_scale(c) * expm1(fmax(g, 0.0)) - dark / cos(theta_i), 0.0);
+        }
+        snprintf(text[i], sizeof text[i], "%.9f,0,%.9f,%.9f,%.9g,%.9g,%.9g", theta_i * 180.0 / M_PI,
+                 theta_o * 180.0 / M_PI, phi_o * 180.0 / M_PI, read[0], read[1], read[2]);
+        line[i] = text[i];
+    }
+    return read_lines(folder, line, DIRECTIONS);
+}
+
+/* Root mean square of g - truth over the rows, first channel. */
+static double error_of_field(const gonio_reconstruction *r, const double *z)
+{
+    double sum = 0.0;
+    for (size_t row = 0; row < gaussian->view.rows; row++) {
+        int channel = 0;
+        const gonio_half_difference at = gonio_i_row_coordinates(&gaussian->view, row, &channel);
+        const double error = fmax(r->field[row], 0.0) - fmax(truth_at(z, at), 0.0);
+        sum += error * error;
+    }
+    return sqrt(sum / (double)gaussian->view.rows);
+}
+
+static gonio_reconstruction *reconstruct_in_the_dark(const gonio_readings *readings, bool believe)
+{
+    gonio_reconstruct_options options;
+    gonio_reconstruction *r = NULL;
+    gonio_reconstruct_options_default(&options);
+    options.method = "posterior";
+    options.believe = believe;
+    assert_int_equal(gonio_reconstruct(context, small, readings, &options, &r), GONIO_OK);
+    return r;
+}
+
+/* What is predicted where it was read is what was read, zeros too; root mean square, log units. */
+static double error_of_predictions(const gonio_reconstruction *r, gonio_readings *readings)
+{
+    double read[DIRECTIONS];
+    double sum = 0.0;
+    for (size_t i = 0; i < DIRECTIONS; i++) {
+        read[i] = gonio_log_from_brdf(gonio_readings_value(readings, i, 0), 0);
+    }
+    assert_int_equal(gonio_reconstruction_predict_readings(context, small, r, readings), GONIO_OK);
+    for (size_t i = 0; i < DIRECTIONS; i++) {
+        const double g = gonio_log_from_brdf(gonio_readings_value(readings, i, 0), 0);
+        assert_true(g >= 0.0);
+        sum += (g - read[i]) * (g - read[i]);
+    }
+    return sqrt(sum / DIRECTIONS);
+}
+
+/* Where some readings are zero it is found, and the material is nearer to the true one. */
+static void test_the_dark_level(void **state)
+{
+    (void)state;
+    const double dark = 0.002;
+    int found_levels = 0;
+    char *folder = support_folder();
+    for (uint64_t seed = 60; seed < 68; seed++) {
+        const drawn d = draw(seed, 0.02);
+        gonio_readings *readings = read_in_the_dark(folder, d.z, seed, dark);
+        gonio_reconstruction *believed = reconstruct_in_the_dark(readings, true);
+        gonio_reconstruction *made = reconstruct_in_the_dark(readings, false);
+        assert_null(believed->dark);
+        if (made->dark != NULL) {
+            const double before = error_of_field(believed, d.z);
+            const double after = error_of_field(made, d.z);
+            print_message("a level of %.2g is found; error %.2f, before %.2f\n", made->dark[0],
+                          after, before);
+            assert_true(made->dark[0] > 0.4 * dark && made->dark[0] < 1.25 * dark);
+            assert_true(after < 0.75 * before);
+            assert_true(error_of_predictions(made, readings) < 0.1);
+            found_levels++;
+        }
+        gonio_reconstruction_free(&believed);
+        gonio_reconstruction_free(&made);
+        gonio_readings_free(&readings);
+        free(d.z);
+    }
+    assert_true(found_levels >= 5);
+    support_remove(folder);
+}
+
+/* Readings that lack nothing are as they are, and so are some that are zero for another reason. */
+static void test_no_dark_level(void **state)
+{
+    (void)state;
+    char *folder = support_folder();
+    for (uint64_t seed = 60; seed < 68; seed++) {
+        const drawn d = draw(seed, 0.02);
+        gonio_readings *readings = read_in_the_dark(folder, d.z, seed, 0.0);
+        for (size_t i = 0; i < DIRECTIONS; i += 20) {
+            readings->reading[i].value[1] = 0.0;
+        }
+        gonio_reconstruction *believed = reconstruct_in_the_dark(readings, true);
+        gonio_reconstruction *made = reconstruct_in_the_dark(readings, false);
+        assert_null(made->dark);
+        assert_memory_equal(made->field, believed->field,
+                            gaussian->view.rows * sizeof *made->field);
+        gonio_reconstruction_free(&believed);
+        gonio_reconstruction_free(&made);
+        gonio_readings_free(&readings);
+        free(d.z);
+    }
+    support_remove(folder);
+}
+
+/* ---- from readings to a material ---- */
 
 /* Every valid bin has data, finite and not negative. */
 static void assert_sane(const gonio_reconstruction *made)
@@ -830,6 +960,8 @@ int main(void)
         cmocka_unit_test(test_a_wrong_direction_hardly_counts),
         cmocka_unit_test(test_the_mean_over_the_models),
         cmocka_unit_test(test_an_unusual_material),
+        cmocka_unit_test(test_the_dark_level),
+        cmocka_unit_test(test_no_dark_level),
         cmocka_unit_test(test_what_comes_out_is_sane),
         cmocka_unit_test(test_saturation),
         cmocka_unit_test(test_what_is_refused),

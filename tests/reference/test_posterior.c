@@ -208,7 +208,7 @@ static void test_a_car_paint_with_40_of_its_readings(void **state)
     for (int k = 0; k < 4; k++) {
         mean += error_of_paint(basis, paint, count[k]) / 4.0;
     }
-    assert_true(mean < 16.0);
+    assert_true(mean < 14.6); /* 16 without its dark level */
     gonio_basis_free(&basis);
     json_decref(names);
     free(paint);

@@ -50,6 +50,15 @@ static energy find_energy(const gonio_basis *basis, const gonio_reconstruction *
     return e;
 }
 
+static double largest(const double *value, size_t count)
+{
+    double most = value[0];
+    for (size_t k = 1; k < count; k++) {
+        most = value[k] > most ? value[k] : most;
+    }
+    return most;
+}
+
 static void warn(const gonio_reconstruction *r, const char *output, const energy *e)
 {
     if (r->suspicion != NULL && !tool_quiet) {
@@ -57,6 +66,13 @@ static void warn(const gonio_reconstruction *r, const char *output, const energy
                 "gonio reconstruct: note: %s: the readings are far likelier if %s (--believe: do "
                 "not look)\n",
                 output, r->suspicion);
+    }
+    if (r->dark != NULL && !tool_quiet) {
+        fprintf(
+            stderr,
+            "gonio reconstruct: note: %s: the instrument seems to subtract up to "
+            "%.2g/cos(theta_i) 1/sr too much, which is reckoned with (--believe: do not look)\n",
+            output, largest(r->dark, r->columns));
     }
     if (e->known && e->albedo > 1.0 && !tool_quiet) {
         fprintf(stderr,
@@ -66,18 +82,29 @@ static void warn(const gonio_reconstruction *r, const char *output, const energy
     }
 }
 
+/* Of each channel, or null. */
+static json_t *dark_levels(const gonio_reconstruction *r)
+{
+    json_t *levels = r->dark != NULL ? json_array() : json_null();
+    for (size_t k = 0; r->dark != NULL && k < r->columns; k++) {
+        json_array_append_new(levels, json_real(r->dark[k]));
+    }
+    return levels;
+}
+
 static json_t *as_json(const gonio_reconstruction *r, const char *output, const energy *e)
 {
-    json_t *made = r->field != NULL
-                       ? json_pack("{s:s, s:I, s:I, s:f, s:f, s:I, s:f, s:s?}", "output", output,
-                                   "channels", (json_int_t)r->columns, "readings",
-                                   (json_int_t)r->readings, "expected_e6_percent", r->predicted_e6,
-                                   "residual_log", r->residual, "outlying", (json_int_t)r->outlying,
-                                   "remainder_log", r->smoothness, "suspicion", r->suspicion)
-                       : json_pack("{s:s, s:I, s:I, s:o, s:f}", "output", output, "components",
-                                   (json_int_t)r->components, "readings", (json_int_t)r->readings,
-                                   "condition_number", tool_json_number(r->condition_number),
-                                   "residual_log", r->residual);
+    json_t *made =
+        r->field != NULL
+            ? json_pack("{s:s, s:I, s:I, s:f, s:f, s:I, s:f, s:s?, s:o}", "output", output,
+                        "channels", (json_int_t)r->columns, "readings", (json_int_t)r->readings,
+                        "expected_e6_percent", r->predicted_e6, "residual_log", r->residual,
+                        "outlying", (json_int_t)r->outlying, "remainder_log", r->smoothness,
+                        "suspicion", r->suspicion, "dark_level_per_sr", dark_levels(r))
+            : json_pack("{s:s, s:I, s:I, s:o, s:f}", "output", output, "components",
+                        (json_int_t)r->components, "readings", (json_int_t)r->readings,
+                        "condition_number", tool_json_number(r->condition_number), "residual_log",
+                        r->residual);
     if (e->known) {
         json_object_set_new(made, "largest_albedo", tool_json_number(e->albedo));
     }
