@@ -60,9 +60,10 @@ typedef struct gonio_reconstruction {
     double *wavelength;  /* [wavelengths], nm */
     const char *suspicion; /* what would explain the readings far better than what they say they
                             * are ("the values include the cosine of theta_o"); NULL if nothing */
-    double *dark; /* [columns], 1/sr: what the instrument seems to take off too much, max(0, rho -
-                   * dark/cos theta_i) being read of rho; the field is without that. NULL if no
-                   * reading is zero, or such a level explains little */
+    double *dark; /* [columns], 1/sr: what the instrument seems to subtract too much; it reads
+                   * max(0, rho - dark/cos theta_i) of rho. The field is the material's, without it.
+                   * NULL where no reading is zero, where levels explain little, with a suspicion,
+                   * if asked to believe, with a joint basis and from rows */
 } gonio_reconstruction;
 
 /* What a reconstruction by posterior says of the material at any directions: value[channels] in
@@ -74,8 +75,8 @@ GONIO_API void gonio_reconstruction_predict(const gonio_basis *basis,
                                             double *deviation);
 
 /* What the instrument would read at all directions of `readings`, whose values are replaced: the
- * same, less gonio_reconstruction.dark; as many channels as the reconstruction has. Errors:
- * _MEMORY; _ARGUMENT if it is not one by posterior. */
+ * same, less gonio_reconstruction.dark / cos theta_i, and no less than 0; as many channels as the
+ * reconstruction has. Errors: _MEMORY; _ARGUMENT if it is not one by posterior. */
 GONIO_API gonio_status gonio_reconstruction_predict_readings(
     gonio_context *context, const gonio_basis *basis, const gonio_reconstruction *reconstruction,
     gonio_readings *readings);
@@ -132,9 +133,9 @@ GONIO_API gonio_status gonio_reconstruct_material(gonio_context *context, const 
  * expected error given what the readings say it is like (the covariance of the posterior, averaged
  * over the channels). plan_options: count, metric, candidates and target count, as for the method
  * expected-error; readings that were made are not proposed again, and expected[] is per cent of
- * this material. *expected_now: the E6 to expect without another reading; if it is at most
- * plan_options->target (above 0), there is nothing to read and *plan is NULL.
- * Errors: those of gonio_reconstruct and gonio_plan_create. */
+ * this material. A dark level is looked for as in a reconstruction. *expected_now: the E6 to expect
+ * without another reading; if it is at most plan_options->target (above 0), there is nothing to
+ * read and *plan is NULL. Errors: those of gonio_reconstruct and gonio_plan_create. */
 GONIO_API gonio_status gonio_plan_next(gonio_context *context, const gonio_basis *basis,
                                        const gonio_readings *readings,
                                        const gonio_reconstruct_options *options,

@@ -7,7 +7,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "probe.h"
 
@@ -22,10 +21,10 @@ static double level(int k)
     return k == 0 ? 0.0 : LEAST_LEVEL * pow(2.0, 0.5 * (k - 1));
 }
 
-/* ln of how much likelier a level makes all readings before it is believed. Of readings that lack
- * nothing the best levels explain less than 1, and less than 16 nearly always of materials unlike
- * any of the database's (docs/accuracy.md). */
-static const double CONVINCING = 20.0;
+/* ln of how much likelier levels make all readings before they are believed, of three channels; of
+ * more, which say the same again, as their number's square root. Of readings that lack nothing the
+ * best levels explain less than 1 (docs/accuracy.md). */
+static const double CONVINCING = 8.0;
 
 /* From a usual material's to that of the most unusual one. */
 static const gonio_i_model MODELS[] = {{1.0, 0.12, 0.0}, {1.0, 0.25, 8.0}, {1.0, 0.5, 8.0}};
@@ -172,7 +171,7 @@ static gonio_status find(search *s, bool *found)
     for (size_t c = 0; c < s->columns && status == GONIO_OK; c++) {
         s->dark[c] = mean_level(&s->score[c * LEVELS], &gain) * scale_of(s, c);
     }
-    *found = status == GONIO_OK && gain > CONVINCING;
+    *found = status == GONIO_OK && gain > CONVINCING * sqrt((double)s->columns / GONIO_CHANNELS);
     return status;
 }
 

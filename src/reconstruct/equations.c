@@ -246,8 +246,9 @@ gonio_status gonio_i_gaussian_solve(gonio_i_gaussian *e, const gonio_i_model *mo
     const double mixed = e->prior->samples > 0 ? e->evidence : -0.5 * square;
     e->evidence = mixed - logarithm - 0.5 * (double)e->n * log(2.0 * M_PI);
     for (size_t i = 0; i < e->n; i++) {
-        /* What is left out holds whatever it is: its density is 1, not that of so much noise. */
-        e->evidence += e->left_out[i] ? 0.5 * log(2.0 * M_PI * NO_SAY) : 0.0;
+        /* That a bound holds is a probability: 1 if it is left out, and never more than 1. */
+        e->evidence +=
+            e->bound[i] != 0 ? 0.5 * log(2.0 * M_PI * gonio_i_gaussian_noise(e, i)) : 0.0;
     }
     return GONIO_OK;
 }

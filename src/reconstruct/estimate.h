@@ -55,8 +55,10 @@ gonio_status gonio_i_suspect(gonio_context *context, const gonio_i_prior *prior,
                              const gonio_reconstruct_options *options, const double *dark,
                              const char **suspicion);
 
-/* ln of how much a transform stretches the values of a column around them: sum ln(dg'/dv). */
+/* ln of how much a transform stretches the values of a column around them: sum ln(dg'/dv), without
+ * bounds, which have a probability and no density. */
 double gonio_i_transform_logarithm(const gonio_readings *readings, size_t channel,
+                                   const gonio_reconstruct_options *options,
                                    const gonio_i_transform *transform);
 
 /* Value of a field (or of a deviation) in a column at any directions. */

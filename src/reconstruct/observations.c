@@ -31,6 +31,13 @@ static double true_value(const gonio_reading *reading, size_t channel, double va
            gonio_i_dark_missing(transform->dark, channel, reading->pair.incident.theta);
 }
 
+/* Of a value as it was read. */
+static int bound_of(double read, const gonio_reconstruct_options *options)
+{
+    const bool saturated = options->saturation > 0.0 && read >= options->saturation;
+    return saturated ? 1 : read <= 0.0 ? -1 : 0;
+}
+
 static gonio_i_observation observe(const gonio_readings *readings, size_t index, size_t channel,
                                    const gonio_reconstruct_options *options,
                                    const gonio_i_transform *transform)
@@ -40,15 +47,12 @@ static gonio_i_observation observe(const gonio_readings *readings, size_t index,
     const double read = gonio_readings_value(readings, index, channel);
     const double value = true_value(reading, channel, read, s, transform);
     const bool turned = transform != NULL && transform->turn != NULL;
-    const bool saturated = options->saturation > 0.0 && read >= options->saturation;
     return (gonio_i_observation){.at = gonio_half_difference_from_pair(
                                      turned ? transform->turn(reading->pair) : reading->pair),
                                  .channel = (int)channel,
                                  .g = log1p(value / s),
                                  .variance = variance_of(value, s, options),
-                                 .bound = saturated     ? 1
-                                          : read <= 0.0 ? -1
-                                                        : 0};
+                                 .bound = bound_of(read, options)};
 }
 
 static void add_channel(const gonio_readings *readings, size_t channel,
@@ -104,6 +108,7 @@ void gonio_i_columns_free(gonio_i_columns *columns)
 }
 
 double gonio_i_transform_logarithm(const gonio_readings *readings, size_t channel,
+                                   const gonio_reconstruct_options *options,
                                    const gonio_i_transform *transform)
 {
     const gonio_readings_view view = gonio_readings_describe(readings);
@@ -111,9 +116,8 @@ double gonio_i_transform_logarithm(const gonio_readings *readings, size_t channe
     double sum = 0.0;
     for (size_t k = 0; k < view.count; k++) {
         const double value = gonio_readings_value(readings, k, channel);
-        if (!isnan(value)) {
-            const double factor =
-                transform != NULL ? factor_of(&view.reading[k], s, transform) : 1.0;
+        if (!isnan(value) && bound_of(value, options) == 0) {
+            const double factor = factor_of(&view.reading[k], s, transform);
             sum +=
                 log(factor) - log(s + true_value(&view.reading[k], channel, value, s, transform));
         }

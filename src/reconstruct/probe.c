@@ -68,7 +68,7 @@ gonio_status gonio_i_probe_score(gonio_i_gaussian *e, const gonio_i_model *model
     double *difference = NULL;
     const gonio_status status = gonio_i_probe_differences(e, model, &difference);
     for (size_t i = 0; i < e->n && status == GONIO_OK; i++) {
-        *score += gonio_i_probe_density(difference[i], difference[e->n + i]);
+        *score += e->left_out[i] ? 0.0 : gonio_i_probe_density(difference[i], difference[e->n + i]);
     }
     free(difference);
     return status;

@@ -99,7 +99,8 @@ static gonio_status weigh(gonio_context *context, const gonio_i_prior *prior,
         gonio_i_column_thin(column, MOST_TRIED);
         status = gonio_i_posterior_evidence(context, prior, column, alpha, PEAK, &mine);
         const double share = (double)column->count / (double)all;
-        *evidence += mine + share * gonio_i_transform_logarithm(readings, index, transform);
+        *evidence +=
+            mine + share * gonio_i_transform_logarithm(readings, index, options, transform);
     }
     gonio_i_columns_free(&columns);
     return status;
