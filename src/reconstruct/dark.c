@@ -14,7 +14,7 @@
  * useless, 2^(1/2) apart. */
 static const double LEAST_LEVEL = 0.125;
 
-enum { LEVELS = 14, MOST_READINGS = 128 };
+enum { LEVELS = 14 };
 
 static double level(int k)
 {
@@ -95,7 +95,7 @@ static gonio_status score_column(gonio_context *context, const gonio_i_prior *pr
     gonio_status status = GONIO_OK;
     plain.samples = 0;
     *score = -INFINITY;
-    gonio_i_column_thin(column, MOST_READINGS);
+    column->count = gonio_i_probe_thin(column, GONIO_I_PROBE_READINGS, column->observation);
     for (int k = 0; k < MODELS_COUNT && status == GONIO_OK; k++) {
         double mine = 0.0;
         status = score_model(context, &plain, &MODELS[k], column, &mine);

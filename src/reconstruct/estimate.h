@@ -38,9 +38,6 @@ gonio_status gonio_i_columns_create(gonio_context *context, const gonio_basis_vi
                                     const gonio_i_transform *transform, gonio_i_columns *columns);
 void gonio_i_columns_free(gonio_i_columns *columns);
 
-/* Keeps at most so many readings of a column, evenly spaced. */
-void gonio_i_column_thin(gonio_i_column *column, size_t most);
-
 /* What both need: a basis and options of the right kind; something in every column. `path`: of the
  * readings, for messages, or NULL. */
 gonio_status gonio_i_estimate_check(gonio_context *context, const gonio_basis *basis,

@@ -89,15 +89,6 @@ gonio_status gonio_i_columns_create(gonio_context *context, const gonio_basis_vi
     return status;
 }
 
-void gonio_i_column_thin(gonio_i_column *column, size_t most)
-{
-    const size_t count = column->count < most ? column->count : most;
-    for (size_t i = 0; i < count; i++) {
-        column->observation[i] = column->observation[i * column->count / count];
-    }
-    column->count = count;
-}
-
 void gonio_i_columns_free(gonio_i_columns *columns)
 {
     for (size_t k = 0; columns->column != NULL && k < columns->count; k++) {

@@ -4,24 +4,27 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { MOST_READINGS = 128 };
-
 /* Degrees of freedom of Student's t. */
 static const double FREEDOM = 4.0;
 
-/* At most MOST_READINGS readings of a column, evenly spaced. */
-static gonio_status thin(gonio_context *context, const gonio_i_column *column,
-                         gonio_i_column *thinned)
+size_t gonio_i_probe_thin(const gonio_i_column *column, size_t most, gonio_i_observation *thinned)
 {
-    const size_t count = column->count < MOST_READINGS ? column->count : MOST_READINGS;
-    thinned->observation = gonio_i_allocate(context, count, sizeof *thinned->observation);
-    thinned->count = count;
-    if (thinned->observation == NULL) {
+    const size_t count = column->count < most ? column->count : most;
+    for (size_t i = 0; i < count; i++) {
+        thinned[i] = column->observation[i * column->count / count];
+    }
+    return count;
+}
+
+static gonio_status copy_thinned(gonio_context *context, const gonio_i_column *column,
+                                 gonio_i_column *copy)
+{
+    copy->observation =
+        gonio_i_allocate(context, GONIO_I_PROBE_READINGS, sizeof *copy->observation);
+    if (copy->observation == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    for (size_t i = 0; i < count; i++) {
-        thinned->observation[i] = column->observation[i * column->count / count];
-    }
+    copy->count = gonio_i_probe_thin(column, GONIO_I_PROBE_READINGS, copy->observation);
     return GONIO_OK;
 }
 
@@ -34,7 +37,7 @@ gonio_status gonio_i_probe_begin(gonio_context *context, const gonio_i_column *c
     for (size_t k = 0; k < probe->count && status == GONIO_OK; k++) {
         const gonio_i_column *column = &columns[k * count / probe->count];
         probe->readings[k] = column->count;
-        status = thin(context, column, &probe->column[k]);
+        status = copy_thinned(context, column, &probe->column[k]);
     }
     return status;
 }

@@ -5,7 +5,11 @@
 
 #include "equations.h"
 
-enum { GONIO_I_PROBE_COLUMNS = 8 };
+enum { GONIO_I_PROBE_COLUMNS = 8, GONIO_I_PROBE_READINGS = 128 };
+
+/* At most so many readings of a column, evenly spaced: thinned has room for them, and may be the
+ * column's own. Returns how many. */
+size_t gonio_i_probe_thin(const gonio_i_column *column, size_t most, gonio_i_observation *thinned);
 
 /* The readings, evenly spaced among all. */
 typedef struct gonio_i_probe {

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "estimate.h"
+#include "probe.h"
 
 /* A factor of pi alone is not among the hypotheses: materials differ by more than that. */
 
@@ -96,7 +97,7 @@ static gonio_status weigh(gonio_context *context, const gonio_i_prior *prior,
         if (all == 0) {
             continue;
         }
-        gonio_i_column_thin(column, MOST_TRIED);
+        column->count = gonio_i_probe_thin(column, MOST_TRIED, column->observation);
         status = gonio_i_posterior_evidence(context, prior, column, alpha, PEAK, &mine);
         const double share = (double)column->count / (double)all;
         *evidence +=
