@@ -11,6 +11,14 @@ typedef struct options {
     long seed;
 } options;
 
+static void report(const options *o, const gonio_readings *readings, const char *material)
+{
+    const size_t count = gonio_readings_describe(readings).count;
+    if (!tool_quiet) {
+        printf("%s: %zu reading%s of %s\n", o->output, count, tool_plural(count), material);
+    }
+}
+
 /* Takes the values from readings that were made at more directions. */
 static gonio_status look_up(tool *t, const options *o, gonio_readings *plan, const char *path)
 {
@@ -24,8 +32,8 @@ static gonio_status look_up(tool *t, const options *o, gonio_readings *plan, con
     if (status == GONIO_OK) {
         status = gonio_readings_write(t->context, plan, t->command_line, o->output);
     }
-    if (status == GONIO_OK && !tool_quiet) {
-        printf("%s: %zu readings of %s\n", o->output, gonio_readings_describe(plan).count, path);
+    if (status == GONIO_OK) {
+        report(o, plan, path);
     }
     gonio_readings_free(&known);
     return status;
@@ -57,9 +65,8 @@ static gonio_status measure(tool *t, const options *o, const char *plan, const c
     if (status == GONIO_OK) {
         status = gonio_readings_write(t->context, readings, t->command_line, o->output);
     }
-    if (status == GONIO_OK && !tool_quiet) {
-        printf("%s: %zu readings of %s\n", o->output, gonio_readings_describe(readings).count,
-               gonio_material_name(material));
+    if (status == GONIO_OK) {
+        report(o, readings, gonio_material_name(material));
     }
     gonio_table_free(&table);
     gonio_material_free(&material);

@@ -30,8 +30,8 @@ static int report(const tool *t, const options *o, double now, const gonio_plan 
     if (!tool_quiet && plan == NULL) {
         printf("expected error (E6) %.2f %%: the target is met, nothing more to read\n", now);
     } else if (!tool_quiet) {
-        printf("%s: %zu more readings; expected error (E6) now %.2f %%, then %.2f %%\n", o->output,
-               plan->count, now, plan->expected[plan->count - 1]);
+        printf("%s: %zu more reading%s; expected error (E6) now %.2f %%, then %.2f %%\n", o->output,
+               plan->count, tool_plural(plan->count), now, plan->expected[plan->count - 1]);
     }
     return 0;
 }

@@ -38,11 +38,12 @@ static int report(const tool *t, const gonio_plan *plan, const options *o)
                                             "expected_e6_percent", tool_json_number(expected)));
     }
     if (!tool_quiet && plan->expected != NULL) {
-        printf("%s: %zu readings, in order of use; expected error (E6) %.2f %%\n", o->output,
-               plan->count, plan->expected[plan->count - 1]);
+        printf("%s: %zu reading%s, in order of use; expected error (E6) %.2f %%\n", o->output,
+               plan->count, tool_plural(plan->count), plan->expected[plan->count - 1]);
     } else if (!tool_quiet) {
-        printf("%s: %zu readings for %zu components, condition number %.3f\n", o->output,
-               plan->count, plan->components, plan->condition_number);
+        printf("%s: %zu reading%s for %zu component%s, condition number %.3f\n", o->output,
+               plan->count, tool_plural(plan->count), plan->components,
+               tool_plural(plan->components), plan->condition_number);
     }
     return 0;
 }

@@ -114,19 +114,21 @@ static json_t *as_json(const gonio_reconstruction *r, const char *output, const 
 static void print(const gonio_reconstruction *r, const char *output, const energy *e)
 {
     if (r->field != NULL) {
-        printf("%s: from %zu readings in %zu channels; expected error (E6) %.2f %%, residual %.4f "
-               "(log units)",
-               output, r->readings, r->columns, r->predicted_e6, r->residual);
+        printf("%s: from %zu reading%s in %zu channel%s; expected error (E6) %.2f %%, residual "
+               "%.4f (log units)",
+               output, r->readings, tool_plural(r->readings), r->columns, tool_plural(r->columns),
+               r->predicted_e6, r->residual);
     } else {
-        printf("%s: %zu coefficients from %zu readings, condition number %.3f, residual %.4f "
+        printf("%s: %zu coefficient%s from %zu reading%s, condition number %.3f, residual %.4f "
                "(log units)",
-               output, r->components, r->readings, r->condition_number, r->residual);
+               output, r->components, tool_plural(r->components), r->readings,
+               tool_plural(r->readings), r->condition_number, r->residual);
     }
     if (e->known) {
         printf(", albedo at most %.2f", e->albedo);
     }
     if (r->outlying > 0) {
-        printf(", %zu values that the others contradict", r->outlying);
+        printf(", %zu value%s that the others contradict", r->outlying, tool_plural(r->outlying));
     }
     putchar('\n');
 }

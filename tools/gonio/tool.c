@@ -446,6 +446,11 @@ int tool_print_json(const tool *t, json_t *json)
     return 0;
 }
 
+const char *tool_plural(size_t count)
+{
+    return count == 1 ? "" : "s";
+}
+
 bool tool_is_readings(const char *path)
 {
     char head[8192];

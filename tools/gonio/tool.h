@@ -83,6 +83,9 @@ gonio_status tool_basis(tool *t, const char *path, const char *method, gonio_bas
 /* The built-in basis's path, made if need be; to be released with free(). */
 gonio_status tool_builtin_basis(tool *t, bool paper, char **path);
 
+/* What makes a noun one of `count`: "s", or nothing for one. */
+const char *tool_plural(size_t count);
+
 /* Whether a file is a plan or readings, by its content: text. */
 bool tool_is_readings(const char *path);
 
