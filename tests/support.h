@@ -18,6 +18,10 @@ const char *support_shared(void);
 /* Skips the running test, saying so, where that folder is not there. */
 void support_need_shared(void);
 
+/* The names of the MERL database's materials. */
+enum { SUPPORT_MERL = 100 };
+extern const char *const support_merl[SUPPORT_MERL];
+
 /* A context that keeps the last error message in support_message(). */
 gonio_context *support_context(void);
 const char *support_message(void);

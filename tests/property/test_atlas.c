@@ -3,13 +3,9 @@
 #include <gonio/atlas.h>
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "../support.h"
 
 static const double PI = 3.14159265358979323846;
 
@@ -30,6 +26,15 @@ static void test_names_are_unique_and_findable(void **state)
         assert_non_null(gonio_atlas_class(i));
         assert_int_equal(strspn(name, "abcdefghijklmnopqrstuvwxyz0123456789-"), strlen(name));
         assert_int_equal(gonio_atlas_find(name), i); /* finds the first: so names are unique */
+    }
+}
+
+/* Both can be learned from together. */
+static void test_names_are_not_those_of_merl(void **state)
+{
+    (void)state;
+    for (int k = 0; k < SUPPORT_MERL; k++) {
+        assert_int_equal(gonio_atlas_find(support_merl[k]), -1);
     }
 }
 
@@ -352,6 +357,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_names_are_unique_and_findable),
+        cmocka_unit_test(test_names_are_not_those_of_merl),
         cmocka_unit_test(test_out_of_range_is_refused),
         cmocka_unit_test(test_swapping_directions_changes_nothing),
         cmocka_unit_test(test_values_are_finite_and_not_negative),

@@ -98,7 +98,7 @@ static char *read_file(const char *folder, const char *name, const char *ending,
 
 /* ---- samples: what the paper's figures are like, with made-up numbers ---- */
 
-enum { SPECTRUM = 99, SWAPS = 150, RESTARTS = 8, COUNTS = 20, COLUMNS = 13, MATERIALS = 100 };
+enum { SPECTRUM = 99, SWAPS = 150, RESTARTS = 8, COUNTS = 20, COLUMNS = 13 };
 
 static double error_at(double k, double l)
 {
@@ -262,110 +262,9 @@ static gonio_status sample_directions(fixture *f, gonio_i_figures *figures)
     return status == GONIO_OK ? gonio_i_figure_directions(f->context, figures, &figure) : status;
 }
 
-static const char *const materials[MATERIALS] = {"alum-bronze",
-                                                 "alumina-oxide",
-                                                 "aluminium",
-                                                 "aventurnine",
-                                                 "beige-fabric",
-                                                 "black-fabric",
-                                                 "black-obsidian",
-                                                 "black-oxidized-steel",
-                                                 "black-phenolic",
-                                                 "black-soft-plastic",
-                                                 "blue-acrylic",
-                                                 "blue-fabric",
-                                                 "blue-metallic-paint",
-                                                 "blue-metallic-paint2",
-                                                 "blue-rubber",
-                                                 "brass",
-                                                 "cherry-235",
-                                                 "chrome-steel",
-                                                 "chrome",
-                                                 "colonial-maple-223",
-                                                 "color-changing-paint1",
-                                                 "color-changing-paint2",
-                                                 "color-changing-paint3",
-                                                 "dark-blue-paint",
-                                                 "dark-red-paint",
-                                                 "dark-specular-fabric",
-                                                 "delrin",
-                                                 "fruitwood-241",
-                                                 "gold-metallic-paint",
-                                                 "gold-metallic-paint2",
-                                                 "gold-metallic-paint3",
-                                                 "gold-paint",
-                                                 "gray-plastic",
-                                                 "grease-covered-steel",
-                                                 "green-acrylic",
-                                                 "green-fabric",
-                                                 "green-latex",
-                                                 "green-metallic-paint",
-                                                 "green-metallic-paint2",
-                                                 "green-plastic",
-                                                 "hematite",
-                                                 "ipswich-pine-221",
-                                                 "light-brown-fabric",
-                                                 "light-red-paint",
-                                                 "maroon-plastic",
-                                                 "natural-209",
-                                                 "neoprene-rubber",
-                                                 "nickel",
-                                                 "nylon",
-                                                 "orange-paint",
-                                                 "pearl-paint",
-                                                 "pickled-oak-260",
-                                                 "pink-fabric",
-                                                 "pink-fabric2",
-                                                 "pink-felt",
-                                                 "pink-jasper",
-                                                 "pink-plastic",
-                                                 "polyethylene",
-                                                 "polyurethane-foam",
-                                                 "pure-rubber",
-                                                 "purple-paint",
-                                                 "pvc",
-                                                 "red-fabric",
-                                                 "red-fabric2",
-                                                 "red-metallic-paint",
-                                                 "red-phenolic",
-                                                 "red-plastic",
-                                                 "red-specular-plastic",
-                                                 "silicon-nitrade",
-                                                 "silver-metallic-paint",
-                                                 "silver-metallic-paint2",
-                                                 "silver-paint",
-                                                 "special-walnut-224",
-                                                 "specular-black-phenolic",
-                                                 "specular-blue-phenolic",
-                                                 "specular-green-phenolic",
-                                                 "specular-maroon-phenolic",
-                                                 "specular-orange-phenolic",
-                                                 "specular-red-phenolic",
-                                                 "specular-violet-phenolic",
-                                                 "specular-white-phenolic",
-                                                 "specular-yellow-phenolic",
-                                                 "ss440",
-                                                 "steel",
-                                                 "teflon",
-                                                 "tungsten-carbide",
-                                                 "two-layer-gold",
-                                                 "two-layer-silver",
-                                                 "violet-acrylic",
-                                                 "violet-rubber",
-                                                 "white-acrylic",
-                                                 "white-diffuse-bball",
-                                                 "white-fabric",
-                                                 "white-fabric2",
-                                                 "white-marble",
-                                                 "white-paint",
-                                                 "yellow-matte-plastic",
-                                                 "yellow-paint",
-                                                 "yellow-phenolic",
-                                                 "yellow-plastic"};
-
 static gonio_status sample_categories(fixture *f, gonio_i_figures *figures)
 {
-    static double values[5][MATERIALS];
+    static double values[5][SUPPORT_MERL];
     static const double factor[] = {1.25, 1.15, 1.1, 1.0, 0.5};
     static const char *const names[] = {"80 samples (K = 35)", "120 samples (K = 40)",
                                         "170 samples (K = 45)", "all samples (K = 45)",
@@ -373,7 +272,7 @@ static gonio_status sample_categories(fixture *f, gonio_i_figures *figures)
     gonio_i_series series[5];
     gonio_i_random random;
     gonio_i_random_seed(&random, 3, 0);
-    for (int k = 0; k < MATERIALS; k++) {
+    for (int k = 0; k < SUPPORT_MERL; k++) {
         const double hard = 1.5 + 1.2 * exp(0.9 * gonio_i_random_normal(&random));
         for (int s = 0; s < 5; s++) {
             values[s][k] = hard * factor[s] * (1.0 + 0.08 * gonio_i_random_normal(&random));
@@ -383,7 +282,7 @@ static gonio_status sample_categories(fixture *f, gonio_i_figures *figures)
         series[s] = (gonio_i_series){names[s], values[s]};
     }
     const gonio_i_categories figure = {
-        "fig-5", NULL,   "material", {"error E6", "%", false, 0, 0}, MATERIALS, materials,
+        "fig-5", NULL,   "material", {"error E6", "%", false, 0, 0}, SUPPORT_MERL, support_merl,
         5,       series, 3};
     return gonio_i_figure_categories(f->context, figures, &figure);
 }
