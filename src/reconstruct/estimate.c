@@ -59,6 +59,26 @@ gonio_status gonio_i_columns_check(gonio_context *context, const gonio_i_columns
     return GONIO_OK;
 }
 
+gonio_status gonio_i_columns_interpret(gonio_context *context, const gonio_i_prior *prior,
+                                       const gonio_readings *readings,
+                                       const gonio_reconstruct_options *options,
+                                       gonio_i_columns *columns, double **dark,
+                                       const char **suspicion)
+{
+    *suspicion = NULL;
+    gonio_status status = gonio_i_dark_find(context, prior, readings, options, columns, dark);
+    if (status == GONIO_OK && !options->believe) {
+        status = gonio_i_suspect(context, prior, readings, options, *dark, suspicion);
+    }
+    if (*suspicion != NULL) {
+        free(*dark); /* of readings that are not what they say */
+        *dark = NULL;
+    }
+    return status == GONIO_OK
+               ? gonio_i_dark_apply(context, &prior->view, readings, options, *dark, columns)
+               : status;
+}
+
 static gonio_status allocate(gonio_context *context, const gonio_basis_view *view, size_t columns,
                              const gonio_reconstruct_options *options, gonio_reconstruction **made)
 {
@@ -126,17 +146,8 @@ static gonio_status estimate(gonio_context *context, const gonio_i_prior *prior,
 {
     gonio_status status = keep_wavelengths(context, readings, r);
     if (status == GONIO_OK) {
-        status = gonio_i_dark_find(context, prior, readings, options, columns, &r->dark);
-    }
-    if (status == GONIO_OK && !options->believe) {
-        status = gonio_i_suspect(context, prior, readings, options, r->dark, &r->suspicion);
-    }
-    if (r->suspicion != NULL) {
-        free(r->dark); /* of readings that are not what they say */
-        r->dark = NULL;
-    }
-    if (status == GONIO_OK) {
-        status = gonio_i_dark_apply(context, &prior->view, readings, options, r->dark, columns);
+        status = gonio_i_columns_interpret(context, prior, readings, options, columns, &r->dark,
+                                           &r->suspicion);
     }
     return status == GONIO_OK ? find(context, prior, columns, options, r) : status;
 }

@@ -46,6 +46,15 @@ gonio_status gonio_i_estimate_check(gonio_context *context, const gonio_basis *b
 gonio_status gonio_i_columns_check(gonio_context *context, const gonio_i_columns *columns,
                                    const char *path);
 
+/* What the readings are taken to mean, unless options->believe: looks for a dark level (*dark,
+ * which the caller frees, or NULL) and a usual mistake (*suspicion, static, or NULL), and makes the
+ * columns again if there is a level. Errors: _MEMORY, _NUMERICAL, _CANCELLED. */
+gonio_status gonio_i_columns_interpret(gonio_context *context, const gonio_i_prior *prior,
+                                       const gonio_readings *readings,
+                                       const gonio_reconstruct_options *options,
+                                       gonio_i_columns *columns, double **dark,
+                                       const char **suspicion);
+
 /* Sets gonio_reconstruction.suspicion. dark: of the readings as they are (dark.h), or NULL. */
 gonio_status gonio_i_suspect(gonio_context *context, const gonio_i_prior *prior,
                              const gonio_readings *readings,

@@ -7,7 +7,6 @@
 
 #include "../measurement/readings.h"
 #include "../plan/design.h"
-#include "dark.h"
 #include "estimate.h"
 
 typedef struct next {
@@ -51,6 +50,7 @@ static gonio_status find_posterior(next *n, const gonio_reconstruct_options *opt
 {
     const gonio_i_posterior_options how = {.smoothness = -1.0};
     double *dark = NULL;
+    const char *suspicion = NULL;
     gonio_status status = gonio_i_estimate_check(n->context, n->basis, n->readings, options);
     if (status == GONIO_OK) {
         status =
@@ -63,10 +63,12 @@ static gonio_status find_posterior(next *n, const gonio_reconstruct_options *opt
         status = gonio_i_prior_create(n->context, n->basis, &n->prior);
     }
     if (status == GONIO_OK) {
-        status = gonio_i_dark_find(n->context, n->prior, n->readings, options, &n->columns, &dark);
+        status = gonio_i_columns_interpret(n->context, n->prior, n->readings, options, &n->columns,
+                                           &dark, &suspicion);
     }
-    if (status == GONIO_OK) {
-        status = gonio_i_dark_apply(n->context, &n->view, n->readings, options, dark, &n->columns);
+    if (suspicion != NULL) {
+        gonio_i_note(n->context, "%s: the readings are far likelier if %s (--believe: do not look)",
+                     gonio_readings_describe(n->readings).path, suspicion);
     }
     if (status == GONIO_OK) {
         status = allocate(n);

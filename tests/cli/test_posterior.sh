@@ -140,6 +140,10 @@ suspect() { # FILE PART
     expect_output "\"suspicion\": \"" reconstruct b.gonio "$1" --json -o suspect.binary
     expect_ok reconstruct b.gonio "$1" --believe -o suspect.binary
     expect_not_said 'far likelier' "$1: --believe does not look"
+    expect_ok next b.gonio "$1" -n 1 -o suspect.csv
+    expect_true "next, $1: '$2'" grep -q "note: .*$2" "$root/work/stderr"
+    expect_ok next b.gonio "$1" -n 1 --believe -o suspect.csv
+    expect_not_said 'far likelier' "next, $1: --believe does not look"
 }
 suspect percent.csv 'the values are in per cent'
 suspect cosine.csv 'the values include the cosine'
