@@ -21,6 +21,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "kernels.h"
+
 enum { MOST_SIZES = 32, MOST_MATERIALS = 4096 };
 
 typedef struct setting {
@@ -334,6 +336,7 @@ static void read_words(int count, char **words, setting *s)
 
 int main(int argc, char **argv)
 {
+    kernels_choose(argv);
     if (argc < 6) {
         fprintf(stderr, "usage: %s FOLDER SPLITS.json FIRST LAST N[,N...] [WORD...]\n", argv[0]);
         return 2;

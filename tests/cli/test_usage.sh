@@ -107,4 +107,15 @@ expect_fail 2 '--basis: -1 is too small' reconstruct b.gonio r.csv -K -1 -o x.bi
 
 expect_ok plan b.gonio -n 5 --threads 1000000 -o many.csv
 
+# ---- kernels are not older than the processor; those that the user names are used ----
+
+cores() { OPENBLAS_VERBOSE=2 "$GONIO" info b.gonio 2>&1 | sed -n 's/^Core: //p'; }
+if grep -qw avx2 /proc/cpuinfo && grep -qw fma /proc/cpuinfo; then
+    expect_true 'kernels use AVX2 at least' \
+        test -n "$(cores | tail -n 1 | grep -iE '^(Haswell|Zen|Excavator|SkylakeX|Cooperlake|SapphireRapids)$')"
+    expect_true 'the kernels that the user names' \
+        test "$(OPENBLAS_CORETYPE=Nehalem cores | tr '\n' ' ')" = 'Nehalem '
+    expect_true 'kernels that nobody knows do no harm' test "$(OPENBLAS_CORETYPE=none cores | wc -l)" -le 2
+fi
+
 finish

@@ -1,4 +1,5 @@
 /* gonio: a table of commands. */
+#include "kernels.h"
 #include "tool.h"
 
 #include <errno.h>
@@ -81,5 +82,6 @@ int main(int argc, char **argv)
         print_help(stderr);
         return EXIT_USAGE;
     }
+    kernels_choose(argv);
     return run_command(name, argc - 1, (const char **)(argv + 1));
 }

@@ -1,0 +1,53 @@
+/* See kernels.h. */
+#include "kernels.h"
+
+#include <cblas.h>
+#include <limits.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <strings.h>
+#include <unistd.h>
+
+/* What OpenBLAS calls its kernels, by the vectors that they need. */
+static const char *const wide[] = {"SkylakeX", "Cooperlake", "SapphireRapids", NULL}; /* AVX-512 */
+static const char *const narrow[] = {"Haswell", "Zen", "Excavator", NULL};            /* AVX2 */
+
+static bool is_among(const char *name, const char *const *names)
+{
+    while (*names != NULL && strcasecmp(name, *names) != 0) {
+        names++;
+    }
+    return *names != NULL;
+}
+
+/* Kernels that are better than those in use; NULL if there are none. */
+static const char *better_kernels(const char *used)
+{
+#ifdef __x86_64__
+    const bool has_narrow = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+    const bool has_wide = has_narrow && __builtin_cpu_supports("avx512f") &&
+                          __builtin_cpu_supports("avx512bw") &&
+                          __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+    if (has_wide && !is_among(used, wide)) {
+        return wide[0];
+    }
+    if (has_narrow && !is_among(used, wide) && !is_among(used, narrow)) {
+        return narrow[0];
+    }
+#else
+    (void)used;
+#endif
+    return NULL;
+}
+
+void kernels_choose(char **argv)
+{
+    static const char variable[] = "OPENBLAS_CORETYPE"; /* set: by the user, or here before */
+    char path[PATH_MAX];
+    const char *better = getenv(variable) == NULL ? better_kernels(openblas_get_corename()) : NULL;
+    const ssize_t length = better != NULL ? readlink("/proc/self/exe", path, sizeof path - 1) : -1;
+    if (length > 0 && setenv(variable, better, 1) == 0) {
+        path[length] = '\0';
+        execv(path, argv); /* if it fails, slower kernels do */
+    }
+}
