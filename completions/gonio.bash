@@ -12,7 +12,7 @@ _gonio_options()
                           "--json -o -K $common" ;;
         plan)        echo "--output --number --target-error --candidates --metric --basis --method --start" \
                           "--restarts --seed --phi-d --history --json -o -n -K $common" ;;
-        next)        echo "--output --number --target-error --candidates --metric --noise --floor --saturation" \
+        next)        echo "--output --number --target-error --candidates --metric --noise --floor --saturation --believe" \
                           "--json -o -n $common" ;;
         measure)     echo "--output --noise --floor --outliers --seed -o $common" ;;
         reconstruct) echo "--output --basis --method --eta --noise --floor --saturation --deviation --at --believe" \

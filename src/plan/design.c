@@ -104,27 +104,47 @@ static double metric_weight(gonio_metric metric, gonio_half_difference at, doubl
     return 1.0;
 }
 
-/* All rows of the basis. */
-static gonio_status list_rows(place_list *p, gonio_metric metric)
+/* f: scratch, [components] */
+static void list_row(place_list *p, gonio_metric metric, size_t row, double *f)
 {
     const gonio_basis_view *view = &p->prior->view;
     const size_t each = view->channels == GONIO_JOINT ? GONIO_CHANNELS : 1;
-    p->rows = view->rows;
+    int channel = 0;
+    const double bins = gonio_i_cell_bins(view->representation, view->cell[row / each]);
+    p->at[row] = gonio_i_row_coordinates(view, row, &channel);
+    gonio_i_prior_row(p->prior, row, f);
+    to_float(f, p->components, p->f + row * p->components);
+    p->mean[row] = view->mean[row];
+    p->allowed[row] = bins > 0.0;
+    p->loss[row] = bins * metric_weight(metric, p->at[row], p->mean[row], channel);
+}
+
+/* All rows of the basis. */
+static gonio_status list_rows(place_list *p, gonio_metric metric)
+{
+    bool failed = false;
+    p->rows = p->prior->view.rows;
     p->components = p->prior->components;
-    double *f = gonio_i_allocate(p->context, p->components, sizeof *f);
-    const gonio_status status = f == NULL ? GONIO_ERROR_MEMORY : allocate_places(p);
-    for (size_t row = 0; row < p->rows && status == GONIO_OK; row++) {
-        int channel = 0;
-        const double bins = gonio_i_cell_bins(view->representation, view->cell[row / each]);
-        p->at[row] = gonio_i_row_coordinates(view, row, &channel);
-        gonio_i_prior_row(p->prior, row, f);
-        to_float(f, p->components, p->f + row * p->components);
-        p->mean[row] = view->mean[row];
-        p->allowed[row] = bins > 0.0;
-        p->loss[row] = bins * metric_weight(metric, p->at[row], p->mean[row], channel);
+    const gonio_status status = allocate_places(p);
+    if (status != GONIO_OK) {
+        return status;
     }
-    free(f);
-    return status;
+#pragma omp parallel num_threads(gonio_context_threads(p->context))
+    {
+        double *f = gonio_i_allocate(p->context, p->components, sizeof *f);
+        if (f == NULL) {
+#pragma omp atomic write
+            failed = true;
+        }
+#pragma omp for schedule(static)
+        for (size_t row = 0; row < p->rows; row++) {
+            if (f != NULL) {
+                list_row(p, metric, row, f);
+            }
+        }
+        free(f);
+    }
+    return failed ? GONIO_ERROR_MEMORY : GONIO_OK;
 }
 
 /* Given    f[rows][K] and places of candidates, whose covariance is C = f f' + alpha^2 k
@@ -226,10 +246,8 @@ static gonio_status mean_reciprocal(const place_list *p, double *mean)
         double m = 0.0;
         gonio_i_prior_at(prior, p->at[row], 0, &m, f);
         for (size_t j = 0; j < used; j++) {
-            double g = m;
-            for (size_t k = 0; k < prior->components; k++) {
-                g += f[k] * prior->sample[j * prior->components + k];
-            }
+            const double g =
+                m + gonio_i_dot(f, prior->sample + j * prior->components, prior->components);
             square[j] += (double)step * p->loss[row] * g * g;
         }
         square[used] += (double)step * p->loss[row] * m * m;

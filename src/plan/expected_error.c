@@ -26,6 +26,7 @@ enum {
     LEAST_RENEWED = 20, /* readings after which q and t are computed anew */
     MOST_TURNS = 4,
     BLOCK_ROWS = 1024,
+    LOSS_PARTS = 8,
     MOST_WAITING = 2 /* an exchange */
 };
 
@@ -72,13 +73,14 @@ static void multiply(const double *matrix, const double *x, size_t n, double *y)
     }
 }
 
-/* W = F' diag(w) F, and T. */
-static gonio_status find_loss(design *d)
+/* Adds what every LOSS_PARTS-th block of rows, from `part` on, has in W to w. */
+static gonio_status add_loss(const design *d, size_t part, double *w)
 {
     gonio_context *context = d->problem->context;
     double *block = gonio_i_allocate(context, BLOCK_ROWS * d->k, sizeof *block);
     gonio_status status = block == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
-    for (size_t first = 0; first < d->rows && status == GONIO_OK; first += BLOCK_ROWS) {
+    for (size_t first = part * BLOCK_ROWS; first < d->rows && status == GONIO_OK;
+         first += (size_t)LOSS_PARTS * BLOCK_ROWS) {
         const size_t count = d->rows - first < BLOCK_ROWS ? d->rows - first : BLOCK_ROWS;
         for (size_t b = 0; b < count; b++) {
             const double root = sqrt(d->problem->loss[first + b]);
@@ -86,15 +88,42 @@ static gonio_status find_loss(design *d)
                 block[b * d->k + j] = root * (double)row_of(d, first + b)[j];
             }
         }
-        status = gonio_i_add_gram_rows(context, block, count, d->k, d->w);
+        status = gonio_i_add_gram_rows(context, block, count, d->k, w);
     }
+    free(block);
+    return status;
+}
+
+/* W = F' diag(w) F, and T. Parts of W are added in the same order whatever the threads. */
+static gonio_status find_loss(design *d)
+{
+    const size_t size = d->k * d->k;
+    gonio_status result = GONIO_OK;
+    double *parts = gonio_i_allocate(d->problem->context, LOSS_PARTS * size, sizeof *parts);
+    if (parts == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+#pragma omp parallel for schedule(dynamic, 1)                                                      \
+    num_threads(gonio_context_threads(d->problem->context))
+    for (size_t part = 0; part < LOSS_PARTS; part++) {
+        const gonio_status mine = add_loss(d, part, parts + part * size);
+        if (mine != GONIO_OK) {
+#pragma omp atomic write
+            result = mine;
+        }
+    }
+    for (size_t part = 0; part < LOSS_PARTS; part++) {
+        for (size_t i = 0; i < size; i++) {
+            d->w[i] += parts[part * size + i];
+        }
+    }
+    free(parts);
     gonio_i_mirror(d->w, d->k);
     memcpy(d->half, d->w, d->k * d->k * sizeof *d->w);
     for (size_t i = 0; i < d->k; i++) {
         d->half[i * d->k + i] *= 0.5;
     }
-    free(block);
-    return status;
+    return result;
 }
 
 /* q and t of `count` rows, f[count][k]; fp, fpt: scratch of that size. */
@@ -122,18 +151,29 @@ static gonio_status find_block_gains(design *d, size_t first, size_t count, cons
 static gonio_status find_gains(design *d)
 {
     const size_t size = BLOCK_ROWS * d->k;
-    double *f = gonio_i_allocate(d->problem->context, 3 * size, sizeof *f);
-    gonio_status status = f == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
-    for (size_t first = 0; first < d->rows && status == GONIO_OK; first += BLOCK_ROWS) {
-        const size_t count = d->rows - first < BLOCK_ROWS ? d->rows - first : BLOCK_ROWS;
-        for (size_t i = 0; i < count; i++) {
-            copy_row(d, first + i, f + i * d->k);
+    gonio_status result = GONIO_OK;
+#pragma omp parallel num_threads(gonio_context_threads(d->problem->context))
+    {
+        double *f = gonio_i_allocate(d->problem->context, 3 * size, sizeof *f);
+        gonio_status mine = f == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+#pragma omp for schedule(dynamic, 1)
+        for (size_t first = 0; first < d->rows; first += BLOCK_ROWS) {
+            const size_t count = d->rows - first < BLOCK_ROWS ? d->rows - first : BLOCK_ROWS;
+            for (size_t i = 0; i < count && mine == GONIO_OK; i++) {
+                copy_row(d, first + i, f + i * d->k);
+            }
+            if (mine == GONIO_OK) {
+                mine = find_block_gains(d, first, count, f, f + size, f + 2 * size);
+            }
         }
-        status = find_block_gains(d, first, count, f, f + size, f + 2 * size);
+        if (mine != GONIO_OK) {
+#pragma omp atomic write
+            result = mine;
+        }
+        free(f);
     }
     d->waits = 0;
-    free(f);
-    return status;
+    return result;
 }
 
 /* f g and f P W g of a row for the changes that wait. */
@@ -144,13 +184,15 @@ typedef struct seen_changes {
 
 GONIO_I_VECTORISED static seen_changes see_one(const float *f, const change *c, size_t k)
 {
+    const double *g = c[0].g; /* in the loop the compiler would gather */
+    const double *pwg = c[0].pwg;
     double a = 0.0;
     double b = 0.0;
 #pragma omp simd reduction(+ : a, b)
     for (size_t j = 0; j < k; j++) {
         const double value = (double)f[j];
-        a += value * c[0].g[j];
-        b += value * c[0].pwg[j];
+        a += value * g[j];
+        b += value * pwg[j];
     }
     return (seen_changes){{a}, {b}};
 }
