@@ -1,7 +1,7 @@
 /* How fast gonio is, as ratios to what it is compared with, measured side by side in one run.
  *
  *   gonio-bench [MATERIALS] [SECTION...]     sections: learn plan starts
- *                                            reconstruct full growth
+ *                                            reconstruct full growth default
  *
  * MATERIALS is a folder of at least 81 materials (default: the built-in ones). Prints a table and
  * writes bench.json in the working directory. docs/performance.md explains each line. */
@@ -781,6 +781,59 @@ static void bench_reconstruct(bench *b)
     gonio_context_free(&all);
 }
 
+/* ---- the default method ---- */
+
+/* basis.gonio in a folder: what `gonio learn` makes of the first materials. */
+static void write_default_basis(const bench *b, const char *folder)
+{
+    const gonio_database_options grid = {.representation = GONIO_SECTORED,
+                                         .channels = GONIO_SEPARATE};
+    const gonio_basis_options how = {.mixtures = GONIO_DEFAULT_MIXTURES};
+    gonio_context *context = make_context(0);
+    gonio_database *database = NULL;
+    gonio_basis *basis = NULL;
+    char *path = NULL;
+    check(gonio_database_create(context, (const char *const *)b->paths, BASIS_MATERIALS, &grid,
+                                &database) == GONIO_OK &&
+              gonio_basis_learn(context, database, &how, &basis) == GONIO_OK,
+          "learning");
+    check(asprintf(&path, "%s/basis.gonio", folder) > 0 &&
+              gonio_basis_write(context, basis, NULL, path) == GONIO_OK,
+          "writing a basis");
+    gonio_basis_free(&basis);
+    gonio_database_free(&database);
+    gonio_context_free(&context);
+    free(path);
+}
+
+/* Whole commands, with reading the basis, which `gonio info` does too. */
+static void bench_default(bench *b)
+{
+    char *folder = scratch_folder();
+    char *measure = NULL;
+    double info[RUNS];
+    double plan[RUNS];
+    double reconstruct[RUNS];
+    write_default_basis(b, folder);
+    check(asprintf(&measure, GONIO_PROGRAM " measure -q plan.csv '%s' -o readings.csv",
+                   b->paths[BASIS_MATERIALS]) > 0,
+          "memory");
+    for (int run = 0; run < RUNS; run++) {
+        info[run] = command_seconds(folder, GONIO_PROGRAM " info basis.gonio >/dev/null");
+        plan[run] = command_seconds(folder, GONIO_PROGRAM " plan -q basis.gonio -n 20 -o plan.csv");
+        command_seconds(folder, measure);
+        reconstruct[run] = command_seconds(folder, GONIO_PROGRAM
+                                           " reconstruct -q basis.gonio readings.csv -o a.binary");
+    }
+    report(b, "default: reading the basis", median(info, RUNS), "s");
+    report(b, "default: plan of 20 directions", median(plan, RUNS), "s");
+    report(b, "default: reconstruct from 20 directions", median(reconstruct, RUNS), "s");
+    command_seconds(folder, "rm basis.gonio plan.csv readings.csv a.binary");
+    rmdir(folder);
+    free(measure);
+    free(folder);
+}
+
 /* ---- */
 
 static const struct {
@@ -790,6 +843,7 @@ static const struct {
     {"learn", bench_learn},     {"plan", bench_plan},
     {"starts", bench_starts},   {"reconstruct", bench_reconstruct},
     {"full", bench_full_plans}, {"growth", bench_growth},
+    {"default", bench_default},
 };
 
 static bool wanted(const char *name, int argc, char **argv)
