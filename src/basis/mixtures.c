@@ -14,11 +14,18 @@ static const double TILT_DEVIATION = 0.25;
 
 enum { CHUNK = 256 }; /* rows that are mixed together */
 
+/* Between two of several bins: low and the next one. */
+typedef struct between {
+    int low;
+    double share; /* of the next one */
+} between;
+
+/* A measured column, varied: where its value at each bin of theta_h and theta_d comes from. */
 typedef struct half {
     size_t column;
     double share;
-    double width; /* f */
-    double tilt;  /* t */
+    between theta_h[GONIO_THETA_H_BINS];
+    between theta_d[GONIO_THETA_D_BINS];
 } half;
 
 typedef struct recipe {
@@ -32,12 +39,37 @@ struct gonio_i_mixtures {
     float *measured; /* [column][row] */
 };
 
-static half draw_half(gonio_i_random *random, size_t columns, double share)
+/* At so many bins from the middle of the first: constant beyond the ends. */
+static between place(double at, int bins)
 {
-    half h = {.column = (size_t)gonio_i_random_below(random, columns), .share = share};
-    h.width = exp(WIDTH_DEVIATION * gonio_i_random_normal(random));
-    h.tilt = exp(TILT_DEVIATION * gonio_i_random_normal(random));
-    return h;
+    const double inside = fmin(fmax(at, 0.0), bins - 1.0);
+    const int low = (int)fmin(inside, bins - 2.0);
+    return (between){low, inside - low};
+}
+
+/* theta_h / f, which is spaced by a square root. */
+static void widen(double f, between *theta_h)
+{
+    for (int k = 0; k < GONIO_THETA_H_BINS; k++) {
+        theta_h[k] = place((k + 0.5) / sqrt(f) - 0.5, GONIO_THETA_H_BINS);
+    }
+}
+
+/* theta_d, bent by t. */
+static void bend(double t, between *theta_d)
+{
+    for (int k = 0; k < GONIO_THETA_D_BINS; k++) {
+        const double bent = pow((k + 0.5) / GONIO_THETA_D_BINS, t);
+        theta_d[k] = place(GONIO_THETA_D_BINS * bent - 0.5, GONIO_THETA_D_BINS);
+    }
+}
+
+static void draw_half(gonio_i_random *random, size_t columns, double share, half *h)
+{
+    h->column = (size_t)gonio_i_random_below(random, columns);
+    h->share = share;
+    widen(exp(WIDTH_DEVIATION * gonio_i_random_normal(random)), h->theta_h);
+    bend(exp(TILT_DEVIATION * gonio_i_random_normal(random)), h->theta_d);
 }
 
 static void draw(gonio_i_mixtures *m, size_t columns, uint64_t seed)
@@ -46,8 +78,8 @@ static void draw(gonio_i_mixtures *m, size_t columns, uint64_t seed)
         gonio_i_random random;
         gonio_i_random_seed(&random, seed, k);
         const double share = gonio_i_random_uniform(&random);
-        m->recipe[k].half[0] = draw_half(&random, columns, share);
-        m->recipe[k].half[1] = draw_half(&random, columns, 1.0 - share);
+        draw_half(&random, columns, share, &m->recipe[k].half[0]);
+        draw_half(&random, columns, 1.0 - share, &m->recipe[k].half[1]);
     }
 }
 
@@ -122,40 +154,22 @@ void gonio_i_mixtures_parents(const gonio_i_mixtures *mixtures, int32_t *parents
     }
 }
 
-/* Between two of `bins` bins, in bins from the middle of the first: constant beyond the ends. */
-typedef struct between {
-    int low;
-    double share; /* of low + 1 */
-} between;
-
-static between place(double at, int bins)
-{
-    const double inside = fmin(fmax(at, 0.0), bins - 1.0);
-    const int low = (int)fmin(inside, bins - 2.0);
-    return (between){low, inside - low};
-}
-
-/* A row of a column at theta_h / f and at theta_d bent by t: between the four cells around. theta_h
- * is spaced by a square root. */
-static double stretched(const gonio_i_mixtures *m, const half *h, size_t row)
+/* A row of a column that is varied: between four cells. run: cells of a pair of bins. */
+static double stretched(const gonio_i_mixtures *m, const half *h, size_t row, int32_t run)
 {
     const size_t each = m->basis->channels == GONIO_JOINT ? GONIO_CHANNELS : 1;
     const int32_t cell = m->basis->cell[row / each];
-    const int32_t run = gonio_grid_cells(m->basis->representation) / GONIO_CELLS;
-    const int theta_h = cell / run / GONIO_THETA_D_BINS;
-    const int theta_d = cell / run % GONIO_THETA_D_BINS;
-    const between at_h = place((theta_h + 0.5) / sqrt(h->width) - 0.5, GONIO_THETA_H_BINS);
-    const double bent = pow((theta_d + 0.5) / GONIO_THETA_D_BINS, h->tilt);
-    const between at_d = place(GONIO_THETA_D_BINS * bent - 0.5, GONIO_THETA_D_BINS);
+    const between at_h = h->theta_h[cell / run / GONIO_THETA_D_BINS];
+    const between at_d = h->theta_d[cell / run % GONIO_THETA_D_BINS];
+    const float *column = m->measured + h->column * m->basis->rows;
     double sum = 0.0;
     for (int k = 0; k < 4; k++) {
         const int32_t other_h = at_h.low + k / 2;
         const int32_t other_d = at_d.low + k % 2;
-        const size_t position = gonio_basis_position(
-            m->basis, (other_h * GONIO_THETA_D_BINS + other_d) * run + cell % run);
+        const int32_t other = (other_h * GONIO_THETA_D_BINS + other_d) * run + cell % run;
         sum += (k / 2 == 0 ? 1.0 - at_h.share : at_h.share) *
                (k % 2 == 0 ? 1.0 - at_d.share : at_d.share) *
-               (double)m->measured[h->column * m->basis->rows + position * each + row % each];
+               (double)column[(size_t)m->basis->position[other] * each + row % each];
     }
     return sum;
 }
@@ -164,8 +178,9 @@ static double stretched(const gonio_i_mixtures *m, const half *h, size_t row)
 static void reflectance(const gonio_i_mixtures *m, const half *h, size_t first, size_t count,
                         double *x)
 {
+    const int32_t run = gonio_grid_cells(m->basis->representation) / GONIO_CELLS;
     for (size_t i = 0; i < count; i++) {
-        x[i] = stretched(m, h, first + i);
+        x[i] = stretched(m, h, first + i, run);
     }
     gonio_i_expm1(count, x, x);
     for (size_t i = 0; i < count; i++) {
