@@ -240,7 +240,7 @@ static void go_on(gonio_context *context, const subject *it, gonio_plan *plan, s
     gonio_plan_options_default(&options);
     options.metric = it->s->metric;
     options.count = n - done;
-    check(gonio_plan_next(context, it->basis, readings, &how, &options, &now, &more));
+    check(gonio_plan_next(context, it->basis, readings, &how, &options, &now, NULL, &more));
     memcpy(plan->entries + done, more->entries, (n - done) * sizeof *plan->entries);
     gonio_plan_free(&more);
     gonio_readings_free(&readings);

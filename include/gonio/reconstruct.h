@@ -133,15 +133,15 @@ GONIO_API gonio_status gonio_reconstruct_material(gonio_context *context, const 
  * expected error given what the readings say it is like (the covariance of the posterior, averaged
  * over the channels). plan_options: count, metric, candidates and target count, as for the method
  * expected-error; readings that were made are not proposed again, and expected[] is per cent of
- * this material. A dark level and usual mistakes are looked for as in a reconstruction; a mistake
- * is told as a note. *expected_now: the E6 to expect without another reading; if it is at most
- * plan_options->target (above 0), there is nothing to read and *plan is NULL. Errors: those of
- * gonio_reconstruct and gonio_plan_create. */
+ * this material. A dark level and usual mistakes are looked for as in a reconstruction:
+ * *suspicion is gonio_reconstruction.suspicion (suspicion may be NULL). *expected_now: the E6 to
+ * expect without another reading; if it is at most plan_options->target (above 0), there is nothing
+ * to read and *plan is NULL. Errors: those of gonio_reconstruct and gonio_plan_create. */
 GONIO_API gonio_status gonio_plan_next(gonio_context *context, const gonio_basis *basis,
                                        const gonio_readings *readings,
                                        const gonio_reconstruct_options *options,
                                        const gonio_plan_options *plan_options, double *expected_now,
-                                       gonio_plan **plan);
+                                       const char **suspicion, gonio_plan **plan);
 
 GONIO_API void gonio_reconstruction_free(gonio_reconstruction **reconstruction);
 

@@ -18,6 +18,7 @@ typedef struct next {
     gonio_i_columns columns;
     gonio_i_posterior posterior;
     gonio_half_difference *read;
+    const char *suspicion;
 } next;
 
 static gonio_status allocate(next *n)
@@ -50,7 +51,6 @@ static gonio_status find_posterior(next *n, const gonio_reconstruct_options *opt
 {
     const gonio_i_posterior_options how = {.smoothness = -1.0};
     double *dark = NULL;
-    const char *suspicion = NULL;
     gonio_status status = gonio_i_estimate_check(n->context, n->basis, n->readings, options);
     if (status == GONIO_OK) {
         status =
@@ -64,11 +64,7 @@ static gonio_status find_posterior(next *n, const gonio_reconstruct_options *opt
     }
     if (status == GONIO_OK) {
         status = gonio_i_columns_interpret(n->context, n->prior, n->readings, options, &n->columns,
-                                           &dark, &suspicion);
-    }
-    if (suspicion != NULL) {
-        gonio_i_note(n->context, "%s: the readings are far likelier if %s (--believe: do not look)",
-                     gonio_readings_describe(n->readings).path, suspicion);
+                                           &dark, &n->suspicion);
     }
     if (status == GONIO_OK) {
         status = allocate(n);
@@ -85,7 +81,7 @@ gonio_status gonio_plan_next(gonio_context *context, const gonio_basis *basis,
                              const gonio_readings *readings,
                              const gonio_reconstruct_options *options,
                              const gonio_plan_options *plan_options, double *expected_now,
-                             gonio_plan **plan)
+                             const char **suspicion, gonio_plan **plan)
 {
     next n = {.context = context,
               .basis = basis,
@@ -93,6 +89,9 @@ gonio_status gonio_plan_next(gonio_context *context, const gonio_basis *basis,
               .view = gonio_basis_describe(basis)};
     gonio_status status = find_posterior(&n, options);
     *plan = NULL;
+    if (suspicion != NULL) {
+        *suspicion = n.suspicion;
+    }
     if (status == GONIO_OK) {
         *expected_now = n.posterior.predicted;
     }

@@ -142,6 +142,7 @@ suspect() { # FILE PART
     expect_not_said 'far likelier' "$1: --believe does not look"
     expect_ok next b.gonio "$1" -n 1 -o suspect.csv
     expect_true "next, $1: '$2'" grep -q "note: .*$2" "$root/work/stderr"
+    expect_output "\"suspicion\": \"" next b.gonio "$1" -n 1 --json -q -o suspect.csv
     expect_ok next b.gonio "$1" -n 1 --believe -o suspect.csv
     expect_not_said 'far likelier' "next, $1: --believe does not look"
 }
@@ -149,6 +150,7 @@ suspect percent.csv 'the values are in per cent'
 suspect cosine.csv 'the values include the cosine'
 suspect radians.csv 'the angles are in radians'
 suspect elevation.csv 'theta is measured from the surface'
+expect_output '"suspicion": null' next b.gonio all.csv -n 1 --json -o suspect.csv
 expect_output '"suspicion": null' reconstruct b.gonio all.csv --json -o suspect.binary
 expect_true 'good readings are not suspicious' test ! -s "$root/work/stderr"
 

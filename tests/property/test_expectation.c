@@ -509,7 +509,7 @@ static void test_what_comes_next_is_no_worse(void **state)
     more.count = 5;
     assert_int_equal(gonio_material_open(context, "atlas:purple-vinyl", &material), GONIO_OK);
     gonio_readings *readings = read_material(path, material);
-    assert_int_equal(gonio_plan_next(context, basis, readings, &options, &more, &now, &plan),
+    assert_int_equal(gonio_plan_next(context, basis, readings, &options, &more, &now, NULL, &plan),
                      GONIO_OK);
     print_message("now %.3f %%, then %.3f %%\n", now, plan->expected[0]);
     assert_true(plan->expected[0] > 0.0 && plan->expected[0] <= now);

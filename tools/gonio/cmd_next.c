@@ -18,27 +18,37 @@ typedef struct options {
     int json;
 } options;
 
-static int report(const tool *t, const options *o, double now, const gonio_plan *plan)
+/* What gonio_plan_next says; plan: NULL if the target is met. */
+typedef struct answer {
+    double now;
+    const char *suspicion;
+    gonio_plan *plan;
+} answer;
+
+static int report(const tool *t, const options *o, const answer *a)
 {
+    const gonio_plan *plan = a->plan;
     if (o->json) {
         return tool_print_json(
-            t, json_pack(
-                   "{s:b, s:f, s:s?, s:I, s:o}", "target_met", plan == NULL, "expected_e6_percent",
-                   now, "plan", plan != NULL ? o->output : NULL, "readings",
-                   (json_int_t)(plan != NULL ? plan->count : 0), "expected_then_percent",
-                   plan != NULL ? tool_json_number(plan->expected[plan->count - 1]) : json_null()));
+            t, json_pack("{s:b, s:f, s:s?, s:I, s:o, s:s?}", "target_met", plan == NULL,
+                         "expected_e6_percent", a->now, "plan", plan != NULL ? o->output : NULL,
+                         "readings", (json_int_t)(plan != NULL ? plan->count : 0),
+                         "expected_then_percent",
+                         plan != NULL ? tool_json_number(plan->expected[plan->count - 1])
+                                      : json_null(),
+                         "suspicion", a->suspicion));
     }
     if (!tool_quiet && plan == NULL) {
-        printf("expected error (E6) %.2f %%: the target is met, nothing more to read\n", now);
+        printf("expected error (E6) %.2f %%: the target is met, nothing more to read\n", a->now);
     } else if (!tool_quiet) {
         printf("%s: %zu more reading%s; expected error (E6) now %.2f %%, then %.2f %%\n", o->output,
-               plan->count, tool_plural(plan->count), now, plan->expected[plan->count - 1]);
+               plan->count, tool_plural(plan->count), a->now, plan->expected[plan->count - 1]);
     }
     return 0;
 }
 
 static gonio_status find_next(tool *t, const options *o, const gonio_basis *basis,
-                              const gonio_readings *readings, double *now, gonio_plan **plan)
+                              const gonio_readings *readings, answer *a)
 {
     gonio_reconstruct_options how;
     gonio_plan_options what;
@@ -58,7 +68,8 @@ static gonio_status find_next(tool *t, const options *o, const gonio_basis *basi
         what.candidates = candidates;
     }
     if (status == GONIO_OK) {
-        status = gonio_plan_next(t->context, basis, readings, &how, &what, now, plan);
+        status = gonio_plan_next(t->context, basis, readings, &how, &what, &a->now, &a->suspicion,
+                                 &a->plan);
     }
     free(candidates);
     return status;
@@ -69,20 +80,22 @@ static int next(tool *t, const options *o, const char *basis_path, const char *p
     const gonio_readings_options any = {.values_needed = true, .average_repeats = true};
     gonio_readings *readings = NULL;
     gonio_basis *basis = NULL;
-    gonio_plan *plan = NULL;
-    double now = 0.0;
+    answer a = {0};
     gonio_status status = gonio_readings_read(t->context, path, &any, &readings);
     if (status == GONIO_OK) {
         status = tool_basis(t, basis_path, NULL, &basis);
     }
     if (status == GONIO_OK) {
-        status = find_next(t, o, basis, readings, &now, &plan);
+        status = find_next(t, o, basis, readings, &a);
     }
-    if (status == GONIO_OK && plan != NULL) {
-        status = gonio_plan_write(t->context, plan, t->command_line, o->output);
+    if (status == GONIO_OK) {
+        tool_note_suspicion("next", path, a.suspicion);
     }
-    const int code = status == GONIO_OK ? report(t, o, now, plan) : tool_exit_code(status);
-    gonio_plan_free(&plan);
+    if (status == GONIO_OK && a.plan != NULL) {
+        status = gonio_plan_write(t->context, a.plan, t->command_line, o->output);
+    }
+    const int code = status == GONIO_OK ? report(t, o, &a) : tool_exit_code(status);
+    gonio_plan_free(&a.plan);
     gonio_basis_free(&basis);
     gonio_readings_free(&readings);
     return code;

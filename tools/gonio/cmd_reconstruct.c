@@ -61,12 +61,7 @@ static double largest(const double *value, size_t count)
 
 static void warn(const gonio_reconstruction *r, const char *output, const energy *e)
 {
-    if (r->suspicion != NULL && !tool_quiet) {
-        fprintf(stderr,
-                "gonio reconstruct: note: %s: the readings are far likelier if %s (--believe: do "
-                "not look)\n",
-                output, r->suspicion);
-    }
+    tool_note_suspicion("reconstruct", output, r->suspicion);
     if (r->dark != NULL && !tool_quiet) {
         fprintf(
             stderr,

@@ -446,6 +446,16 @@ int tool_print_json(const tool *t, json_t *json)
     return 0;
 }
 
+void tool_note_suspicion(const char *command, const char *path, const char *suspicion)
+{
+    if (suspicion != NULL && !tool_quiet) {
+        fprintf(
+            stderr,
+            "gonio %s: note: %s: the readings are far likelier if %s (--believe: do not look)\n",
+            command, path, suspicion);
+    }
+}
+
 const char *tool_plural(size_t count)
 {
     return count == 1 ? "" : "s";

@@ -83,6 +83,10 @@ gonio_status tool_basis(tool *t, const char *path, const char *method, gonio_bas
 /* The built-in basis's path, made if need be; to be released with free(). */
 gonio_status tool_builtin_basis(tool *t, bool paper, char **path);
 
+/* Says on standard error what would explain readings better (gonio_reconstruction.suspicion), and
+ * nothing for NULL. path: what is concerned. */
+void tool_note_suspicion(const char *command, const char *path, const char *suspicion);
+
 /* What makes a noun one of `count`: "s", or nothing for one. */
 const char *tool_plural(size_t count);
 
