@@ -15,7 +15,7 @@ all:
 	cmake --build --preset release -j $(JOBS)
 
 demo: all
-	build/release/tools/gonio/gonio demo -o gonio-demo
+	build/release/apps/gonio/gonio demo -o gonio-demo
 
 check: style test sanitize
 	@echo "All checks passed."

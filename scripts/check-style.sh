@@ -3,7 +3,7 @@
 set -eu
 build=$1
 cd "$(dirname "$0")/.."
-sources=$(find include src tools tests bench examples -name '*.[ch]' 2>/dev/null | sort)
+sources=$(find include src apps tests bench examples -name '*.[ch]' 2>/dev/null | sort)
 
 # Other versions format differently, so only the one that the code was formatted with judges.
 if clang-format --version | grep -q 'version 14\.'; then
@@ -14,7 +14,7 @@ else
 fi
 
 if clang-tidy --version | grep -q 'version 14\.'; then
-    find src tools -name '*.c' | sort |
+    find src apps -name '*.c' | sort |
         xargs -P "$(nproc)" -n 4 clang-tidy --quiet -p "$build" --warnings-as-errors='*' 2>/dev/null
     echo "clang-tidy: fine"
 else
