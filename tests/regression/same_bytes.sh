@@ -4,6 +4,7 @@
 #   diff OLD/SUMS NEW/SUMS                  names the outputs that differ
 # MATERIALS is a folder of measured materials; the shared ones by default, the built-in ones where there are none.
 # Lines that say which command made a file are left out of the sums. THREADS=N is handed to every command.
+# ONLY=REGEX runs the commands whose names match; the others' outputs are those that are in OUT already.
 # Spellings of older builds are known, so that a build can be compared with one from before a change of words.
 set -eu
 gonio=$(realpath "$1")
@@ -38,6 +39,7 @@ run() {
     name=$1
     command=$2
     shift 2
+    [[ $name =~ ${ONLY:-.} ]] || return 0
     start=$(date +%s%N)
     "$gonio" "$command" --threads "${THREADS:-2}" "$@" >"$name.out" 2>"$name.err" || echo "exit $?" >>"$name.out"
     printf '%-28s %6d ms\n' "$name" $((($(date +%s%N) - start) / 1000000)) >&2
