@@ -25,7 +25,7 @@
 #include <lapacke.h>
 
 #include "core/random.h"
-#include "kernels.h"
+#include "blas_kernels.h"
 
 enum { RUNS = 5, BASIS_MATERIALS = 80, TABLES = 100 };
 
@@ -860,7 +860,7 @@ static bool wanted(const char *name, int argc, char **argv)
 
 int main(int argc, char **argv)
 {
-    kernels_choose(argv);
+    blas_kernels_choose(argv);
     if (argc > 4 && strcmp(argv[1], learn_child) == 0) {
         return learn_as_child(argv + 2, (size_t)argc - 2);
     }

@@ -1,5 +1,7 @@
 /* gonio compare: how far BRDFs are from a reference. */
-#include "tool.h"
+#include "command_line.h"
+#include "file_kinds.h"
+#include "json_output.h"
 
 #include <stdio.h>
 #include <stdlib.h>

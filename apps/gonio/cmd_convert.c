@@ -1,5 +1,5 @@
 /* gonio convert: any material to a MERL table. */
-#include "tool.h"
+#include "command_line.h"
 
 int cmd_convert(int argc, const char **argv)
 {

@@ -1,5 +1,5 @@
 /* gonio demo: the whole chain on a built-in material that the basis has not seen. */
-#include "tool.h"
+#include "command_line.h"
 
 #include <errno.h>
 #include <stdio.h>

@@ -1,5 +1,8 @@
 /* gonio info: what a file is, judged by its content. */
-#include "tool.h"
+#include "albedos.h"
+#include "command_line.h"
+#include "file_kinds.h"
+#include "json_output.h"
 
 #include <errno.h>
 #include <inttypes.h>

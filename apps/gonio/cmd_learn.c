@@ -1,5 +1,7 @@
 /* gonio learn: a basis from measured materials. */
-#include "paths.h"
+#include "command_line.h"
+#include "json_output.h"
+#include "material_list.h"
 
 #include <limits.h>
 #include <stdio.h>
@@ -31,7 +33,7 @@ static size_t name_in(const char *path, const char **name)
 }
 
 /* Takes the materials of a comma-separated list of names out of the paths. */
-static int leave_out(const tool *t, tool_paths *list, const char *without)
+static int leave_out(const tool *t, material_list *list, const char *without)
 {
     for (const char *next = without; next != NULL && *next != '\0';) {
         const size_t length = strcspn(next, ",");
@@ -97,7 +99,7 @@ static size_t mixtures_of(const options *o, const gonio_database_options *how)
     return o->mixtures != UNSET ? (size_t)o->mixtures : usual ? GONIO_DEFAULT_MIXTURES : 0;
 }
 
-static int learn(tool *t, const options *o, const tool_paths *list,
+static int learn(tool *t, const options *o, const material_list *list,
                  const gonio_database_options *how)
 {
     gonio_database *database = NULL;
@@ -148,7 +150,7 @@ static int run(tool *t, const options *o)
     size_t count = 0;
     gonio_database_options how;
     const char **arguments = tool_arguments(t, &count);
-    tool_paths list = {0};
+    material_list list = {0};
     int code = count == 0 ? tool_usage_error(t, "no materials given") : 0;
     if (code == 0) {
         code = tool_check_count(t, "--basis", o->components, o->components == 0 ? 0 : 1);
@@ -160,7 +162,7 @@ static int run(tool *t, const options *o)
         code = choose_kind(t, o, &how);
     }
     for (size_t k = 0; k < count && code == 0; k++) {
-        code = tool_add_materials(t, &list, arguments[k]);
+        code = material_list_add(t, &list, arguments[k]);
     }
     if (code == 0) {
         code = leave_out(t, &list, o->without);
@@ -171,7 +173,7 @@ static int run(tool *t, const options *o)
     if (code == 0) {
         code = learn(t, o, &list, &how);
     }
-    tool_free_paths(&list);
+    material_list_free(&list);
     return code;
 }
 

@@ -1,5 +1,6 @@
 /* gonio measure: a simulated instrument reads a known material. */
-#include "tool.h"
+#include "command_line.h"
+#include "file_kinds.h"
 
 #include <stdio.h>
 

@@ -1,5 +1,8 @@
 /* gonio next: where to measure next, given what was read. */
-#include "aims.h"
+#include "builtin_basis.h"
+#include "command_line.h"
+#include "json_output.h"
+#include "planning_options.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,5 +1,8 @@
 /* gonio plan: where to measure. */
-#include "aims.h"
+#include "builtin_basis.h"
+#include "command_line.h"
+#include "json_output.h"
+#include "planning_options.h"
 
 #include <limits.h>
 #include <math.h>

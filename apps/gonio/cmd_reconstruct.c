@@ -1,5 +1,8 @@
 /* gonio reconstruct: the whole BRDF from a few readings. */
-#include "tool.h"
+#include "albedos.h"
+#include "builtin_basis.h"
+#include "command_line.h"
+#include "json_output.h"
 
 #include <stdio.h>
 #include <stdlib.h>

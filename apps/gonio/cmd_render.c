@@ -1,5 +1,5 @@
 /* gonio render: a material on a sphere or a mesh, and comparison pictures of several. */
-#include "tool.h"
+#include "command_line.h"
 
 #include <ctype.h>
 #include <math.h>

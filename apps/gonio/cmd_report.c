@@ -1,5 +1,5 @@
 /* gonio report: a page for a browser. */
-#include "tool.h"
+#include "command_line.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,6 +1,7 @@
 /* gonio reproduce: the paper's experiments on a database of one's own. */
-#include "paths.h"
-#include "team.h"
+#include "command_line.h"
+#include "material_list.h"
+#include "processes.h"
 
 #include <stdio.h>
 
@@ -14,18 +15,18 @@ typedef struct options {
 } options;
 
 /* What was asked for, the built-in materials by default. */
-static int list_materials(const tool *t, tool_paths *list)
+static int list_materials(const tool *t, material_list *list)
 {
     size_t count = 0;
     const char **arguments = tool_arguments(t, &count);
-    int code = count == 0 ? tool_add_materials(t, list, "atlas:") : 0;
+    int code = count == 0 ? material_list_add(t, list, "atlas:") : 0;
     for (size_t k = 0; k < count && code == 0; k++) {
-        code = tool_add_materials(t, list, arguments[k]);
+        code = material_list_add(t, list, arguments[k]);
     }
     return code;
 }
 
-static int reproduce(const tool *t, const options *o, const tool_paths *list,
+static int reproduce(const tool *t, const options *o, const material_list *list,
                      const gonio_team *team)
 {
     const gonio_reproduce_options how = {.splits = o->splits,
@@ -44,7 +45,7 @@ static int reproduce(const tool *t, const options *o, const tool_paths *list,
 
 static int run(const tool *t, const options *o, const gonio_team *team)
 {
-    tool_paths list = {0};
+    material_list list = {0};
     int code = tool_check_count(t, "--seed", o->seed, 0);
     if (code == 0 && (o->output == NULL || *o->output == '\0')) {
         code = tool_usage_error(t, "no output: give -o FOLDER");
@@ -55,7 +56,7 @@ static int run(const tool *t, const options *o, const gonio_team *team)
     if (code == 0) {
         code = reproduce(t, o, &list, team);
     }
-    tool_free_paths(&list);
+    material_list_free(&list);
     return code;
 }
 
@@ -63,11 +64,11 @@ static int run(const tool *t, const options *o, const gonio_team *team)
 static int run_in_team(const tool *t, const options *o)
 {
     gonio_team team;
-    if (!tool_team_begin(&team, t->name)) {
+    if (!processes_begin(&team, t->name)) {
         return EXIT_DATA;
     }
     tool_quiet = tool_quiet || team.rank != 0;
-    return tool_team_end(run(t, o, &team));
+    return processes_end(run(t, o, &team));
 }
 
 int cmd_reproduce(int argc, const char **argv)

@@ -1,6 +1,8 @@
 /* gonio: a table of commands. */
-#include "kernels.h"
-#include "tool.h"
+#include "blas_kernels.h"
+#include "command.h"
+
+#include <gonio/gonio.h>
 
 #include <errno.h>
 #include <stdbool.h>
@@ -82,6 +84,6 @@ int main(int argc, char **argv)
         print_help(stderr);
         return EXIT_USAGE;
     }
-    kernels_choose(argv);
+    blas_kernels_choose(argv);
     return run_command(name, argc - 1, (const char **)(argv + 1));
 }

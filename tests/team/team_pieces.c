@@ -6,7 +6,7 @@
 
 #include "core/core.h"
 #include "report/pieces.h"
-#include "team.h"
+#include "processes.h"
 
 enum { PIECES = 30 };
 
@@ -72,11 +72,11 @@ int main(int argc, char **argv)
     int code = 1;
     gonio_context *context = NULL;
     const gonio_context_options options = {.message = on_message, .threads = 1};
-    if (argc > 1 && tool_team_begin(&team, "team-pieces") &&
+    if (argc > 1 && processes_begin(&team, "team-pieces") &&
         gonio_context_create(&context, &options) == GONIO_OK) {
         task t = {team.rank, argc > 2 ? atoi(argv[2]) : -1};
         code = run(context, argv[1], &team, &t) == GONIO_OK ? 0 : 1;
     }
     gonio_context_free(&context);
-    return tool_team_end(code);
+    return processes_end(code);
 }

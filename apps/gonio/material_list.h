@@ -1,19 +1,19 @@
 /* Lists of materials on the command line. */
-#ifndef GONIO_TOOL_PATHS_H
-#define GONIO_TOOL_PATHS_H
+#ifndef GONIO_MATERIAL_LIST_H
+#define GONIO_MATERIAL_LIST_H
 
-#include "tool.h"
+#include "command_line.h"
 
 /* A growing list of paths. */
-typedef struct tool_paths {
+typedef struct material_list {
     size_t count;
     char **path;
-} tool_paths;
+} material_list;
 
 /* Adds what an argument stands for: the materials of a folder by name, 'atlas:' for all built-in
  * ones, or itself. Returns an exit code, 0 if fine. */
-int tool_add_materials(const tool *t, tool_paths *list, const char *argument);
+int material_list_add(const tool *t, material_list *list, const char *argument);
 
-void tool_free_paths(tool_paths *list);
+void material_list_free(material_list *list);
 
 #endif

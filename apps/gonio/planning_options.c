@@ -1,5 +1,5 @@
-/* What a plan is to aim at, for the commands that plan: see aims.h. */
-#include "aims.h"
+/* What a plan is to aim at, for the commands that plan: see planning_options.h. */
+#include "planning_options.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-/* See kernels.h. */
-#include "kernels.h"
+/* Chooses the kernels of OpenBLAS: see blas_kernels.h. */
+#include "blas_kernels.h"
 
 #include <cblas.h>
 #include <limits.h>
@@ -40,7 +40,7 @@ static const char *better_kernels(const char *used)
     return NULL;
 }
 
-void kernels_choose(char **argv)
+void blas_kernels_choose(char **argv)
 {
     static const char variable[] = "OPENBLAS_CORETYPE"; /* set: by the user, or here before */
     char path[PATH_MAX];

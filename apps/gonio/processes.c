@@ -1,5 +1,5 @@
-/* Several processes that work together, by MPI: see team.h. */
-#include "team.h"
+/* Several processes that work together, by MPI: see processes.h. */
+#include "processes.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -89,13 +89,13 @@ static void leave(int code)
 
 #endif
 
-bool tool_team_begin(gonio_team *team, const char *command)
+bool processes_begin(gonio_team *team, const char *command)
 {
     *team = (gonio_team){.rank = 0, .size = 1};
     return !is_launched() || join(team, command);
 }
 
-int tool_team_end(int code)
+int processes_end(int code)
 {
     leave(code);
     return code;

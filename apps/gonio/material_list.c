@@ -1,5 +1,5 @@
-/* Lists of materials on the command line: see paths.h. */
-#include "paths.h"
+/* Lists of materials on the command line: see material_list.h. */
+#include "material_list.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -8,7 +8,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-static bool add_path(tool_paths *list, char *path)
+static bool add_path(material_list *list, char *path)
 {
     char **more = path != NULL ? reallocarray(list->path, list->count + 1, sizeof *more) : NULL;
     if (more == NULL) {
@@ -20,7 +20,7 @@ static bool add_path(tool_paths *list, char *path)
     return true;
 }
 
-void tool_free_paths(tool_paths *list)
+void material_list_free(material_list *list)
 {
     for (size_t k = 0; k < list->count; k++) {
         free(list->path[k]);
@@ -47,7 +47,7 @@ static int only_materials(const struct dirent *entry)
 }
 
 /* The materials of a folder, by name. */
-static int add_folder(const tool *t, tool_paths *list, const char *folder)
+static int add_folder(const tool *t, material_list *list, const char *folder)
 {
     struct dirent **entries = NULL;
     const int count = scandir(folder, &entries, only_materials, alphasort);
@@ -72,7 +72,7 @@ static int add_folder(const tool *t, tool_paths *list, const char *folder)
     return done ? 0 : EXIT_DATA;
 }
 
-int tool_add_materials(const tool *t, tool_paths *list, const char *argument)
+int material_list_add(const tool *t, material_list *list, const char *argument)
 {
     struct stat status;
     if (strcmp(argument, "atlas:") == 0) {

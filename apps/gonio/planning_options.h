@@ -1,8 +1,8 @@
 /* What a plan is to aim at, for the commands that plan. */
-#ifndef GONIO_AIMS_H
-#define GONIO_AIMS_H
+#ifndef GONIO_PLANNING_OPTIONS_H
+#define GONIO_PLANNING_OPTIONS_H
 
-#include "tool.h"
+#include "command_line.h"
 
 /* The gonio_metric of a name; -1 if there is none. */
 int tool_metric(const char *name);

@@ -1,0 +1,16 @@
+/* Albedos at some incidences. */
+#ifndef GONIO_ALBEDOS_H
+#define GONIO_ALBEDOS_H
+
+#include <gonio/gonio.h>
+
+/* Where albedos are taken: theta_i in degrees. */
+enum { TOOL_INCIDENCES = 6 };
+extern const double tool_incidence_deg[TOOL_INCIDENCES];
+
+/* The albedos there; returns the index of the incidence with the largest of any channel, which goes
+ * to *largest. */
+int tool_albedos(const gonio_table *table, double albedo[TOOL_INCIDENCES][GONIO_CHANNELS],
+                 double *largest);
+
+#endif

@@ -1,0 +1,188 @@
+/* The command line of a command: its options, help, arguments and the checks of values: see
+ * command_line.h. */
+#include "command_line.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+int tool_threads = 0;
+
+struct poptOption tool_common_options[] = {
+    {"threads", '\0', POPT_ARG_INT, &tool_threads, 0, "Use at most N threads (default: all)", "N"},
+    {"quiet", 'q', POPT_ARG_NONE, &tool_quiet, 0, "Only errors, no notes and no progress", NULL},
+    POPT_TABLEEND};
+
+static bool is_plain(const char *word)
+{
+    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                                "-_./:=,+%@";
+    return *word != '\0' && word[strspn(word, plain)] == '\0';
+}
+
+/* The command line as typed, quoted where the shell would need it. */
+static char *join(int argc, const char **argv)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *stream = open_memstream(&text, &size);
+    if (stream == NULL) {
+        return NULL;
+    }
+    fputs("gonio", stream);
+    for (int k = 0; k < argc; k++) {
+        if (is_plain(argv[k])) {
+            fprintf(stream, " %s", argv[k]);
+            continue;
+        }
+        fputs(" '", stream);
+        for (const char *c = argv[k]; *c != '\0'; c++) {
+            if (*c == '\'') {
+                fputs("'\\''", stream);
+            } else {
+                fputc(*c == '\n' || *c == '\r' ? ' ' : *c, stream);
+            }
+        }
+        fputc('\'', stream);
+    }
+    fclose(stream);
+    return text;
+}
+
+int tool_usage_error(const tool *t, const char *format, ...)
+{
+    va_list arguments;
+    fprintf(stderr, "gonio %s: ", t->name);
+    va_start(arguments, format);
+    vfprintf(stderr, format, arguments);
+    va_end(arguments);
+    fprintf(stderr, " (see gonio %s -h)\n", t->name);
+    return EXIT_USAGE;
+}
+
+static int parse(tool *t, const char *text)
+{
+    int code = 0;
+    while ((code = poptGetNextOpt(t->options)) > 0) {
+        if (code == 'h') {
+            poptPrintHelp(t->options, stdout, 0);
+            printf("\n%s\n", text);
+            return 0;
+        }
+    }
+    if (code < -1) {
+        return tool_usage_error(t, "%s: %s", poptBadOption(t->options, POPT_BADOPTION_NOALIAS),
+                                poptStrerror(code));
+    }
+    if (tool_threads < 0) {
+        return tool_usage_error(t, "--threads cannot be negative");
+    }
+    return -1;
+}
+
+/* Whether an option's value is a string, which popt gives as a copy that is the caller's to free.
+ */
+static bool holds_string(const struct poptOption *option)
+{
+    return (option->argInfo & POPT_ARG_MASK) == POPT_ARG_STRING && option->arg != NULL;
+}
+
+static bool is_end(const struct poptOption *option)
+{
+    return option->longName == NULL && option->shortName == '\0' && option->arg == NULL;
+}
+
+static void remember_defaults(tool *t)
+{
+    for (int k = 0; k < TOOL_MOST_OPTIONS && !is_end(&t->table[k]); k++) {
+        t->defaults[k] = holds_string(&t->table[k]) ? *(const char **)t->table[k].arg : NULL;
+    }
+}
+
+static void free_strings(tool *t)
+{
+    for (int k = 0; k < TOOL_MOST_OPTIONS && !is_end(&t->table[k]); k++) {
+        if (holds_string(&t->table[k])) {
+            char **value = t->table[k].arg;
+            if (*value != t->defaults[k]) {
+                free(*value);
+                *value = NULL;
+            }
+        }
+    }
+}
+
+int tool_begin(tool *t, int argc, const char **argv, const struct poptOption *table,
+               const char *usage, const char *text)
+{
+    *t = (tool){.table = table,
+                .name = argv[0],
+                .messages.command = argv[0],
+                .command_line = join(argc, argv)};
+    remember_defaults(t);
+    if (asprintf(&t->title, "gonio %s", argv[0]) < 0) {
+        t->title = NULL;
+        return EXIT_DATA;
+    }
+    argv[0] = t->title; /* what the help calls the program */
+    t->options = poptGetContext(t->title, argc, argv, table, 0);
+    poptSetOtherOptionHelp(t->options, usage);
+    const int code = parse(t, text);
+    if (code >= 0) {
+        return code;
+    }
+    const gonio_context_options options = {tool_on_message, tool_on_progress, &t->messages,
+                                           tool_threads};
+    tool_catch_signals();
+    return gonio_context_create(&t->context, &options) == GONIO_OK ? -1 : EXIT_DATA;
+}
+
+void tool_end(tool *t)
+{
+    tool_clear_progress(&t->messages);
+    gonio_context_free(&t->context);
+    poptFreeContext(t->options);
+    free_strings(t);
+    free(t->title);
+    free(t->command_line);
+}
+
+const char **tool_arguments(const tool *t, size_t *count)
+{
+    const char **arguments = poptGetArgs(t->options);
+    *count = 0;
+    while (arguments != NULL && arguments[*count] != NULL) {
+        (*count)++;
+    }
+    return arguments;
+}
+
+int tool_exit_code(gonio_status status)
+{
+    return status == GONIO_OK ? 0 : status == GONIO_ERROR_ARGUMENT ? EXIT_USAGE : EXIT_DATA;
+}
+
+int tool_check_output(const tool *t, const char *output, const char *const *inputs, size_t count)
+{
+    struct stat out;
+    if (output == NULL || *output == '\0') {
+        return tool_usage_error(t, "no output: give -o FILE");
+    }
+    for (size_t k = 0; stat(output, &out) == 0 && k < count; k++) {
+        struct stat in;
+        if (inputs[k] != NULL && stat(inputs[k], &in) == 0 && in.st_dev == out.st_dev &&
+            in.st_ino == out.st_ino && S_ISREG(in.st_mode)) {
+            return tool_usage_error(t, "%s is an input: give another name for the output", output);
+        }
+    }
+    return 0;
+}
+
+int tool_check_count(const tool *t, const char *option, long value, long least)
+{
+    return value < least
+               ? tool_usage_error(t, "%s: %ld is too small, at least %ld", option, value, least)
+               : 0;
+}

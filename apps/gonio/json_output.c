@@ -1,0 +1,22 @@
+/* Results as JSON: see json_output.h. */
+#include "json_output.h"
+
+#include <math.h>
+#include <stdio.h>
+
+json_t *tool_json_number(double value)
+{
+    return isfinite(value) ? json_real(value) : json_null();
+}
+
+int tool_print_json(const tool *t, json_t *json)
+{
+    if (json == NULL) {
+        fprintf(stderr, "gonio %s: no JSON: a name is not UTF-8, or out of memory\n", t->name);
+        return EXIT_DATA;
+    }
+    json_dumpf(json, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(10));
+    putchar('\n');
+    json_decref(json);
+    return 0;
+}

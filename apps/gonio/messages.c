@@ -1,0 +1,117 @@
+/* Messages, the progress bar and interrupts: see messages.h. */
+#include "messages.h"
+
+#include <signal.h>
+#include <stdio.h>
+#include <time.h>
+#include <unistd.h>
+
+int tool_quiet = 0;
+
+/* Set by the first interrupt; the work then ends at its next progress report and tidies up. */
+static volatile sig_atomic_t interrupted = 0;
+
+static void on_interrupt(int signal_number)
+{
+    (void)signal_number;
+    interrupted = 1;
+    signal(SIGINT, SIG_DFL);
+    signal(SIGTERM, SIG_DFL);
+}
+
+void tool_catch_signals(void)
+{
+    signal(SIGINT, on_interrupt);
+    signal(SIGTERM, on_interrupt);
+    signal(SIGXFSZ, SIG_IGN); /* a file-size limit becomes an error like a full disk */
+    signal(SIGPIPE, SIG_IGN);
+}
+
+static double now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+void tool_clear_progress(tool_messages *m)
+{
+    if (m->progress_visible) {
+        fputs("\r\033[K", stderr);
+        m->progress_visible = false;
+    }
+}
+
+void tool_on_message(void *user, gonio_message_level level, const char *text)
+{
+    tool_messages *m = user;
+    if (level != GONIO_MESSAGE_ERROR && tool_quiet) {
+        return;
+    }
+    tool_clear_progress(m);
+    const char *kind = level == GONIO_MESSAGE_ERROR     ? ""
+                       : level == GONIO_MESSAGE_WARNING ? "warning: "
+                                                        : "note: ";
+    fprintf(stderr, "gonio %s: %s%s\n", m->command, kind, text);
+}
+
+/* In minutes when there is no need for more. */
+static void draw_time_left(double seconds)
+{
+    if (seconds >= 120.0) {
+        fprintf(stderr, ", %.0f min left", seconds / 60.0);
+    } else {
+        fprintf(stderr, ", %.0f s left", seconds);
+    }
+}
+
+static void draw_progress(const char *task, double fraction, double elapsed)
+{
+    enum { WIDTH = 30 };
+    char bar[WIDTH + 1];
+    const int full = (int)(fraction * WIDTH);
+    for (int k = 0; k < WIDTH; k++) {
+        bar[k] = k < full ? '#' : '.';
+    }
+    bar[WIDTH] = '\0';
+    fprintf(stderr, "\r\033[K%s [%s] %3.0f%% %.0f s", task, bar, 100.0 * fraction, elapsed);
+    if (fraction > 0.02 && elapsed > 5.0) {
+        draw_time_left(elapsed * (1.0 - fraction) / fraction);
+    }
+    fflush(stderr);
+}
+
+/* A bar on a terminal once the work has taken a second, ten times a second. */
+int tool_on_progress(void *user, const char *task, double fraction)
+{
+    tool_messages *m = user;
+    const double time = now();
+    if (m->progress_start == 0.0) {
+        m->progress_start = time;
+    }
+    if (fraction >= 1.0) {
+        tool_clear_progress(m);
+        m->progress_start = 0.0;
+    } else if (!tool_quiet && time - m->progress_start > 1.0 && time - m->progress_shown > 0.1 &&
+               isatty(STDERR_FILENO)) {
+        draw_progress(task, fraction, time - m->progress_start);
+        m->progress_shown = time;
+        m->progress_visible = true;
+    }
+    return interrupted != 0;
+}
+
+void tool_note_suspicion(const char *command, const char *path, const char *suspicion)
+{
+    if (suspicion != NULL && !tool_quiet) {
+        fprintf(
+            stderr,
+            "gonio %s: note: %s: the readings are far likelier if %s (--believe: do not look)\n",
+            command, path, suspicion);
+    }
+}
+
+const char *tool_plural(size_t count)
+{
+    return count == 1 ? "" : "s";
+}

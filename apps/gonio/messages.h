@@ -1,0 +1,38 @@
+/* Messages, the progress bar and interrupts. */
+#ifndef GONIO_MESSAGES_H
+#define GONIO_MESSAGES_H
+
+#include <gonio/context.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+/* Interrupts end the work at its next progress report; a reader that has gone and a full disk are
+ * errors of writing. */
+void tool_catch_signals(void);
+
+/* Whether only errors are wanted. */
+extern int tool_quiet;
+
+/* What is written to standard error for a command. */
+typedef struct tool_messages {
+    const char *command;   /* its name */
+    double progress_start; /* seconds */
+    double progress_shown;
+    bool progress_visible;
+} tool_messages;
+
+/* The callbacks of a context whose user is a tool_messages. */
+void tool_on_message(void *user, gonio_message_level level, const char *text);
+int tool_on_progress(void *user, const char *task, double fraction);
+
+/* Takes the progress bar off the terminal. */
+void tool_clear_progress(tool_messages *m);
+
+/* Says on standard error what would explain readings better (gonio_reconstruction.suspicion), and
+ * nothing for NULL. path: what is concerned. */
+void tool_note_suspicion(const char *command, const char *path, const char *suspicion);
+
+/* What makes a noun one of `count`: "s", or nothing for one. */
+const char *tool_plural(size_t count);
+
+#endif
