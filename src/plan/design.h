@@ -4,7 +4,7 @@
 
 #include <gonio/plan.h>
 
-#include "../basis/prior.h"
+#include "../prior/prior.h"
 
 /* As gonio_plan_create for the method expected-error. */
 gonio_status gonio_i_design_plan(gonio_context *context, const gonio_basis *basis,

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "dark.h"
+#include "../posterior/interpret.h"
 #include "method.h"
 
 static gonio_status check(gonio_context *context, const gonio_basis_view *view,
@@ -30,6 +30,11 @@ static gonio_status check(gonio_context *context, const gonio_basis_view *view,
     return GONIO_OK;
 }
 
+gonio_i_noise gonio_i_estimate_noise(const gonio_reconstruct_options *options)
+{
+    return (gonio_i_noise){options->noise, options->floor, options->saturation};
+}
+
 gonio_status gonio_i_estimate_check(gonio_context *context, const gonio_basis *basis,
                                     const gonio_readings *readings,
                                     const gonio_reconstruct_options *options)
@@ -43,40 +48,6 @@ gonio_status gonio_i_estimate_check(gonio_context *context, const gonio_basis *b
                             "--channels separate)");
     }
     return status;
-}
-
-gonio_status gonio_i_columns_check(gonio_context *context, const gonio_i_columns *columns,
-                                   const char *path)
-{
-    const char *origin = path != NULL ? path : "readings";
-    for (size_t k = 0; k < columns->count; k++) {
-        if (columns->column[k].count == 0) {
-            return gonio_i_fail(context, GONIO_ERROR_UNDETERMINED,
-                                "%s: no reading in channel %zu: are the cells of its values empty?",
-                                origin, k + 1);
-        }
-    }
-    return GONIO_OK;
-}
-
-gonio_status gonio_i_columns_interpret(gonio_context *context, const gonio_i_prior *prior,
-                                       const gonio_readings *readings,
-                                       const gonio_reconstruct_options *options,
-                                       gonio_i_columns *columns, double **dark,
-                                       const char **suspicion)
-{
-    *suspicion = NULL;
-    gonio_status status = gonio_i_dark_find(context, prior, readings, options, columns, dark);
-    if (status == GONIO_OK && !options->believe) {
-        status = gonio_i_suspect(context, prior, readings, options, *dark, suspicion);
-    }
-    if (*suspicion != NULL) {
-        free(*dark); /* of readings that are not what they say */
-        *dark = NULL;
-    }
-    return status == GONIO_OK
-               ? gonio_i_dark_apply(context, &prior->view, readings, options, *dark, columns)
-               : status;
 }
 
 static gonio_status allocate(gonio_context *context, const gonio_basis_view *view, size_t columns,
@@ -144,10 +115,11 @@ static gonio_status estimate(gonio_context *context, const gonio_i_prior *prior,
                              const gonio_reconstruct_options *options, gonio_reconstruction *r,
                              gonio_i_columns *columns)
 {
+    const gonio_i_noise noise = gonio_i_estimate_noise(options);
     gonio_status status = keep_wavelengths(context, readings, r);
-    if (status == GONIO_OK) {
-        status = gonio_i_columns_interpret(context, prior, readings, options, columns, &r->dark,
-                                           &r->suspicion);
+    if (status == GONIO_OK && !options->believe) {
+        status =
+            gonio_i_interpret(context, prior, readings, &noise, columns, &r->dark, &r->suspicion);
     }
     return status == GONIO_OK ? find(context, prior, columns, options, r) : status;
 }
@@ -162,10 +134,11 @@ gonio_status gonio_i_estimate_readings(gonio_context *context, const gonio_basis
     if (status != GONIO_OK) {
         return status;
     }
+    const gonio_i_noise noise = gonio_i_estimate_noise(options);
     gonio_i_columns columns;
     gonio_i_prior *prior = NULL;
     gonio_reconstruction *made = NULL;
-    status = gonio_i_columns_create(context, &view, readings, options, NULL, &columns);
+    status = gonio_i_columns_create(context, &view, readings, &noise, NULL, &columns);
     if (status == GONIO_OK) {
         status = gonio_i_columns_check(context, &columns, gonio_readings_describe(readings).path);
     }

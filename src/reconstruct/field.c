@@ -6,9 +6,9 @@
 #include "../core/vector_math.h"
 #include "../direction/grid.h"
 #include "../measurement/readings.h"
-#include "dark.h"
-#include "estimate.h"
+#include "../posterior/observations.h"
 #include "field.h"
+#include "spectrum.h"
 
 /* Weights of the rows around directions, as gonio_basis_row_at has them. */
 static int stencil_at(const gonio_basis_view *view, gonio_half_difference at,
@@ -92,7 +92,8 @@ gonio_status gonio_reconstruction_predict_readings(gonio_context *context, const
         gonio_reconstruction_predict(basis, r, gonio_half_difference_from_pair(reading->pair),
                                      value, NULL);
         for (size_t c = 0; c < channels_of(r); c++) {
-            const double missing = gonio_i_dark_missing(r->dark, c, reading->pair.incident.theta);
+            const double missing =
+                gonio_i_dark_level_missing(r->dark, c, reading->pair.incident.theta);
             value[c] = fmax(value[c] - missing, 0.0);
         }
         double *to = r->wavelengths > 0 ? readings->spectrum + k * r->wavelengths : reading->value;

@@ -12,4 +12,8 @@ gonio_status gonio_i_field_material(gonio_context *context, const gonio_basis *b
                                     const gonio_reconstruction *reconstruction, const char *name,
                                     gonio_material **material);
 
+/* Value of a field (or of a deviation) in a column at any directions. */
+double gonio_i_field_at(const gonio_basis *basis, const double *field, int channel,
+                        gonio_half_difference at);
+
 #endif

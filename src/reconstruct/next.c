@@ -7,6 +7,7 @@
 
 #include "../measurement/readings.h"
 #include "../plan/design.h"
+#include "../posterior/interpret.h"
 #include "estimate.h"
 
 typedef struct next {
@@ -49,12 +50,13 @@ static void release(next *n)
 
 static gonio_status find_posterior(next *n, const gonio_reconstruct_options *options)
 {
+    const gonio_i_noise noise = gonio_i_estimate_noise(options);
     const gonio_i_posterior_options how = {.smoothness = -1.0};
     double *dark = NULL;
     gonio_status status = gonio_i_estimate_check(n->context, n->basis, n->readings, options);
     if (status == GONIO_OK) {
         status =
-            gonio_i_columns_create(n->context, &n->view, n->readings, options, NULL, &n->columns);
+            gonio_i_columns_create(n->context, &n->view, n->readings, &noise, NULL, &n->columns);
     }
     if (status == GONIO_OK) {
         status = gonio_i_columns_check(n->context, &n->columns, n->readings->path);
@@ -62,9 +64,9 @@ static gonio_status find_posterior(next *n, const gonio_reconstruct_options *opt
     if (status == GONIO_OK) {
         status = gonio_i_prior_create(n->context, n->basis, &n->prior);
     }
-    if (status == GONIO_OK) {
-        status = gonio_i_columns_interpret(n->context, n->prior, n->readings, options, &n->columns,
-                                           &dark, &n->suspicion);
+    if (status == GONIO_OK && !options->believe) {
+        status = gonio_i_interpret(n->context, n->prior, n->readings, &noise, &n->columns, &dark,
+                                   &n->suspicion);
     }
     if (status == GONIO_OK) {
         status = allocate(n);

@@ -1,7 +1,7 @@
-/* From spectra to colours. */
-#include <math.h>
+/* From spectra to colours: see spectrum.h. */
+#include "spectrum.h"
 
-#include "estimate.h"
+#include <math.h>
 
 /* One lobe of the multi-lobe fits of Wyman, Sloan and Shirley 2013 to the CIE 1931 colour-matching
  * functions: a Gaussian with a width for each side, nm. */

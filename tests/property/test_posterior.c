@@ -10,8 +10,8 @@
 #include "../unit/made_basis.h"
 #include "core/random.h"
 #include "measurement/readings.h"
-#include "reconstruct/doubt.h"
-#include "reconstruct/models.h"
+#include "posterior/wrong_directions.h"
+#include "posterior/models.h"
 
 enum { MOST = 60 };
 
@@ -308,13 +308,13 @@ static void test_leaving_one_out(void **state)
     enum { N = 15 };
     drawn d = draw(4, 0.05);
     const gonio_i_column column = {N, d.reading};
-    gonio_i_gaussian e;
+    gonio_i_fit e;
     double left[N];
     double variance[N];
-    assert_int_equal(gonio_i_gaussian_begin(context, gaussian, &column, &e), GONIO_OK);
-    assert_int_equal(gonio_i_gaussian_solve(&e, &(gonio_i_model){1.0, ALPHA, PEAK}), GONIO_OK);
-    assert_int_equal(gonio_i_gaussian_leave_one_out(&e, left, variance), GONIO_OK);
-    gonio_i_gaussian_end(&e);
+    assert_int_equal(gonio_i_fit_begin(context, gaussian, &column, &e), GONIO_OK);
+    assert_int_equal(gonio_i_fit_solve(&e, &(gonio_i_model){1.0, ALPHA, PEAK}), GONIO_OK);
+    assert_int_equal(gonio_i_fit_leave_one_out(&e, left, variance), GONIO_OK);
+    gonio_i_fit_end(&e);
     for (size_t i = 0; i < N; i++) {
         gonio_i_observation others[N - 1];
         double s[(N - 1) * (N - 1)];
@@ -339,21 +339,21 @@ static void test_leaving_one_out_of_a_mixture(void **state)
     const gonio_i_model model = {GONIO_I_KERNEL_WIDTH, ALPHA, PEAK};
     drawn d = draw(5, 0.1);
     const gonio_i_column column = {N, d.reading};
-    gonio_i_gaussian all;
+    gonio_i_fit all;
     double left[N];
     double variance[N];
-    assert_int_equal(gonio_i_gaussian_begin(context, mixture, &column, &all), GONIO_OK);
-    assert_int_equal(gonio_i_gaussian_solve(&all, &model), GONIO_OK);
-    assert_int_equal(gonio_i_gaussian_leave_one_out(&all, left, variance), GONIO_OK);
+    assert_int_equal(gonio_i_fit_begin(context, mixture, &column, &all), GONIO_OK);
+    assert_int_equal(gonio_i_fit_solve(&all, &model), GONIO_OK);
+    assert_int_equal(gonio_i_fit_leave_one_out(&all, left, variance), GONIO_OK);
     for (size_t i = 0; i < N; i++) {
         gonio_i_observation other[N - 1];
         const gonio_i_column others = {N - 1, other};
-        gonio_i_gaussian e;
+        gonio_i_fit e;
         for (size_t j = 0; j < N - 1; j++) {
             other[j] = d.reading[j < i ? j : j + 1];
         }
-        assert_int_equal(gonio_i_gaussian_begin(context, mixture, &others, &e), GONIO_OK);
-        assert_int_equal(gonio_i_gaussian_solve(&e, &model), GONIO_OK);
+        assert_int_equal(gonio_i_fit_begin(context, mixture, &others, &e), GONIO_OK);
+        assert_int_equal(gonio_i_fit_solve(&e, &model), GONIO_OK);
         double predicted = 0.0;
         for (size_t k = 0; k < e.components; k++) {
             predicted += all.f[i * e.components + k] * e.centre[k];
@@ -364,9 +364,9 @@ static void test_leaving_one_out_of_a_mixture(void **state)
             predicted += (model.h * model.h * all.gram[at] + ALPHA * ALPHA * k) * e.solved[j];
         }
         assert_close(left[i], all.y[i] - predicted, 1e-7);
-        gonio_i_gaussian_end(&e);
+        gonio_i_fit_end(&e);
     }
-    gonio_i_gaussian_end(&all);
+    gonio_i_fit_end(&all);
     free(d.z);
 }
 
@@ -532,7 +532,8 @@ static size_t doubted(drawn_columns *d, bool *is)
 {
     size_t wrong = 0;
     size_t directions = 0;
-    assert_int_equal(gonio_i_doubt(context, mixture, d->column, COLUMNS, &wrong), GONIO_OK);
+    assert_int_equal(gonio_i_wrong_directions_find(context, mixture, d->column, COLUMNS, &wrong),
+                     GONIO_OK);
     for (size_t i = 0; i < WRONG; i++) {
         is[i] = d->reading[0][i].variance > 1.0;
         directions += is[i];
@@ -586,7 +587,8 @@ static void test_directions_that_were_read_wrongly(void **state)
         for (size_t c = 0; c < COLUMNS; c++) {
             d.column[c].count = n;
         }
-        assert_int_equal(gonio_i_doubt(context, mixture, d.column, COLUMNS, &wrong), GONIO_OK);
+        assert_int_equal(gonio_i_wrong_directions_find(context, mixture, d.column, COLUMNS, &wrong),
+                         GONIO_OK);
         assert_int_equal(wrong, 0);
     }
     print_message("%zu of 16 found where there are two\n", twos);
@@ -606,7 +608,8 @@ static void test_a_wrong_direction_hardly_counts(void **state)
         mistake(&d, i, 2.0 * TENFOLD);
         const found with = find(mixture, d.reading[0], WRONG, -1.0);
         size_t wrong = 0;
-        assert_int_equal(gonio_i_doubt(context, mixture, d.column, 1, &wrong), GONIO_OK);
+        assert_int_equal(gonio_i_wrong_directions_find(context, mixture, d.column, 1, &wrong),
+                         GONIO_OK);
         alone += wrong == 1 && d.reading[0][i].variance > 1.0;
         d.reading[0][i] = d.reading[0][WRONG - 1];
         const found without = find(mixture, d.reading[0], WRONG - 1, -1.0);

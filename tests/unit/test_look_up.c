@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "made_readings.h"
-#include "reconstruct/estimate.h"
+#include "reconstruct/spectrum.h"
 
 static const gonio_readings_options any = {.average_repeats = true, .negative_to_zero = true};
 

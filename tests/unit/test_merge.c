@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "core/random.h"
-#include "reconstruct/merge.h"
+#include "posterior/merge.h"
 
 static const double OPEN = GONIO_I_MODEL_DEVIATION * GONIO_I_MODEL_DEVIATION;
 

@@ -10,7 +10,7 @@
 #include <hdf5.h>
 
 #include "basis/mixtures.h"
-#include "basis/prior.h"
+#include "prior/prior.h"
 #include "core/random.h"
 #include "made_basis.h"
 

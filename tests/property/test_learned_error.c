@@ -10,7 +10,7 @@
 #include <gonio/gonio.h>
 
 #include "core/random.h"
-#include "reconstruct/expectation.h"
+#include "posterior/learned_error.h"
 
 enum { READINGS = 12, FOLDS = 10, FEATURES = 4, UNKNOWNS = FEATURES + 1, MIXTURES = 60 };
 
@@ -111,15 +111,15 @@ static void read_values(const double *g, gonio_i_observation *o)
 static double expected_of(const gonio_i_prior *with, gonio_i_observation *o, size_t count)
 {
     const gonio_i_column column = {count, o};
-    gonio_i_expectation *expectation = NULL;
-    gonio_i_gaussian gaussian;
+    gonio_i_learned_error *expectation = NULL;
+    gonio_i_fit gaussian;
     double square = 0.0;
-    assert_int_equal(gonio_i_expectation_create(context, with, &expectation), GONIO_OK);
+    assert_int_equal(gonio_i_learned_error_create(context, with, &expectation), GONIO_OK);
     assert_non_null(expectation);
-    assert_int_equal(gonio_i_gaussian_begin(context, with, &column, &gaussian), GONIO_OK);
-    assert_int_equal(gonio_i_expectation_find(expectation, &gaussian, &square), GONIO_OK);
-    gonio_i_gaussian_end(&gaussian);
-    gonio_i_expectation_free(&expectation);
+    assert_int_equal(gonio_i_fit_begin(context, with, &column, &gaussian), GONIO_OK);
+    assert_int_equal(gonio_i_learned_error_find(expectation, &gaussian, &square), GONIO_OK);
+    gonio_i_fit_end(&gaussian);
+    gonio_i_learned_error_free(&expectation);
     return square;
 }
 
@@ -527,11 +527,11 @@ static void test_what_comes_next_is_no_worse(void **state)
 static void test_who_cannot_tell(void **state)
 {
     (void)state;
-    gonio_i_expectation *expectation = NULL;
+    gonio_i_learned_error *expectation = NULL;
     gonio_basis *few = learn(9, 0);
     gonio_i_prior *other = NULL;
     assert_int_equal(gonio_i_prior_create(context, few, &other), GONIO_OK);
-    assert_int_equal(gonio_i_expectation_create(context, other, &expectation), GONIO_OK);
+    assert_int_equal(gonio_i_learned_error_create(context, other, &expectation), GONIO_OK);
     assert_null(expectation);
     gonio_i_prior_free(&other);
     gonio_basis_free(&few);
@@ -550,7 +550,7 @@ static void test_who_cannot_tell(void **state)
     /* Mixtures of a file that does not say what they are made of. */
     gonio_i_prior orphans = *prior;
     orphans.view.parents = NULL;
-    assert_int_equal(gonio_i_expectation_create(context, &orphans, &expectation), GONIO_OK);
+    assert_int_equal(gonio_i_learned_error_create(context, &orphans, &expectation), GONIO_OK);
     assert_null(expectation);
 }
 

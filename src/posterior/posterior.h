@@ -1,4 +1,4 @@
-/* The posterior: what readings of a material say of all of it, given a prior (basis/prior.h).
+/* The posterior: what readings of a material say of all of it, given a prior (prior/prior.h).
  *
  * With y = g - m at the readings, F their rows f, k the smoothness between them and D the variances
  * of noise, the covariance of y is
@@ -14,15 +14,16 @@
  *
  * The field is the mean over models of different h, alpha and peak of k, weighed by leaving
  * readings out one at a time, all columns together (models.h), once directions that were read
- * wrongly are set aside (doubt.h); deviations are the likeliest model's, and the error to expect is
- * in equal shares what its variance and what the database says (expectation.h). A reading that the
- * others contradict by more than `OUTLYING` deviations counts with a variance to match. */
+ * wrongly are set aside (wrong_directions.h); deviations are the likeliest model's, and the error
+ * to expect is in equal shares what its variance and what the database says (learned_error.h). A
+ * reading that the others contradict by more than `OUTLYING` deviations counts with a variance to
+ * match. */
 #ifndef GONIO_POSTERIOR_H
 #define GONIO_POSTERIOR_H
 
-#include <gonio/reconstruct.h>
+#include <gonio/basis.h>
 
-#include "../basis/prior.h"
+#include "../prior/prior.h"
 
 /* Standard deviation, in log units, of what interpolation between cells and the inside of a cell
  * leave open of a reading: the smallest of 0.01, 0.03, 0.06 at which the error of left-out

@@ -1,12 +1,13 @@
-/* Readings that are not what they say they are: see gonio_reconstruction.suspicion.
+/* Usual mistakes in readings: see mistakes.h.
  *
  * Each usual mistake is a hypothesis: the readings' density under the prior if they were made with
  * it, against that of the readings as they are (their evidences: MacKay 1992). */
+#include "mistakes.h"
+
 #include <math.h>
 #include <stdlib.h>
 
-#include "estimate.h"
-#include "probe.h"
+#include "leave_one_out.h"
 
 /* A factor of pi alone is not among the hypotheses: materials differ by more than that. */
 
@@ -81,12 +82,12 @@ static bool is_possible(const gonio_readings_view *view, const gonio_i_transform
 /* ln of the density of the values under a transform and with a remainder of size alpha; of
  * MOST_TRIED of a column, scaled. */
 static gonio_status weigh(gonio_context *context, const gonio_i_prior *prior,
-                          const gonio_readings *readings, const gonio_reconstruct_options *options,
+                          const gonio_readings *readings, const gonio_i_noise *noise,
                           const gonio_i_transform *transform, double alpha, double *evidence)
 {
     gonio_i_columns columns;
     gonio_status status =
-        gonio_i_columns_create(context, &prior->view, readings, options, transform, &columns);
+        gonio_i_columns_create(context, &prior->view, readings, noise, transform, &columns);
     const size_t tried = columns.count < MOST_COLUMNS ? columns.count : MOST_COLUMNS;
     *evidence = 0.0;
     for (size_t k = 0; k < tried && status == GONIO_OK; k++) {
@@ -97,43 +98,41 @@ static gonio_status weigh(gonio_context *context, const gonio_i_prior *prior,
         if (all == 0) {
             continue;
         }
-        column->count = gonio_i_probe_thin(column, MOST_TRIED, column->observation);
+        column->count = gonio_i_thin(column, MOST_TRIED, column->observation);
         status = gonio_i_posterior_evidence(context, prior, column, alpha, PEAK, &mine);
         const double share = (double)column->count / (double)all;
-        *evidence +=
-            mine + share * gonio_i_transform_logarithm(readings, index, options, transform);
+        *evidence += mine + share * gonio_i_transform_logarithm(readings, index, noise, transform);
     }
     gonio_i_columns_free(&columns);
     return status;
 }
 
-gonio_status gonio_i_suspect(gonio_context *context, const gonio_i_prior *prior,
-                             const gonio_readings *readings,
-                             const gonio_reconstruct_options *options, const double *dark,
-                             const char **suspicion)
+gonio_status gonio_i_mistake_find(gonio_context *context, const gonio_i_prior *prior,
+                                  const gonio_readings *readings, const gonio_i_noise *noise,
+                                  const double *dark, const char **mistake)
 {
     const gonio_i_transform as_it_is = {.factor = 1.0, .dark = dark};
     const gonio_readings_view view = gonio_readings_describe(readings);
     double best = 0.0;
     double here = 0.0;
-    *suspicion = NULL;
+    *mistake = NULL;
     if (prior->view.channels == GONIO_JOINT) {
         return GONIO_OK; /* its columns hold all channels: nothing to compare one by one */
     }
     double unusual = 0.0;
-    gonio_status status = weigh(context, prior, readings, options, &as_it_is, SOME, &here);
+    gonio_status status = weigh(context, prior, readings, noise, &as_it_is, SOME, &here);
     if (status == GONIO_OK) {
-        status = weigh(context, prior, readings, options, &as_it_is, MUCH, &unusual);
+        status = weigh(context, prior, readings, noise, &as_it_is, MUCH, &unusual);
     }
     best = fmax(here + CONVINCING, unusual);
     for (int k = 0; k < HYPOTHESES && status == GONIO_OK; k++) {
         double evidence = 0.0;
         if (is_possible(&view, &hypotheses[k].transform)) {
             status =
-                weigh(context, prior, readings, options, &hypotheses[k].transform, SOME, &evidence);
+                weigh(context, prior, readings, noise, &hypotheses[k].transform, SOME, &evidence);
             if (status == GONIO_OK && evidence > best) {
                 best = evidence;
-                *suspicion = hypotheses[k].name;
+                *mistake = hypotheses[k].name;
             }
         }
     }

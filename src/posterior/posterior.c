@@ -6,12 +6,12 @@
 #include <string.h>
 
 #include "../linalg/linalg.h"
-#include "doubt.h"
-#include "equations.h"
-#include "expectation.h"
+#include "wrong_directions.h"
+#include "fit.h"
+#include "learned_error.h"
 #include "merge.h"
 #include "models.h"
-#include "spread.h"
+#include "predict.h"
 
 /* Of a reading that is set aside, in ln of the density: one in a hundred is wrong. */
 static const double FOR_OUTLYING = 4.6;
@@ -22,25 +22,25 @@ gonio_status gonio_i_posterior_evidence(gonio_context *context, const gonio_i_pr
                                         const gonio_i_column *column, double alpha, double peak,
                                         double *evidence)
 {
-    gonio_i_gaussian e;
-    gonio_status status = gonio_i_gaussian_begin(context, prior, column, &e);
+    gonio_i_fit e;
+    gonio_status status = gonio_i_fit_begin(context, prior, column, &e);
     if (status == GONIO_OK) {
         const gonio_i_model model = {GONIO_I_KERNEL_WIDTH, alpha, peak};
-        status = gonio_i_gaussian_solve(&e, &model);
+        status = gonio_i_fit_solve(&e, &model);
     }
     size_t outlying = 0;
     if (status == GONIO_OK) {
-        status = gonio_i_gaussian_settle(&e, true, &outlying);
+        status = gonio_i_fit_settle(&e, true, &outlying);
     }
     *evidence = e.evidence - (double)outlying * FOR_OUTLYING;
-    gonio_i_gaussian_end(&e);
+    gonio_i_fit_end(&e);
     return status;
 }
 
 /* ---- one column ---- */
 
 /* c = z + h^2 F' S^-1 (y - F z), in units of the prior. */
-static void find_coefficients(const gonio_i_gaussian *e, double *c)
+static void find_coefficients(const gonio_i_fit *e, double *c)
 {
     memcpy(c, e->centre, e->components * sizeof *c);
     for (size_t i = 0; i < e->n; i++) {
@@ -51,7 +51,7 @@ static void find_coefficients(const gonio_i_gaussian *e, double *c)
 }
 
 /* Root mean square of what is left between the readings and the field at them: D S^-1 (y - F z). */
-static double square_left(const gonio_i_gaussian *e)
+static double square_left(const gonio_i_fit *e)
 {
     double sum = 0.0;
     for (size_t i = 0; i < e->n; i++) {
@@ -66,25 +66,25 @@ typedef struct finding {
     gonio_context *context;
     const gonio_i_prior *prior;
     gonio_i_models models;
-    size_t most;                      /* readings of a column that are not merged */
-    gonio_i_expectation *expectation; /* NULL: the Gaussian's own */
+    size_t most;                        /* readings of a column that are not merged */
+    gonio_i_learned_error *expectation; /* NULL: the Gaussian's own */
     gonio_i_posterior *p;
-    gonio_i_spread_sums sums;
+    gonio_i_predicted_sums sums;
     double expected; /* the square of the error to expect, over the bins */
     size_t readings; /* after merging */
 } finding;
 
 /* What a column's field is made of, kept until all columns are solved: of no model yet. */
-static gonio_status keep_places(const gonio_i_gaussian *e, size_t column, gonio_i_posterior *p,
-                                gonio_i_spread_column *kept)
+static gonio_status keep_places(const gonio_i_fit *e, size_t column, gonio_i_posterior *p,
+                                gonio_i_predicted_column *kept)
 {
-    *kept =
-        (gonio_i_spread_column){.n = e->n,
-                                .place = gonio_i_allocate(e->context, e->n, sizeof *kept->place),
-                                .smooth = gonio_i_allocate(e->context, e->n, sizeof *kept->smooth),
-                                .peaked = gonio_i_allocate(e->context, e->n, sizeof *kept->peaked),
-                                .c = p->coefficients + column * e->components,
-                                .field = p->field + column * e->prior->view.rows};
+    *kept = (gonio_i_predicted_column){
+        .n = e->n,
+        .place = gonio_i_allocate(e->context, e->n, sizeof *kept->place),
+        .smooth = gonio_i_allocate(e->context, e->n, sizeof *kept->smooth),
+        .peaked = gonio_i_allocate(e->context, e->n, sizeof *kept->peaked),
+        .c = p->coefficients + column * e->components,
+        .field = p->field + column * e->prior->view.rows};
     if (kept->place == NULL || kept->smooth == NULL || kept->peaked == NULL) {
         return GONIO_ERROR_MEMORY;
     }
@@ -94,7 +94,7 @@ static gonio_status keep_places(const gonio_i_gaussian *e, size_t column, gonio_
     return GONIO_OK;
 }
 
-static void forget(gonio_i_spread_column *kept)
+static void forget(gonio_i_predicted_column *kept)
 {
     free(kept->place);
     free(kept->smooth);
@@ -102,8 +102,8 @@ static void forget(gonio_i_spread_column *kept)
 }
 
 /* Adds what a model says, by its weight. c: scratch of K. */
-static void add_model(const gonio_i_gaussian *e, double weight, double *c, double *sum,
-                      gonio_i_spread_column *kept)
+static void add_model(const gonio_i_fit *e, double weight, double *c, double *sum,
+                      gonio_i_predicted_column *kept)
 {
     const gonio_i_model *m = &e->model;
     find_coefficients(e, c);
@@ -118,14 +118,14 @@ static void add_model(const gonio_i_gaussian *e, double weight, double *c, doubl
 }
 
 /* The mean over the models, with the readings judged as they are. */
-static gonio_status mix_models(gonio_i_gaussian *e, const gonio_i_models *models, double *sum,
-                               gonio_i_spread_column *kept)
+static gonio_status mix_models(gonio_i_fit *e, const gonio_i_models *models, double *sum,
+                               gonio_i_predicted_column *kept)
 {
     double *c = gonio_i_allocate(e->context, e->components, sizeof *c);
     gonio_status status = c == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
     memset(sum, 0, e->components * sizeof *sum);
     for (size_t k = 0; k < models->count && status == GONIO_OK; k++) {
-        status = gonio_i_gaussian_solve(e, &models->model[k]);
+        status = gonio_i_fit_solve(e, &models->model[k]);
         if (status == GONIO_OK) {
             add_model(e, models->weight[k], c, sum, kept);
         }
@@ -135,7 +135,7 @@ static gonio_status mix_models(gonio_i_gaussian *e, const gonio_i_models *models
 }
 
 static gonio_status begin_column(const finding *found, const gonio_i_column *column, size_t most,
-                                 gonio_i_gaussian *e)
+                                 gonio_i_fit *e)
 {
     gonio_i_column merged = {0};
     const bool many = column->count > most;
@@ -144,55 +144,55 @@ static gonio_status begin_column(const finding *found, const gonio_i_column *col
         status = gonio_i_merge(found->context, column, most, &merged);
     }
     if (status == GONIO_OK) {
-        status = gonio_i_gaussian_begin(found->context, found->prior, many ? &merged : column, e);
+        status = gonio_i_fit_begin(found->context, found->prior, many ? &merged : column, e);
     }
     free(merged.observation);
     return status;
 }
 
 /* The best model, with readings that the others contradict set aside. */
-static gonio_status settle(const finding *found, gonio_i_gaussian *e, size_t *outlying)
+static gonio_status settle(const finding *found, gonio_i_fit *e, size_t *outlying)
 {
-    const gonio_status status = gonio_i_gaussian_solve(e, &found->models.best);
-    return status == GONIO_OK ? gonio_i_gaussian_settle(e, true, outlying) : status;
+    const gonio_status status = gonio_i_fit_solve(e, &found->models.best);
+    return status == GONIO_OK ? gonio_i_fit_settle(e, true, outlying) : status;
 }
 
 /* The variance, of the best model; it is in e. */
-static gonio_status find_variance(finding *found, const gonio_i_gaussian *e, size_t column,
-                                  gonio_i_spread_sums *sums)
+static gonio_status find_variance(finding *found, const gonio_i_fit *e, size_t column,
+                                  gonio_i_predicted_sums *sums)
 {
     gonio_i_posterior *p = found->p;
     double *c = p->coefficients + column * e->components;
     double *deviation = p->deviation != NULL ? p->deviation + column * e->prior->view.rows : NULL;
     find_coefficients(e, c);
-    return gonio_i_spread_variance(e, c, deviation, p->covariance, sums);
+    return gonio_i_predict_variance(e, c, deviation, p->covariance, sums);
 }
 
 /* The mean square of the error to expect of a column that is in e, with fewer readings if there are
  * many. */
-static gonio_status expect(const finding *found, const gonio_i_column *column,
-                           const gonio_i_gaussian *e, double *square)
+static gonio_status expect(const finding *found, const gonio_i_column *column, const gonio_i_fit *e,
+                           double *square)
 {
-    if (e->n <= GONIO_I_EXPECTATION_MOST) {
-        return gonio_i_expectation_find(found->expectation, e, square);
+    if (e->n <= GONIO_I_LEARNED_ERROR_MOST) {
+        return gonio_i_learned_error_find(found->expectation, e, square);
     }
-    gonio_i_gaussian fewer = {0};
+    gonio_i_fit fewer = {0};
     size_t outlying = 0;
-    gonio_status status = begin_column(found, column, GONIO_I_EXPECTATION_MOST, &fewer);
+    gonio_status status = begin_column(found, column, GONIO_I_LEARNED_ERROR_MOST, &fewer);
     if (status == GONIO_OK) {
         status = settle(found, &fewer, &outlying);
     }
     if (status == GONIO_OK) {
-        status = gonio_i_expectation_find(found->expectation, &fewer, square);
+        status = gonio_i_learned_error_find(found->expectation, &fewer, square);
     }
-    gonio_i_gaussian_end(&fewer);
+    gonio_i_fit_end(&fewer);
     return status;
 }
 
-static gonio_status sum_up(finding *found, const gonio_i_column *column, const gonio_i_gaussian *e,
+static gonio_status sum_up(finding *found, const gonio_i_column *column, const gonio_i_fit *e,
                            size_t number)
 {
-    gonio_i_spread_sums sums = {0};
+    gonio_i_predicted_sums sums = {0};
     double square = 0.0;
     gonio_status status = find_variance(found, e, number, &sums);
     if (status == GONIO_OK && found->expectation != NULL) {
@@ -205,15 +205,15 @@ static gonio_status sum_up(finding *found, const gonio_i_column *column, const g
     return status;
 }
 
-static gonio_status solve_column(finding *found, const gonio_i_column *column, gonio_i_gaussian *e,
-                                 size_t number, gonio_i_spread_column *kept)
+static gonio_status solve_column(finding *found, const gonio_i_column *column, gonio_i_fit *e,
+                                 size_t number, gonio_i_predicted_column *kept)
 {
     gonio_i_posterior *p = found->p;
     size_t outlying = 0;
     double surprise = 0.0;
     gonio_status status = settle(found, e, &outlying);
     if (status == GONIO_OK) {
-        status = gonio_i_gaussian_surprise(e, &surprise);
+        status = gonio_i_fit_surprise(e, &surprise);
     }
     if (status == GONIO_OK) {
         p->outlying += outlying;
@@ -231,20 +231,20 @@ static gonio_status solve_column(finding *found, const gonio_i_column *column, g
 }
 
 static gonio_status find_column(finding *found, const gonio_i_column *column, size_t number,
-                                gonio_i_spread_column *kept)
+                                gonio_i_predicted_column *kept)
 {
-    gonio_i_gaussian e = {0};
+    gonio_i_fit e = {0};
     gonio_status status = begin_column(found, column, found->most, &e);
     if (status == GONIO_OK) {
         status = solve_column(found, column, &e, number, kept);
     }
-    gonio_i_gaussian_end(&e);
+    gonio_i_fit_end(&e);
     return status;
 }
 
 static gonio_status find_columns(finding *found, const gonio_i_column *columns, size_t count)
 {
-    gonio_i_spread_column *kept = gonio_i_allocate(found->context, count, sizeof *kept);
+    gonio_i_predicted_column *kept = gonio_i_allocate(found->context, count, sizeof *kept);
     gonio_status status = kept == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
     for (size_t k = 0; k < count && status == GONIO_OK; k++) {
         status = find_column(found, &columns[k], k, &kept[k]);
@@ -254,7 +254,7 @@ static gonio_status find_columns(finding *found, const gonio_i_column *columns, 
         }
     }
     if (status == GONIO_OK) {
-        status = gonio_i_spread_fields(found->context, found->prior, kept, count);
+        status = gonio_i_predict_fields(found->context, found->prior, kept, count);
     }
     for (size_t k = 0; kept != NULL && k < count; k++) {
         forget(&kept[k]);
@@ -313,7 +313,7 @@ static gonio_status copy_columns(gonio_context *context, const gonio_i_column *c
 static gonio_status find(finding *found, const gonio_i_column *columns, size_t count)
 {
     const gonio_status status =
-        gonio_i_expectation_create(found->context, found->prior, &found->expectation);
+        gonio_i_learned_error_create(found->context, found->prior, &found->expectation);
     return status == GONIO_OK ? find_columns(found, columns, count) : status;
 }
 
@@ -326,7 +326,7 @@ static gonio_status doubt_and_find(finding *found, const gonio_i_column *columns
     gonio_status status =
         copies == NULL ? GONIO_ERROR_MEMORY : copy_columns(context, columns, count, copies);
     if (status == GONIO_OK) {
-        status = gonio_i_doubt(context, found->prior, copies, count, &wrong);
+        status = gonio_i_wrong_directions_find(context, found->prior, copies, count, &wrong);
     }
     if (status == GONIO_OK) {
         status = gonio_i_models_weigh(context, found->prior, copies, count, &found->models);
@@ -360,6 +360,6 @@ gonio_status gonio_i_posterior_find(gonio_context *context, const gonio_i_prior 
     if (status == GONIO_OK) {
         conclude(&found, count);
     }
-    gonio_i_expectation_free(&found.expectation);
+    gonio_i_learned_error_free(&found.expectation);
     return status;
 }

@@ -1,16 +1,20 @@
-/* Readings as columns of observations: see estimate.h. */
+/* Readings as columns of observations: see observations.h. */
+#include "observations.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "dark.h"
-#include "estimate.h"
+double gonio_i_dark_level_missing(const double *dark, size_t channel, double theta_i)
+{
+    return dark != NULL ? dark[channel] / fmax(cos(theta_i), 1e-3) : 0.0;
+}
 
 /* The variance of g = ln(1 + v/s) for noise of the value v. */
-static double variance_of(double value, double s, const gonio_reconstruct_options *options)
+static double variance_of(double value, double s, const gonio_i_noise *noise)
 {
-    const double relative = options->noise * value;
-    return (relative * relative + options->floor * options->floor) / ((value + s) * (value + s)) +
+    const double relative = noise->relative * value;
+    return (relative * relative + noise->floor * noise->floor) / ((value + s) * (value + s)) +
            GONIO_I_MODEL_DEVIATION * GONIO_I_MODEL_DEVIATION;
 }
 
@@ -28,19 +32,18 @@ static double true_value(const gonio_reading *reading, size_t channel, double va
         return value;
     }
     return value * factor_of(reading, s, transform) +
-           gonio_i_dark_missing(transform->dark, channel, reading->pair.incident.theta);
+           gonio_i_dark_level_missing(transform->dark, channel, reading->pair.incident.theta);
 }
 
 /* Of a value as it was read. */
-static int bound_of(double read, const gonio_reconstruct_options *options)
+static int bound_of(double read, const gonio_i_noise *noise)
 {
-    const bool saturated = options->saturation > 0.0 && read >= options->saturation;
+    const bool saturated = noise->saturation > 0.0 && read >= noise->saturation;
     return saturated ? 1 : read <= 0.0 ? -1 : 0;
 }
 
 static gonio_i_observation observe(const gonio_readings *readings, size_t index, size_t channel,
-                                   const gonio_reconstruct_options *options,
-                                   const gonio_i_transform *transform)
+                                   const gonio_i_noise *noise, const gonio_i_transform *transform)
 {
     const gonio_reading *reading = &gonio_readings_describe(readings).reading[index];
     const double s = gonio_readings_scale(readings, channel);
@@ -51,25 +54,22 @@ static gonio_i_observation observe(const gonio_readings *readings, size_t index,
                                      turned ? transform->turn(reading->pair) : reading->pair),
                                  .channel = (int)channel,
                                  .g = log1p(value / s),
-                                 .variance = variance_of(value, s, options),
-                                 .bound = bound_of(read, options)};
+                                 .variance = variance_of(value, s, noise),
+                                 .bound = bound_of(read, noise)};
 }
 
-static void add_channel(const gonio_readings *readings, size_t channel,
-                        const gonio_reconstruct_options *options,
+static void add_channel(const gonio_readings *readings, size_t channel, const gonio_i_noise *noise,
                         const gonio_i_transform *transform, gonio_i_column *column)
 {
     for (size_t k = 0; k < gonio_readings_describe(readings).count; k++) {
         if (!isnan(gonio_readings_value(readings, k, channel))) {
-            column->observation[column->count++] =
-                observe(readings, k, channel, options, transform);
+            column->observation[column->count++] = observe(readings, k, channel, noise, transform);
         }
     }
 }
 
 gonio_status gonio_i_columns_create(gonio_context *context, const gonio_basis_view *view,
-                                    const gonio_readings *readings,
-                                    const gonio_reconstruct_options *options,
+                                    const gonio_readings *readings, const gonio_i_noise *noise,
                                     const gonio_i_transform *transform, gonio_i_columns *columns)
 {
     const bool joint = view->channels == GONIO_JOINT;
@@ -84,7 +84,7 @@ gonio_status gonio_i_columns_create(gonio_context *context, const gonio_basis_vi
         status = columns->column[k].observation == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
     }
     for (size_t k = 0; k < channels && status == GONIO_OK; k++) {
-        add_channel(readings, k, options, transform, &columns->column[joint ? 0 : k]);
+        add_channel(readings, k, noise, transform, &columns->column[joint ? 0 : k]);
     }
     return status;
 }
@@ -98,16 +98,29 @@ void gonio_i_columns_free(gonio_i_columns *columns)
     *columns = (gonio_i_columns){0};
 }
 
+gonio_status gonio_i_columns_check(gonio_context *context, const gonio_i_columns *columns,
+                                   const char *path)
+{
+    const char *origin = path != NULL ? path : "readings";
+    for (size_t k = 0; k < columns->count; k++) {
+        if (columns->column[k].count == 0) {
+            return gonio_i_fail(context, GONIO_ERROR_UNDETERMINED,
+                                "%s: no reading in channel %zu: are the cells of its values empty?",
+                                origin, k + 1);
+        }
+    }
+    return GONIO_OK;
+}
+
 double gonio_i_transform_logarithm(const gonio_readings *readings, size_t channel,
-                                   const gonio_reconstruct_options *options,
-                                   const gonio_i_transform *transform)
+                                   const gonio_i_noise *noise, const gonio_i_transform *transform)
 {
     const gonio_readings_view view = gonio_readings_describe(readings);
     const double s = gonio_readings_scale(readings, channel);
     double sum = 0.0;
     for (size_t k = 0; k < view.count; k++) {
         const double value = gonio_readings_value(readings, k, channel);
-        if (!isnan(value) && bound_of(value, options) == 0) {
+        if (!isnan(value) && bound_of(value, noise) == 0) {
             const double factor = factor_of(&view.reading[k], s, transform);
             sum +=
                 log(factor) - log(s + true_value(&view.reading[k], channel, value, s, transform));

@@ -4,7 +4,7 @@
 #include <assert.h>
 #include <math.h>
 
-#include "probe.h"
+#include "leave_one_out.h"
 
 /* Narrow peaks only where there is much that the database does not know: for materials like its own
  * they cost a tenth. */
@@ -62,26 +62,26 @@ static gonio_status score_column(gonio_context *context, const gonio_i_prior *pr
                                  const gonio_i_column *column, size_t readings, bool doubt,
                                  opinion *o)
 {
-    gonio_i_gaussian e = {0};
+    gonio_i_fit e = {0};
     size_t outlying = 0;
-    gonio_status status = gonio_i_gaussian_begin(context, prior, column, &e);
+    gonio_status status = gonio_i_fit_begin(context, prior, column, &e);
     if (status == GONIO_OK) {
-        status = gonio_i_gaussian_solve(&e, &GONIO_I_SETTLING);
+        status = gonio_i_fit_solve(&e, &GONIO_I_SETTLING);
     }
     if (status == GONIO_OK) {
-        status = gonio_i_gaussian_settle(&e, doubt, &outlying);
+        status = gonio_i_fit_settle(&e, doubt, &outlying);
     }
     o->outlying += outlying;
     for (int k = 0; k < CHOICES && status == GONIO_OK; k++) {
         const gonio_i_model model = choice(k, readings);
-        status = gonio_i_probe_score(&e, &model, &o->score[k]);
+        status = gonio_i_leave_one_out_score(&e, &model, &o->score[k]);
     }
-    gonio_i_gaussian_end(&e);
+    gonio_i_fit_end(&e);
     return status;
 }
 
 static gonio_status score_columns(gonio_context *context, const gonio_i_prior *prior,
-                                  const gonio_i_probe *probe, bool doubt, opinion *o)
+                                  const gonio_i_subset *probe, bool doubt, opinion *o)
 {
     gonio_status status = GONIO_OK;
     for (size_t k = 0; k < probe->count && status == GONIO_OK; k++) {
@@ -149,8 +149,8 @@ gonio_status gonio_i_models_weigh(gonio_context *context, const gonio_i_prior *p
     double log_weight[CHOICES];
     opinion doubting = {0};
     opinion believing = {0};
-    gonio_i_probe probe;
-    gonio_status status = gonio_i_probe_begin(context, columns, count, &probe);
+    gonio_i_subset probe;
+    gonio_status status = gonio_i_subset_begin(context, columns, count, &probe);
     if (status == GONIO_OK) {
         status = score_columns(context, prior, &probe, true, &doubting);
     }
@@ -164,6 +164,6 @@ gonio_status gonio_i_models_weigh(gonio_context *context, const gonio_i_prior *p
         log_weight[k] = SHARE * says->score[k] + log_prior(k);
     }
     *models = normalise(log_weight, columns[0].count);
-    gonio_i_probe_end(&probe);
+    gonio_i_subset_end(&probe);
     return status;
 }

@@ -10,7 +10,7 @@
 #ifndef GONIO_PRIOR_H
 #define GONIO_PRIOR_H
 
-#include "basis.h"
+#include "../basis/basis.h"
 
 typedef struct gonio_i_prior {
     const gonio_basis *basis;

@@ -5,15 +5,16 @@
  * are off most, by a factor of more than three, are left out in turn, in all columns together:
  * greedily that one without which the others explain each other best, as long as that is worth more
  * than a larger remainder is. Of columns of more than 128 readings only those are doubted that
- * models are tried on (probe.h); single readings of the others are judged later (posterior.h). */
-#ifndef GONIO_DOUBT_H
-#define GONIO_DOUBT_H
+ * models are tried on (leave_one_out.h); single readings of the others are judged later
+ * (posterior.h). */
+#ifndef GONIO_WRONG_DIRECTIONS_H
+#define GONIO_WRONG_DIRECTIONS_H
 
-#include "equations.h"
+#include "fit.h"
 
 /* Gives the readings of such directions a variance that leaves them hardly a say, in all columns.
  * wrong: how many readings. Errors: _MEMORY, _NUMERICAL, _CANCELLED. */
-gonio_status gonio_i_doubt(gonio_context *context, const gonio_i_prior *prior,
-                           gonio_i_column *columns, size_t count, size_t *wrong);
+gonio_status gonio_i_wrong_directions_find(gonio_context *context, const gonio_i_prior *prior,
+                                           gonio_i_column *columns, size_t count, size_t *wrong);
 
 #endif

@@ -1,5 +1,5 @@
-/* The error to expect: see expectation.h. */
-#include "expectation.h"
+/* The error to expect: see learned_error.h. */
+#include "learned_error.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -32,7 +32,7 @@ typedef struct fold {
     double *cross;      /* [n][K]: of the readings and z */
 } fold;
 
-struct gonio_i_expectation {
+struct gonio_i_learned_error {
     gonio_context *context;
     const gonio_i_prior *prior;
     size_t components;
@@ -58,7 +58,7 @@ static bool can_tell(const gonio_i_prior *prior)
 }
 
 /* Mean of f' f over the bins, from a sample of rows. */
-static gonio_status find_metric(gonio_i_expectation *x)
+static gonio_status find_metric(gonio_i_learned_error *x)
 {
     const gonio_basis_view *view = &x->prior->view;
     const size_t channels = view->channels == GONIO_JOINT ? GONIO_CHANNELS : 1;
@@ -88,14 +88,14 @@ static gonio_status find_metric(gonio_i_expectation *x)
     return status;
 }
 
-gonio_status gonio_i_expectation_create(gonio_context *context, const gonio_i_prior *prior,
-                                        gonio_i_expectation **expectation)
+gonio_status gonio_i_learned_error_create(gonio_context *context, const gonio_i_prior *prior,
+                                          gonio_i_learned_error **expectation)
 {
     *expectation = NULL;
     if (!can_tell(prior)) {
         return GONIO_OK;
     }
-    gonio_i_expectation *x = gonio_i_allocate(context, 1, sizeof *x);
+    gonio_i_learned_error *x = gonio_i_allocate(context, 1, sizeof *x);
     if (x == NULL) {
         return GONIO_ERROR_MEMORY;
     }
@@ -107,13 +107,13 @@ gonio_status gonio_i_expectation_create(gonio_context *context, const gonio_i_pr
     x->metric = gonio_i_allocate(context, x->components * x->components, sizeof *x->metric);
     const gonio_status status = x->metric == NULL ? GONIO_ERROR_MEMORY : find_metric(x);
     if (status != GONIO_OK) {
-        gonio_i_expectation_free(&x);
+        gonio_i_learned_error_free(&x);
     }
     *expectation = x;
     return status;
 }
 
-static void forget_folds(gonio_i_expectation *x)
+static void forget_folds(gonio_i_learned_error *x)
 {
     for (size_t k = 0; k <= FOLDS; k++) {
         free(x->fold[k].mean_seen);
@@ -127,7 +127,7 @@ static void forget_folds(gonio_i_expectation *x)
     x->n = 0;
 }
 
-void gonio_i_expectation_free(gonio_i_expectation **expectation)
+void gonio_i_learned_error_free(gonio_i_learned_error **expectation)
 {
     if (expectation == NULL || *expectation == NULL) {
         return;
@@ -140,13 +140,13 @@ void gonio_i_expectation_free(gonio_i_expectation **expectation)
 
 /* ---- leaving out ---- */
 
-static bool is_of_fold(const gonio_i_expectation *x, size_t measured, size_t k)
+static bool is_of_fold(const gonio_i_learned_error *x, size_t measured, size_t k)
 {
     return measured / x->each % FOLDS == k;
 }
 
 /* Whether fold k leaves a column out: none is by the last one. */
-static bool is_left_out(const gonio_i_expectation *x, size_t column, size_t k)
+static bool is_left_out(const gonio_i_learned_error *x, size_t column, size_t k)
 {
     if (column < x->measured) {
         return is_of_fold(x, column, k);
@@ -156,7 +156,7 @@ static bool is_left_out(const gonio_i_expectation *x, size_t column, size_t k)
 }
 
 /* The share of each column in fold k: 0 for those left out. */
-static void share_out(const gonio_i_expectation *x, size_t k, double *share)
+static void share_out(const gonio_i_learned_error *x, size_t k, double *share)
 {
     double all = 0.0;
     for (size_t j = 0; j < x->prior->samples; j++) {
@@ -192,7 +192,7 @@ typedef struct fold_scratch {
     double *z;     /* [samples][K] */
 } fold_scratch;
 
-static gonio_status fill_fold(gonio_i_expectation *x, const gonio_i_gaussian *e, size_t k,
+static gonio_status fill_fold(gonio_i_learned_error *x, const gonio_i_fit *e, size_t k,
                               const fold_scratch *s)
 {
     fold *f = &x->fold[k];
@@ -215,7 +215,7 @@ static gonio_status fill_fold(gonio_i_expectation *x, const gonio_i_gaussian *e,
 }
 
 /* Makes all folds, unless they are of the same readings already. */
-static gonio_status visit(gonio_i_expectation *x, const gonio_i_gaussian *e)
+static gonio_status visit(gonio_i_learned_error *x, const gonio_i_fit *e)
 {
     const size_t values = e->n * x->components;
     if (x->f != NULL && x->n == e->n && memcmp(x->f, e->f, values * sizeof *x->f) == 0) {
@@ -249,20 +249,20 @@ static gonio_status visit(gonio_i_expectation *x, const gonio_i_gaussian *e)
 /* ---- lessons ---- */
 
 /* How much of a say a reading has: 1 if exact, next to 0 if it is set aside. */
-static double say_of(const gonio_i_gaussian *e, const fold *f, size_t i)
+static double say_of(const gonio_i_fit *e, const fold *f, size_t i)
 {
     const double prior = f->covariance[i * e->n + i];
-    return prior / (prior + gonio_i_gaussian_noise(e, i));
+    return prior / (prior + gonio_i_fit_noise(e, i));
 }
 
 /* g of a reading: the mean of the database is put back. */
-static double value_of(const gonio_i_gaussian *e, const fold *f, const double *y, size_t i)
+static double value_of(const gonio_i_fit *e, const fold *f, const double *y, size_t i)
 {
     return e->mean[i] + f->mean_seen[i] + y[i];
 }
 
 /* y: readings less the fold's mean; solved: S^-1 y; diagonal: of S^-1. */
-static void find_features(const gonio_i_gaussian *e, const fold *f, const double *y,
+static void find_features(const gonio_i_fit *e, const fold *f, const double *y,
                           const double *solved, const double *diagonal, double *feature)
 {
     double all = 1e-9;
@@ -294,7 +294,7 @@ typedef struct solver {
     double *diagonal;
 } solver;
 
-static gonio_status begin_solver(const gonio_i_expectation *x, const gonio_i_gaussian *e,
+static gonio_status begin_solver(const gonio_i_learned_error *x, const gonio_i_fit *e,
                                  const fold *f, solver *s)
 {
     const size_t n = e->n;
@@ -305,7 +305,7 @@ static gonio_status begin_solver(const gonio_i_expectation *x, const gonio_i_gau
     }
     memcpy(s->lower, f->covariance, n * n * sizeof *s->lower);
     for (size_t i = 0; i < n; i++) {
-        s->lower[i * n + i] += gonio_i_gaussian_noise(e, i);
+        s->lower[i * n + i] += gonio_i_fit_noise(e, i);
     }
     const gonio_status status = gonio_i_cholesky(x->context, s->lower, n);
     return status == GONIO_OK ? gonio_i_inverse_diagonal(x->context, s->lower, n, s->diagonal)
@@ -326,12 +326,12 @@ static void solve(const solver *s, size_t count, size_t n, double *y)
 
 /* What is read of a measured column, less the fold's mean: with noise, the same every time, but of
  * readings that have no say; saturated where the material is. */
-static void read_column(const gonio_i_gaussian *e, const fold *f, size_t column, double *y)
+static void read_column(const gonio_i_fit *e, const fold *f, size_t column, double *y)
 {
     gonio_i_random random;
     gonio_i_random_seed(&random, 0, column);
     for (size_t i = 0; i < e->n; i++) {
-        const double noise = sqrt(gonio_i_gaussian_noise(e, i)) * gonio_i_random_normal(&random);
+        const double noise = sqrt(gonio_i_fit_noise(e, i)) * gonio_i_random_normal(&random);
         const double seen = e->seen[column * e->n + i] + say_of(e, f, i) * noise;
         const bool saturated = e->bound[i] > 0 && !e->left_out[i];
         y[i] = (saturated ? fmin(seen, e->y[i]) : seen) - f->mean_seen[i];
@@ -348,8 +348,8 @@ typedef struct column_scratch {
 } column_scratch;
 
 /* What is off in z of the columns, once they are solved. */
-static gonio_status find_errors(const gonio_i_expectation *x, const gonio_i_gaussian *e,
-                                const fold *f, size_t count, const column_scratch *s)
+static gonio_status find_errors(const gonio_i_learned_error *x, const gonio_i_fit *e, const fold *f,
+                                size_t count, const column_scratch *s)
 {
     const size_t k = x->components;
     gonio_status status =
@@ -366,7 +366,7 @@ static gonio_status find_errors(const gonio_i_expectation *x, const gonio_i_gaus
 }
 
 /* Lessons from the columns that fold k leaves out, added to what is there. */
-static gonio_status learn_fold(const gonio_i_expectation *x, const gonio_i_gaussian *e, size_t k,
+static gonio_status learn_fold(const gonio_i_learned_error *x, const gonio_i_fit *e, size_t k,
                                const column_scratch *s, lesson *lessons, size_t *count)
 {
     const fold *f = &x->fold[k];
@@ -394,7 +394,7 @@ static gonio_status learn_fold(const gonio_i_expectation *x, const gonio_i_gauss
     return status;
 }
 
-static gonio_status learn_folds(const gonio_i_expectation *x, const gonio_i_gaussian *e,
+static gonio_status learn_folds(const gonio_i_learned_error *x, const gonio_i_fit *e,
                                 lesson *lessons)
 {
     const size_t most = (x->prior->view.materials / FOLDS + 1) * x->each;
@@ -418,7 +418,7 @@ static gonio_status learn_folds(const gonio_i_expectation *x, const gonio_i_gaus
 }
 
 /* The features of the readings themselves. */
-static gonio_status look(const gonio_i_expectation *x, const gonio_i_gaussian *e, double *feature)
+static gonio_status look(const gonio_i_learned_error *x, const gonio_i_fit *e, double *feature)
 {
     const fold *f = &x->fold[FOLDS];
     double *y = gonio_i_allocate(x->context, 2 * e->n, sizeof *y);
@@ -514,8 +514,8 @@ static gonio_status regress(gonio_context *context, const lesson *lessons, size_
     return status;
 }
 
-gonio_status gonio_i_expectation_find(gonio_i_expectation *x, const gonio_i_gaussian *e,
-                                      double *square)
+gonio_status gonio_i_learned_error_find(gonio_i_learned_error *x, const gonio_i_fit *e,
+                                        double *square)
 {
     double feature[FEATURES];
     lesson *lessons = gonio_i_allocate(x->context, x->measured, sizeof *lessons);

@@ -10,7 +10,7 @@
 #ifndef GONIO_MODELS_H
 #define GONIO_MODELS_H
 
-#include "equations.h"
+#include "fit.h"
 
 enum { GONIO_I_MOST_MODELS = 20 };
 

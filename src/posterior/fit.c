@@ -1,5 +1,5 @@
-/* One column's Gaussian problem: see equations.h. */
-#include "equations.h"
+/* One column's Gaussian problem: see fit.h. */
+#include "fit.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -39,12 +39,12 @@ double gonio_i_kernel_width(size_t n)
     return sqrt((double)n / ((double)n + HALF_KEPT));
 }
 
-double gonio_i_gaussian_noise(const gonio_i_gaussian *e, size_t reading)
+double gonio_i_fit_noise(const gonio_i_fit *e, size_t reading)
 {
     return e->left_out[reading] ? NO_SAY : e->variance[reading];
 }
 
-static gonio_status allocate(gonio_i_gaussian *e)
+static gonio_status allocate(gonio_i_fit *e)
 {
     gonio_context *c = e->context;
     const size_t n = e->n;
@@ -71,7 +71,7 @@ static gonio_status allocate(gonio_i_gaussian *e)
     return done ? GONIO_OK : GONIO_ERROR_MEMORY;
 }
 
-void gonio_i_gaussian_end(gonio_i_gaussian *e)
+void gonio_i_fit_end(gonio_i_fit *e)
 {
     free(e->f);
     free(e->place);
@@ -90,11 +90,11 @@ void gonio_i_gaussian_end(gonio_i_gaussian *e)
     free(e->centre);
     free(e->rest);
     free(e->solved);
-    *e = (gonio_i_gaussian){0};
+    *e = (gonio_i_fit){0};
 }
 
 /* F F' and F z_j. */
-static gonio_status see_samples(gonio_i_gaussian *e)
+static gonio_status see_samples(gonio_i_fit *e)
 {
     const size_t values = e->prior->samples * e->n;
     gonio_status status = gonio_i_product_transposed(e->context, e->f, e->n, e->components, e->f,
@@ -106,14 +106,14 @@ static gonio_status see_samples(gonio_i_gaussian *e)
     return status;
 }
 
-gonio_status gonio_i_gaussian_begin(gonio_context *context, const gonio_i_prior *prior,
-                                    const gonio_i_column *column, gonio_i_gaussian *e)
+gonio_status gonio_i_fit_begin(gonio_context *context, const gonio_i_prior *prior,
+                               const gonio_i_column *column, gonio_i_fit *e)
 {
-    *e = (gonio_i_gaussian){.context = context,
-                            .prior = prior,
-                            .n = column->count,
-                            .components = prior->components,
-                            .misfit = 1.0};
+    *e = (gonio_i_fit){.context = context,
+                       .prior = prior,
+                       .n = column->count,
+                       .components = prior->components,
+                       .misfit = 1.0};
     const gonio_status status = allocate(e);
     if (status != GONIO_OK) {
         return status;
@@ -138,7 +138,7 @@ gonio_status gonio_i_gaussian_begin(gonio_context *context, const gonio_i_prior 
 }
 
 /* L of S; the sum of the logarithms of its diagonal goes to `logarithm`. */
-static gonio_status factorise(gonio_i_gaussian *e, double *logarithm)
+static gonio_status factorise(gonio_i_fit *e, double *logarithm)
 {
     const size_t n = e->n;
     const gonio_i_model m = e->model;
@@ -147,7 +147,7 @@ static gonio_status factorise(gonio_i_gaussian *e, double *logarithm)
         e->lower[i] = m.h * m.h * e->gram[i] + m.alpha * m.alpha * k;
     }
     for (size_t i = 0; i < n; i++) {
-        e->lower[i * n + i] += gonio_i_gaussian_noise(e, i);
+        e->lower[i * n + i] += gonio_i_fit_noise(e, i);
     }
     const gonio_status status = gonio_i_cholesky(e->context, e->lower, n);
     *logarithm = 0.0;
@@ -190,13 +190,13 @@ static double shrink(const gonio_i_model *model)
 }
 
 /* ln q_j, but for what makes them add up to 1. */
-static double log_weight(const gonio_i_gaussian *e, size_t j)
+static double log_weight(const gonio_i_fit *e, size_t j)
 {
     return log(e->prior->share[j]) - 0.5 * square_sum(e->white + j * e->n, e->n);
 }
 
 /* q and z; and in e->evidence the logarithm of sum_j share_j exp(-|...|^2/2). */
-static void weigh_samples(gonio_i_gaussian *e)
+static void weigh_samples(gonio_i_fit *e)
 {
     const size_t n = e->n;
     const size_t samples = e->prior->samples;
@@ -218,7 +218,7 @@ static void weigh_samples(gonio_i_gaussian *e)
     }
 }
 
-gonio_status gonio_i_gaussian_solve(gonio_i_gaussian *e, const gonio_i_model *model)
+gonio_status gonio_i_fit_solve(gonio_i_fit *e, const gonio_i_model *model)
 {
     double logarithm = 0.0;
     e->model = *model;
@@ -247,15 +247,14 @@ gonio_status gonio_i_gaussian_solve(gonio_i_gaussian *e, const gonio_i_model *mo
     e->evidence = mixed - logarithm - 0.5 * (double)e->n * log(2.0 * M_PI);
     for (size_t i = 0; i < e->n; i++) {
         /* That a bound holds is a probability: 1 if it is left out, and never more than 1. */
-        e->evidence +=
-            e->bound[i] != 0 ? 0.5 * log(2.0 * M_PI * gonio_i_gaussian_noise(e, i)) : 0.0;
+        e->evidence += e->bound[i] != 0 ? 0.5 * log(2.0 * M_PI * gonio_i_fit_noise(e, i)) : 0.0;
     }
     return GONIO_OK;
 }
 
 /* Sample j's difference at reading i is d_j = (S^-1 (y - a F z_j))_i v, v = 1/(S^-1)_ii; without
  * that reading its weight would be q_j / N(d_j; 0, v), but for what makes them add up to 1. */
-static gonio_status mix_differences(const gonio_i_gaussian *e, double *difference, double *variance)
+static gonio_status mix_differences(const gonio_i_fit *e, double *difference, double *variance)
 {
     const size_t n = e->n;
     const size_t samples = e->prior->samples;
@@ -295,8 +294,7 @@ static gonio_status mix_differences(const gonio_i_gaussian *e, double *differenc
 
 /* Of a Gaussian without one of its values: the difference (S^-1 r)_i / (S^-1)_ii of variance
  * 1/(S^-1)_ii (Sundararajan and Keerthi 2001). */
-gonio_status gonio_i_gaussian_leave_one_out(const gonio_i_gaussian *e, double *difference,
-                                            double *variance)
+gonio_status gonio_i_fit_leave_one_out(const gonio_i_fit *e, double *difference, double *variance)
 {
     const gonio_status status = gonio_i_inverse_diagonal(e->context, e->lower, e->n, variance);
     for (size_t i = 0; i < e->n && status == GONIO_OK; i++) {
@@ -324,7 +322,7 @@ static int compare_numbers(const void *a, const void *b)
 
 /* The median of the deviations, as a Gaussian's standard deviation; 1 at least: a material that
  * the prior knows badly is off everywhere, and that is no reason to believe none of it. */
-static double usual_deviation(const gonio_i_gaussian *e, const judgement *j)
+static double usual_deviation(const gonio_i_fit *e, const judgement *j)
 {
     for (size_t i = 0; i < e->n; i++) {
         j->deviations[i] = fabs(j->difference[i]) / sqrt(j->variance[i]);
@@ -334,7 +332,7 @@ static double usual_deviation(const gonio_i_gaussian *e, const judgement *j)
 }
 
 /* A bound that the other readings keep by themselves says nothing. */
-static bool judge_bounds(gonio_i_gaussian *e, const judgement *j)
+static bool judge_bounds(gonio_i_fit *e, const judgement *j)
 {
     bool changed = false;
     for (size_t i = 0; i < e->n; i++) {
@@ -348,7 +346,7 @@ static bool judge_bounds(gonio_i_gaussian *e, const judgement *j)
 
 /* The worst of the readings that the others contradict gets a variance to match; a few at a time,
  * as a wrong reading makes its neighbours look wrong. */
-static bool judge_readings(gonio_i_gaussian *e, const judgement *j)
+static bool judge_readings(gonio_i_fit *e, const judgement *j)
 {
     const size_t most = 1 + e->n / 40;
     const double usual = usual_deviation(e, j);
@@ -372,7 +370,7 @@ static bool judge_readings(gonio_i_gaussian *e, const judgement *j)
     return found > 0;
 }
 
-gonio_status gonio_i_gaussian_settle(gonio_i_gaussian *e, bool doubt, size_t *outlying)
+gonio_status gonio_i_fit_settle(gonio_i_fit *e, bool doubt, size_t *outlying)
 {
     judgement j = {gonio_i_allocate(e->context, e->n, sizeof *j.difference),
                    gonio_i_allocate(e->context, e->n, sizeof *j.variance),
@@ -384,11 +382,11 @@ gonio_status gonio_i_gaussian_settle(gonio_i_gaussian *e, bool doubt, size_t *ou
             : GONIO_OK;
     bool changed = true;
     for (int round = 0; round < MOST_ROUNDS && changed && status == GONIO_OK; round++) {
-        status = gonio_i_gaussian_leave_one_out(e, j.difference, j.variance);
+        status = gonio_i_fit_leave_one_out(e, j.difference, j.variance);
         if (status == GONIO_OK) {
             const bool bounds = judge_bounds(e, &j);
             changed = (doubt && judge_readings(e, &j)) || bounds;
-            status = changed ? gonio_i_gaussian_solve(e, &e->model) : GONIO_OK;
+            status = changed ? gonio_i_fit_solve(e, &e->model) : GONIO_OK;
         }
     }
     *outlying = 0;
@@ -402,13 +400,13 @@ gonio_status gonio_i_gaussian_settle(gonio_i_gaussian *e, bool doubt, size_t *ou
     return status;
 }
 
-gonio_status gonio_i_gaussian_surprise(gonio_i_gaussian *e, double *sum)
+gonio_status gonio_i_fit_surprise(gonio_i_fit *e, double *sum)
 {
     double *difference = gonio_i_allocate(e->context, 2 * e->n, sizeof *difference);
     gonio_status status = difference == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
     *sum = 0.0;
     if (status == GONIO_OK) {
-        status = gonio_i_gaussian_leave_one_out(e, difference, difference + e->n);
+        status = gonio_i_fit_leave_one_out(e, difference, difference + e->n);
     }
     for (size_t i = 0; i < e->n && status == GONIO_OK; i++) {
         *sum += difference[i] * difference[i] / difference[e->n + i];

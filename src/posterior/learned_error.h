@@ -9,27 +9,27 @@
  * mean square on four features of the readings says what to expect of the new material; from
  * logarithms of errors back by Duan's smearing (1983), so that it is the error expected on average.
  */
-#ifndef GONIO_EXPECTATION_H
-#define GONIO_EXPECTATION_H
+#ifndef GONIO_LEARNED_ERROR_H
+#define GONIO_LEARNED_ERROR_H
 
-#include "equations.h"
+#include "fit.h"
 
-typedef struct gonio_i_expectation gonio_i_expectation;
+typedef struct gonio_i_learned_error gonio_i_learned_error;
 
 /* *expectation is NULL if the database cannot tell: a basis without loadings, of few materials, or
  * of mixtures that nobody knows the parents of. The prior must outlive it. Errors: _MEMORY. */
-gonio_status gonio_i_expectation_create(gonio_context *context, const gonio_i_prior *prior,
-                                        gonio_i_expectation **expectation);
-void gonio_i_expectation_free(gonio_i_expectation **expectation);
+gonio_status gonio_i_learned_error_create(gonio_context *context, const gonio_i_prior *prior,
+                                          gonio_i_learned_error **expectation);
+void gonio_i_learned_error_free(gonio_i_learned_error **expectation);
 
 /* Readings of a column from which on _find takes long; fewer can be had by merging (merge.h). */
-enum { GONIO_I_EXPECTATION_MOST = 400 };
+enum { GONIO_I_LEARNED_ERROR_MOST = 400 };
 
 /* The square of the root mean square over the bins of the grid of the error of g that is expected
  * on average, for a column of readings (settled: their variances are what is believed of them).
  * Columns that were read at the same places cost little after the first. Errors: _MEMORY,
  * _NUMERICAL. */
-gonio_status gonio_i_expectation_find(gonio_i_expectation *expectation,
-                                      const gonio_i_gaussian *gaussian, double *square);
+gonio_status gonio_i_learned_error_find(gonio_i_learned_error *expectation,
+                                        const gonio_i_fit *gaussian, double *square);
 
 #endif

@@ -9,27 +9,22 @@
  * which is nothing at all where the material is dark or the lamp grazes it. How much that is, each
  * channel's readings tell: from either side of a reciprocal pair the same should be read, and what
  * is zero should not be far above it. */
-#ifndef GONIO_DARK_H
-#define GONIO_DARK_H
+#ifndef GONIO_DARK_LEVEL_H
+#define GONIO_DARK_LEVEL_H
 
-#include "estimate.h"
+#include "observations.h"
 
 /* Where readings are zero and a dark level explains all of them far better than none: *dark, one
  * for each column, 1/sr, which the caller frees. Otherwise NULL.
  * Errors: _MEMORY, _NUMERICAL, _CANCELLED. */
-gonio_status gonio_i_dark_find(gonio_context *context, const gonio_i_prior *prior,
-                               const gonio_readings *readings,
-                               const gonio_reconstruct_options *options,
-                               const gonio_i_columns *columns, double **dark);
+gonio_status gonio_i_dark_level_find(gonio_context *context, const gonio_i_prior *prior,
+                                     const gonio_readings *readings, const gonio_i_noise *noise,
+                                     const gonio_i_columns *columns, double **dark);
 
 /* Makes the columns again, of what the material reflects; nothing for a level of NULL.
  * Errors: _MEMORY. */
-gonio_status gonio_i_dark_apply(gonio_context *context, const gonio_basis_view *view,
-                                const gonio_readings *readings,
-                                const gonio_reconstruct_options *options, const double *dark,
-                                gonio_i_columns *columns);
-
-/* What is missing from a reading of a channel, 1/sr. dark: of the columns, or NULL for none. */
-double gonio_i_dark_missing(const double *dark, size_t channel, double theta_i);
+gonio_status gonio_i_dark_level_apply(gonio_context *context, const gonio_basis_view *view,
+                                      const gonio_readings *readings, const gonio_i_noise *noise,
+                                      const double *dark, gonio_i_columns *columns);
 
 #endif

@@ -1,10 +1,10 @@
-/* Directions that were read wrongly: see doubt.h. */
-#include "doubt.h"
+/* Directions that were read wrongly: see wrong_directions.h. */
+#include "wrong_directions.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-#include "probe.h"
+#include "leave_one_out.h"
 
 /* Remainders that an unknown kind of material may have: smooth ones, and with narrow peaks. */
 static const struct remainder {
@@ -49,9 +49,9 @@ typedef struct direction {
 
 typedef struct doubter {
     gonio_context *context;
-    gonio_i_probe probe;
-    gonio_i_gaussian column[GONIO_I_PROBE_COLUMNS];
-    size_t *number[GONIO_I_PROBE_COLUMNS]; /* of each reading's direction */
+    gonio_i_subset probe;
+    gonio_i_fit column[GONIO_I_SUBSET_COLUMNS];
+    size_t *number[GONIO_I_SUBSET_COLUMNS]; /* of each reading's direction */
     size_t directions;
     direction *direction; /* [directions] */
 } doubter;
@@ -96,19 +96,19 @@ static gonio_status number_directions(doubter *d)
 
 static gonio_status begin_column(doubter *d, const gonio_i_prior *prior, size_t c)
 {
-    gonio_i_gaussian *e = &d->column[c];
+    gonio_i_fit *e = &d->column[c];
     size_t outlying = 0;
-    gonio_status status = gonio_i_gaussian_begin(d->context, prior, &d->probe.column[c], e);
+    gonio_status status = gonio_i_fit_begin(d->context, prior, &d->probe.column[c], e);
     if (status == GONIO_OK) {
-        status = gonio_i_gaussian_solve(e, &GONIO_I_SETTLING);
+        status = gonio_i_fit_solve(e, &GONIO_I_SETTLING);
     }
-    return status == GONIO_OK ? gonio_i_gaussian_settle(e, false, &outlying) : status;
+    return status == GONIO_OK ? gonio_i_fit_settle(e, false, &outlying) : status;
 }
 
 static gonio_status begin(doubter *d, const gonio_i_prior *prior, const gonio_i_column *columns,
                           size_t count)
 {
-    gonio_status status = gonio_i_probe_begin(d->context, columns, count, &d->probe);
+    gonio_status status = gonio_i_subset_begin(d->context, columns, count, &d->probe);
     if (status == GONIO_OK) {
         status = number_directions(d);
     }
@@ -121,11 +121,11 @@ static gonio_status begin(doubter *d, const gonio_i_prior *prior, const gonio_i_
 static void end(doubter *d)
 {
     for (size_t c = 0; c < d->probe.count; c++) {
-        gonio_i_gaussian_end(&d->column[c]);
+        gonio_i_fit_end(&d->column[c]);
         free(d->number[c]);
     }
     free(d->direction);
-    gonio_i_probe_end(&d->probe);
+    gonio_i_subset_end(&d->probe);
 }
 
 /* Takes a direction out, or back in. */
@@ -133,7 +133,7 @@ static void leave_out(doubter *d, size_t number, bool out)
 {
     d->direction[number].wrong = out;
     for (size_t c = 0; c < d->probe.count; c++) {
-        gonio_i_gaussian *e = &d->column[c];
+        gonio_i_fit *e = &d->column[c];
         for (size_t i = 0; i < e->n; i++) {
             if (d->number[c][i] == number) {
                 e->variance[i] = out ? HARDLY_A_SAY : d->probe.column[c].observation[i].variance;
@@ -158,7 +158,7 @@ static gonio_status score(doubter *d, double *value, size_t *best)
         double sum = -GONIO_I_FOR_REMAINDERS * log(REMAINDERS[k].alpha / REMAINDERS[0].alpha);
         for (size_t c = 0; c < d->probe.count && status == GONIO_OK; c++) {
             const gonio_i_model model = model_of(d, c, k);
-            status = gonio_i_probe_score(&d->column[c], &model, &sum);
+            status = gonio_i_leave_one_out_score(&d->column[c], &model, &sum);
         }
         *best = sum > *value ? k : *best;
         *value = fmax(*value, sum);
@@ -168,9 +168,9 @@ static gonio_status score(doubter *d, double *value, size_t *best)
 
 static gonio_status add_off(doubter *d, size_t c, const gonio_i_model *model)
 {
-    gonio_i_gaussian *e = &d->column[c];
+    gonio_i_fit *e = &d->column[c];
     double *difference = NULL;
-    const gonio_status status = gonio_i_probe_differences(e, model, &difference);
+    const gonio_status status = gonio_i_leave_one_out_differences(e, model, &difference);
     for (size_t i = 0; i < e->n && status == GONIO_OK; i++) {
         direction *at = &d->direction[d->number[c][i]];
         const double square = difference[i] * difference[i] / (double)at->readings;
@@ -294,8 +294,8 @@ static size_t widen(const doubter *d, gonio_i_column *column)
     return count;
 }
 
-gonio_status gonio_i_doubt(gonio_context *context, const gonio_i_prior *prior,
-                           gonio_i_column *columns, size_t count, size_t *wrong)
+gonio_status gonio_i_wrong_directions_find(gonio_context *context, const gonio_i_prior *prior,
+                                           gonio_i_column *columns, size_t count, size_t *wrong)
 {
     doubter d = {.context = context};
     size_t found = 0;

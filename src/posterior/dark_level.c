@@ -1,14 +1,14 @@
-/* The dark level: see dark.h.
+/* The dark level: see dark_level.h.
  *
  * Levels are tried, and each is as likely as the readings of its column are when they are left out
  * one at a time: those above zero by their density, per 1/sr, and zeros by the probability of
  * reading nothing. Of usual and of unusual materials, the likelier one; plain Gaussians do. */
-#include "dark.h"
+#include "dark_level.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-#include "probe.h"
+#include "leave_one_out.h"
 
 /* Levels in units of s, and none: from what makes no difference to what makes an instrument
  * useless, 2^(1/2) apart. */
@@ -34,11 +34,6 @@ enum { MODELS_COUNT = sizeof MODELS / sizeof *MODELS };
 /* A zero is read for another reason. */
 static const double OTHERWISE = 0.03;
 
-double gonio_i_dark_missing(const double *dark, size_t channel, double theta_i)
-{
-    return dark != NULL ? dark[channel] / fmax(cos(theta_i), 1e-3) : 0.0;
-}
-
 /* ln of the probability that a reading is as far down as its bound, from what the others say. */
 static double log_probability(double difference, double variance)
 {
@@ -47,20 +42,21 @@ static double log_probability(double difference, double variance)
 }
 
 /* ln of how likely the readings of a column are, but for a constant. */
-static gonio_status score_readings(gonio_i_gaussian *e, const gonio_i_model *model,
+static gonio_status score_readings(gonio_i_fit *e, const gonio_i_model *model,
                                    const gonio_i_column *column, double *score)
 {
     double *difference = NULL;
-    const gonio_status status = gonio_i_probe_differences(e, model, &difference);
+    const gonio_status status = gonio_i_leave_one_out_differences(e, model, &difference);
     *score = 0.0;
     for (size_t i = 0; i < e->n && status == GONIO_OK; i++) {
         /* What is left out or set aside is judged like all others. */
-        const double others = difference[e->n + i] - gonio_i_gaussian_noise(e, i);
+        const double others = difference[e->n + i] - gonio_i_fit_noise(e, i);
         const double variance = fmax(others, 0.0) + column->observation[i].variance;
         if (e->bound[i] < 0) {
             *score += log_probability(difference[i], variance);
         } else if (e->bound[i] == 0) {
-            *score += gonio_i_probe_density(difference[i], variance) - column->observation[i].g;
+            *score +=
+                gonio_i_leave_one_out_density(difference[i], variance) - column->observation[i].g;
         }
     }
     free(difference);
@@ -71,19 +67,19 @@ static gonio_status score_model(gonio_context *context, const gonio_i_prior *pla
                                 const gonio_i_model *model, const gonio_i_column *column,
                                 double *score)
 {
-    gonio_i_gaussian e = {0};
+    gonio_i_fit e = {0};
     size_t outlying = 0;
-    gonio_status status = gonio_i_gaussian_begin(context, plain, column, &e);
+    gonio_status status = gonio_i_fit_begin(context, plain, column, &e);
     if (status == GONIO_OK) {
-        status = gonio_i_gaussian_solve(&e, model);
+        status = gonio_i_fit_solve(&e, model);
     }
     if (status == GONIO_OK) {
-        status = gonio_i_gaussian_settle(&e, true, &outlying);
+        status = gonio_i_fit_settle(&e, true, &outlying);
     }
     if (status == GONIO_OK) {
         status = score_readings(&e, model, column, score);
     }
-    gonio_i_gaussian_end(&e);
+    gonio_i_fit_end(&e);
     return status;
 }
 
@@ -95,7 +91,7 @@ static gonio_status score_column(gonio_context *context, const gonio_i_prior *pr
     gonio_status status = GONIO_OK;
     plain.samples = 0;
     *score = -INFINITY;
-    column->count = gonio_i_probe_thin(column, GONIO_I_PROBE_READINGS, column->observation);
+    column->count = gonio_i_thin(column, GONIO_I_SUBSET_READINGS, column->observation);
     for (int k = 0; k < MODELS_COUNT && status == GONIO_OK; k++) {
         double mine = 0.0;
         status = score_model(context, &plain, &MODELS[k], column, &mine);
@@ -109,7 +105,7 @@ typedef struct search {
     gonio_context *context;
     const gonio_i_prior *prior;
     const gonio_readings *readings;
-    const gonio_reconstruct_options *options;
+    const gonio_i_noise *noise;
     size_t columns;
     double *dark;  /* [columns] */
     double *score; /* [columns][LEVELS] */
@@ -128,8 +124,8 @@ static gonio_status try_level(search *s, int k)
     for (size_t c = 0; c < s->columns; c++) {
         s->dark[c] = level(k) * scale_of(s, c);
     }
-    gonio_status status =
-        gonio_i_dark_apply(s->context, &s->prior->view, s->readings, s->options, s->dark, &columns);
+    gonio_status status = gonio_i_dark_level_apply(s->context, &s->prior->view, s->readings,
+                                                   s->noise, s->dark, &columns);
     for (size_t c = 0; c < s->columns && status == GONIO_OK; c++) {
         double *score = &s->score[c * LEVELS + (size_t)k];
         status = score_column(s->context, s->prior, &columns.column[c], score);
@@ -187,19 +183,18 @@ static bool has_zeros(const gonio_i_columns *columns)
     return false;
 }
 
-gonio_status gonio_i_dark_find(gonio_context *context, const gonio_i_prior *prior,
-                               const gonio_readings *readings,
-                               const gonio_reconstruct_options *options,
-                               const gonio_i_columns *columns, double **dark)
+gonio_status gonio_i_dark_level_find(gonio_context *context, const gonio_i_prior *prior,
+                                     const gonio_readings *readings, const gonio_i_noise *noise,
+                                     const gonio_i_columns *columns, double **dark)
 {
     bool found = false;
     search s = {.context = context,
                 .prior = prior,
                 .readings = readings,
-                .options = options,
+                .noise = noise,
                 .columns = columns->count};
     *dark = NULL;
-    if (options->believe || prior->view.channels == GONIO_JOINT || !has_zeros(columns)) {
+    if (prior->view.channels == GONIO_JOINT || !has_zeros(columns)) {
         return GONIO_OK;
     }
     s.dark = gonio_i_allocate(context, s.columns, sizeof *s.dark);
@@ -215,15 +210,14 @@ gonio_status gonio_i_dark_find(gonio_context *context, const gonio_i_prior *prio
     return status;
 }
 
-gonio_status gonio_i_dark_apply(gonio_context *context, const gonio_basis_view *view,
-                                const gonio_readings *readings,
-                                const gonio_reconstruct_options *options, const double *dark,
-                                gonio_i_columns *columns)
+gonio_status gonio_i_dark_level_apply(gonio_context *context, const gonio_basis_view *view,
+                                      const gonio_readings *readings, const gonio_i_noise *noise,
+                                      const double *dark, gonio_i_columns *columns)
 {
     const gonio_i_transform transform = {.factor = 1.0, .dark = dark};
     if (dark == NULL) {
         return GONIO_OK;
     }
     gonio_i_columns_free(columns);
-    return gonio_i_columns_create(context, view, readings, options, &transform, columns);
+    return gonio_i_columns_create(context, view, readings, noise, &transform, columns);
 }

@@ -1,4 +1,4 @@
-/* The field and its deviation: see spread.h.
+/* The field and its deviation: see predict.h.
  *
  * With t(x) = (f(x), k(x, .)) the variance of g(x) is alpha^2 k(x, x) + t Q t', where
  *
@@ -6,7 +6,7 @@
  *     d_j = a ((z_j - z) - h^2 F' S^-1 F (z_j - z), -alpha^2 S^-1 F (z_j - z)):
  *
  * what the readings leave of the prior, and how far the columns that explain them differ. */
-#include "spread.h"
+#include "predict.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -37,7 +37,7 @@ static double calibrated(double variance, const calibration *c)
 }
 
 typedef struct spreader {
-    const gonio_i_gaussian *e;
+    const gonio_i_fit *e;
     const double *c;
     double *deviation; /* [rows], or NULL */
     size_t n;          /* readings whose smoothness counts: none if alpha is 0 */
@@ -71,7 +71,7 @@ static double dot(const double *a, const double *b, size_t n)
 /* m + f c + alpha^2 k S^-1 (y - F z). */
 static double value_of(const spreader *s, size_t row, const double *t)
 {
-    const gonio_i_gaussian *e = s->e;
+    const gonio_i_fit *e = s->e;
     return e->prior->view.mean[row] + dot(t, s->c, e->components) +
            e->model.alpha * e->model.alpha * dot(t + e->components, e->solved, s->n);
 }
@@ -79,7 +79,7 @@ static double value_of(const spreader *s, size_t row, const double *t)
 /* Q less w S^-1 w', by rows w L'^-1. */
 static gonio_status take_out_readings(const spreader *s, double *q)
 {
-    const gonio_i_gaussian *e = s->e;
+    const gonio_i_fit *e = s->e;
     const size_t n = e->n;
     double *w = gonio_i_allocate(e->context, s->size * n, sizeof *w);
     double *product = gonio_i_allocate(e->context, s->size * s->size, sizeof *product);
@@ -109,7 +109,7 @@ static gonio_status take_out_readings(const spreader *s, double *q)
 static gonio_status fill_differences(const spreader *s, const size_t *listed, size_t count,
                                      double *d, double *seen, double *move)
 {
-    const gonio_i_gaussian *e = s->e;
+    const gonio_i_fit *e = s->e;
     const double a = sqrt(1.0 - e->model.h * e->model.h);
     for (size_t j = 0; j < count; j++) {
         const double root = sqrt(e->weight[listed[j]]);
@@ -140,7 +140,7 @@ static gonio_status fill_differences(const spreader *s, const size_t *listed, si
 /* Q plus sum_j q_j d_j d_j'. */
 static gonio_status add_samples(const spreader *s, double *q)
 {
-    const gonio_i_gaussian *e = s->e;
+    const gonio_i_fit *e = s->e;
     const size_t samples = e->prior->samples;
     size_t *listed = gonio_i_allocate(e->context, samples, sizeof *listed);
     size_t count = 0;
@@ -196,7 +196,7 @@ typedef struct workspace {
 } workspace;
 
 static void spread_row(const spreader *s, size_t row, const double *t, const double *product,
-                       gonio_i_spread_sums *sums)
+                       gonio_i_predicted_sums *sums)
 {
     const gonio_basis_view *view = &s->e->prior->view;
     const size_t each = view->channels == GONIO_JOINT ? GONIO_CHANNELS : 1;
@@ -216,7 +216,7 @@ static void spread_row(const spreader *s, size_t row, const double *t, const dou
 
 /* Rows first, first + step, ... of which `count` make a block. */
 static gonio_status spread_block(const spreader *s, size_t first, size_t step, size_t count,
-                                 const workspace *w, gonio_i_spread_sums *sums)
+                                 const workspace *w, gonio_i_predicted_sums *sums)
 {
     for (size_t b = 0; b < count; b++) {
         fill_t(s->e->prior, s->e->place, s->e->model.peak, s->n, first + b * step,
@@ -233,7 +233,7 @@ static gonio_status spread_block(const spreader *s, size_t first, size_t step, s
 /* All blocks, by several threads; the sums of each block for themselves, so that they add up to the
  * same whatever the threads. */
 static gonio_status spread_blocks(const spreader *s, size_t step, size_t blocks,
-                                  gonio_i_spread_sums *sums)
+                                  gonio_i_predicted_sums *sums)
 {
     const size_t rows = s->e->prior->view.rows;
     gonio_status result = GONIO_OK;
@@ -260,9 +260,9 @@ static gonio_status spread_blocks(const spreader *s, size_t step, size_t blocks,
     return result;
 }
 
-gonio_status gonio_i_spread_variance(const gonio_i_gaussian *gaussian, const double *c,
-                                     double *deviation, double *covariance,
-                                     gonio_i_spread_sums *sums)
+gonio_status gonio_i_predict_variance(const gonio_i_fit *gaussian, const double *c,
+                                      double *deviation, double *covariance,
+                                      gonio_i_predicted_sums *sums)
 {
     spreader s = {.e = gaussian, .c = c, .deviation = deviation};
     s.n = gaussian->model.alpha > 0.0 ? gaussian->n : 0;
@@ -270,7 +270,7 @@ gonio_status gonio_i_spread_variance(const gonio_i_gaussian *gaussian, const dou
     const size_t rows = gaussian->prior->view.rows;
     const size_t step = deviation != NULL ? 1 : gonio_i_sample_step(rows);
     const size_t blocks = (rows + BLOCK * step - 1) / (BLOCK * step);
-    gonio_i_spread_sums *part = gonio_i_allocate(gaussian->context, blocks, sizeof *part);
+    gonio_i_predicted_sums *part = gonio_i_allocate(gaussian->context, blocks, sizeof *part);
     gonio_status status = part == NULL ? GONIO_ERROR_MEMORY : find_q(&s);
     if (status == GONIO_OK) {
         status = spread_blocks(&s, step, blocks, part);
@@ -293,7 +293,7 @@ gonio_status gonio_i_spread_variance(const gonio_i_gaussian *gaussian, const dou
 /* ---- fields ---- */
 
 /* Whether a column was read where the one before it was: then k is the same. */
-static bool same_places(const gonio_i_spread_column *a, const gonio_i_spread_column *b)
+static bool same_places(const gonio_i_predicted_column *a, const gonio_i_predicted_column *b)
 {
     return a->n == b->n && (a->n == 0 || memcmp(a->place, b->place, a->n * sizeof *a->place) == 0);
 }
@@ -305,7 +305,7 @@ typedef struct row_terms {
     double *peaked; /* [n] */
 } row_terms;
 
-static void fill_terms(const gonio_i_prior *prior, const gonio_i_spread_column *c, size_t row,
+static void fill_terms(const gonio_i_prior *prior, const gonio_i_predicted_column *c, size_t row,
                        const row_terms *t)
 {
     int channel = 0;
@@ -318,11 +318,11 @@ static void fill_terms(const gonio_i_prior *prior, const gonio_i_spread_column *
     }
 }
 
-static void fill_row(const gonio_i_prior *prior, const gonio_i_spread_column *columns, size_t count,
-                     size_t row, const row_terms *t)
+static void fill_row(const gonio_i_prior *prior, const gonio_i_predicted_column *columns,
+                     size_t count, size_t row, const row_terms *t)
 {
     for (size_t j = 0; j < count; j++) {
-        const gonio_i_spread_column *c = &columns[j];
+        const gonio_i_predicted_column *c = &columns[j];
         if (j == 0 || !same_places(c, c - 1)) {
             fill_terms(prior, c, row, t);
         }
@@ -331,8 +331,8 @@ static void fill_row(const gonio_i_prior *prior, const gonio_i_spread_column *co
     }
 }
 
-gonio_status gonio_i_spread_fields(gonio_context *context, const gonio_i_prior *prior,
-                                   const gonio_i_spread_column *columns, size_t count)
+gonio_status gonio_i_predict_fields(gonio_context *context, const gonio_i_prior *prior,
+                                    const gonio_i_predicted_column *columns, size_t count)
 {
     size_t most = 0;
     bool failed = false;

@@ -1,0 +1,25 @@
+/* What readings are taken to mean: see interpret.h. */
+#include "interpret.h"
+
+#include <stdlib.h>
+
+#include "dark_level.h"
+#include "mistakes.h"
+
+gonio_status gonio_i_interpret(gonio_context *context, const gonio_i_prior *prior,
+                               const gonio_readings *readings, const gonio_i_noise *noise,
+                               gonio_i_columns *columns, double **dark, const char **mistake)
+{
+    *mistake = NULL;
+    gonio_status status = gonio_i_dark_level_find(context, prior, readings, noise, columns, dark);
+    if (status == GONIO_OK) {
+        status = gonio_i_mistake_find(context, prior, readings, noise, *dark, mistake);
+    }
+    if (*mistake != NULL) {
+        free(*dark); /* of readings that are not what they say */
+        *dark = NULL;
+    }
+    return status == GONIO_OK
+               ? gonio_i_dark_level_apply(context, &prior->view, readings, noise, *dark, columns)
+               : status;
+}

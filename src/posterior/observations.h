@@ -1,0 +1,50 @@
+/* Readings as columns of observations: values in the basis's log space with their variances. */
+#ifndef GONIO_OBSERVATIONS_H
+#define GONIO_OBSERVATIONS_H
+
+#include <gonio/measurement.h>
+
+#include "posterior.h"
+
+/* The noise of an instrument. */
+typedef struct gonio_i_noise {
+    double relative;   /* standard deviation relative to the value */
+    double floor;      /* standard deviation of a reading of zero, 1/sr */
+    double saturation; /* readings of this value or more, 1/sr, are lower bounds; 0: none are */
+} gonio_i_noise;
+
+/* What readings are taken to mean. */
+typedef struct gonio_i_transform {
+    double factor;                       /* of the values; */
+    bool by_cosine;                      /* which are divided by cos theta_o too */
+    bool merl;                           /* and multiplied by s */
+    const double *dark;                  /* [channels]: added to them (dark_level.h), or NULL */
+    gonio_pair (*turn)(gonio_pair pair); /* NULL: as they are */
+} gonio_i_transform;
+
+/* The readings of each channel; of all channels together for a joint basis. */
+typedef struct gonio_i_columns {
+    size_t count;
+    gonio_i_column *column;
+} gonio_i_columns;
+
+/* Makes columns of what was read; a value of NaN was not. transform: NULL for what the readings
+ * say. To be freed in any case. Errors: _MEMORY. */
+gonio_status gonio_i_columns_create(gonio_context *context, const gonio_basis_view *view,
+                                    const gonio_readings *readings, const gonio_i_noise *noise,
+                                    const gonio_i_transform *transform, gonio_i_columns *columns);
+void gonio_i_columns_free(gonio_i_columns *columns);
+
+/* _UNDETERMINED if a column has no reading. path: of the readings, for the message, or NULL. */
+gonio_status gonio_i_columns_check(gonio_context *context, const gonio_i_columns *columns,
+                                   const char *path);
+
+/* What is missing from a reading of a channel, 1/sr. dark: of the columns, or NULL for none. */
+double gonio_i_dark_level_missing(const double *dark, size_t channel, double theta_i);
+
+/* ln of how much a transform stretches the values of a column around them: sum ln(dg'/dv), without
+ * bounds, which have a probability and no density. */
+double gonio_i_transform_logarithm(const gonio_readings *readings, size_t channel,
+                                   const gonio_i_noise *noise, const gonio_i_transform *transform);
+
+#endif
