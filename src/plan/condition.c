@@ -1,15 +1,16 @@
 /* Condition-number plans (Ali et al., section 3.8): from each of several starts, swaps of chosen
- * rows for others until no single swap lowers kappa (search.h); the best of the ends is kept. */
+ * rows for others until no single swap lowers kappa (swap_search.h); the best of the ends is kept.
+ */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "method.h"
-#include "search.h"
-#include "start.h"
+#include "swap_search.h"
+#include "starting_rows.h"
 
 /* The choice to begin with, by name or given. */
-static gonio_status begin_with(gonio_i_search *s, const char *name, int restart)
+static gonio_status begin_with(gonio_i_swap_search *s, const char *name, int restart)
 {
     const gonio_i_selection_problem *p = s->problem;
     size_t *chosen = gonio_i_allocate(p->context, p->count, sizeof *chosen);
@@ -20,14 +21,14 @@ static gonio_status begin_with(gonio_i_search *s, const char *name, int restart)
         status = gonio_i_find_start(name)->choose(p, restart, chosen);
     }
     if (status == GONIO_OK) {
-        status = gonio_i_search_begin(s, chosen);
+        status = gonio_i_swap_search_begin(s, chosen);
     }
     free(chosen);
     return status;
 }
 
 /* The start asked for, or where its rows do not span K dimensions one whose rows do. */
-static gonio_status start(gonio_i_search *s, int restart)
+static gonio_status start(gonio_i_swap_search *s, int restart)
 {
     gonio_i_random_seed(&s->random, s->problem->seed, 2 * (uint64_t)restart + 1);
     s->from = (size_t)gonio_i_random_below(&s->random, s->problem->rows);
@@ -54,7 +55,7 @@ static int compare_rows(const void *a, const void *b)
 /* All starts, with what they share. */
 typedef struct starts {
     const gonio_i_selection_problem *problem;
-    const gonio_i_panels *panels;
+    const gonio_i_packed_rows *panels;
     double progress;              /* the sum of the starts' shares */
     gonio_i_selection *histories; /* [restarts]: only the history of each */
     int threads;                  /* within a start */
@@ -64,7 +65,7 @@ typedef struct starts {
 } starts;
 
 /* Keeps the result of a start if it is the best so far. */
-static void keep_best(starts *all, const gonio_i_search *s, int restart)
+static void keep_best(starts *all, const gonio_i_swap_search *s, int restart)
 {
 #pragma omp critical(gonio_condition_best)
     {
@@ -83,23 +84,23 @@ static void keep_best(starts *all, const gonio_i_search *s, int restart)
 /* One start and its descent. */
 static void run(starts *all, int restart)
 {
-    gonio_i_search s;
+    gonio_i_swap_search s;
     gonio_status status =
-        gonio_i_search_allocate(all->problem, all->panels, &all->progress, all->threads, &s)
+        gonio_i_swap_search_allocate(all->problem, all->panels, &all->progress, all->threads, &s)
             ? GONIO_OK
             : GONIO_ERROR_MEMORY;
     if (status == GONIO_OK) {
         status = start(&s, restart);
     }
     if (status == GONIO_OK) {
-        status = gonio_i_search_descend(&s, restart, &all->histories[restart]);
+        status = gonio_i_swap_search_descend(&s, restart, &all->histories[restart]);
     }
     if (status == GONIO_OK) {
         keep_best(all, &s, restart);
     } else {
         all->status = status;
     }
-    gonio_i_search_free(&s);
+    gonio_i_swap_search_free(&s);
 }
 
 static void run_unless_failed(starts *all, int restart)
@@ -150,14 +151,14 @@ static gonio_status select_by_condition(const gonio_i_selection_problem *problem
 {
     gonio_context *context = problem->context;
     const size_t restarts = (size_t)problem->restarts;
-    gonio_i_panels panels = {0};
+    gonio_i_packed_rows panels = {0};
     starts all = {.problem = problem,
                   .panels = &panels,
                   .histories = gonio_i_allocate(context, restarts, sizeof *all.histories),
                   .best = -1,
                   .selection = selection};
     gonio_status status = GONIO_ERROR_MEMORY;
-    if (all.histories != NULL && gonio_i_panels_make(problem, &panels)) {
+    if (all.histories != NULL && gonio_i_packed_rows_make(problem, &panels)) {
         run_all(&all);
         status = all.status;
     }
@@ -172,7 +173,7 @@ static gonio_status select_by_condition(const gonio_i_selection_problem *problem
         free(all.histories[k].history);
     }
     free(all.histories);
-    gonio_i_panels_free(&panels);
+    gonio_i_packed_rows_free(&panels);
     return status;
 }
 

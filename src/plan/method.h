@@ -18,7 +18,7 @@ typedef struct gonio_i_selection_problem {
     int restarts;
     uint64_t seed;
     bool keep_history;
-    const char *start;   /* a name that start.h knows */
+    const char *start;   /* a name that starting_rows.h knows */
     const size_t *given; /* [count] or NULL: rows to start from instead; may be the result's */
     bool part;           /* of the work on another problem, which reports the progress */
     const gonio_basis_view *basis; /* whose rows V has; NULL for rows that come from elsewhere */

@@ -9,9 +9,9 @@
 
 #include "../direction/grid.h"
 #include "../linalg/linalg.h"
-#include "design.h"
+#include "expected_error_plan.h"
 #include "method.h"
-#include "start.h"
+#include "starting_rows.h"
 
 /* The methods, and what their plans are made for. */
 static const struct {
@@ -382,7 +382,7 @@ gonio_status gonio_plan_create(gonio_context *context, const gonio_basis *basis,
     named.method = method_of(&view, asked);
     const gonio_plan_options *options = &named;
     if (strcmp(options->method, gonio_i_expected_error_method.name) == 0) {
-        return gonio_i_design_plan(context, basis, options, plan);
+        return gonio_i_expected_error_plan(context, basis, options, plan);
     }
     if (options->candidates != NULL || options->target > 0.0) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 #include "../measurement/readings.h"
-#include "../plan/design.h"
+#include "../plan/expected_error_plan.h"
 #include "../posterior/interpret.h"
 #include "estimate.h"
 
@@ -107,7 +107,7 @@ gonio_status gonio_plan_next(gonio_context *context, const gonio_basis *basis,
                                      n.posterior.norm};
         gonio_plan_options all = *plan_options;
         all.target = 0.0; /* what was read counts; the plan is as long as asked for */
-        status = gonio_i_design_next(context, basis, &all, &known, plan);
+        status = gonio_i_expected_error_next(context, basis, &all, &known, plan);
     }
     release(&n);
     return status;

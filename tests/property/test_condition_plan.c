@@ -10,7 +10,7 @@
 #include <lapacke.h>
 
 #include "core/random.h"
-#include "plan/inertia.h"
+#include "plan/exchange_eigenvalues.h"
 
 /* kappa of X'X by LAPACK alone. */
 static double plain_condition(const double *v, size_t k, const size_t *chosen, size_t n)

@@ -8,7 +8,7 @@
 
 #include "../unit/made_basis.h"
 #include "core/random.h"
-#include "plan/expected_error.h"
+#include "plan/expected_error_search.h"
 
 /* Where threads are not the question: on so small problems they would only wait for each other. */
 static gonio_context *one_thread;
@@ -106,16 +106,16 @@ static double left_by(const problem *p, const size_t *chosen, size_t n)
 static void find(gonio_context *context, const problem *p, size_t count, size_t *chosen,
                  double *remaining)
 {
-    const gonio_i_design_problem given = {.context = context,
-                                          .f = p->f,
-                                          .rows = p->rows,
-                                          .components = p->k,
-                                          .covariance = p->plain ? NULL : p->covariance,
-                                          .loss = p->loss,
-                                          .allowed = p->allowed,
-                                          .variance = p->variance,
-                                          .count = count};
-    assert_int_equal(gonio_i_design_find(&given, chosen, remaining), GONIO_OK);
+    const gonio_i_expected_error_problem given = {.context = context,
+                                                  .f = p->f,
+                                                  .rows = p->rows,
+                                                  .components = p->k,
+                                                  .covariance = p->plain ? NULL : p->covariance,
+                                                  .loss = p->loss,
+                                                  .allowed = p->allowed,
+                                                  .variance = p->variance,
+                                                  .count = count};
+    assert_int_equal(gonio_i_expected_error_search(&given, chosen, remaining), GONIO_OK);
 }
 
 static bool holds(const size_t *chosen, size_t n, size_t row)

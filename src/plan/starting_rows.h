@@ -1,7 +1,7 @@
 /* Starts of the condition-number search: the choice that the swaps begin with. To add one, write a
- * function and add a line to the table in start.c. */
-#ifndef GONIO_START_H
-#define GONIO_START_H
+ * function and add a line to the table in starting_rows.c. */
+#ifndef GONIO_STARTING_ROWS_H
+#define GONIO_STARTING_ROWS_H
 
 #include "method.h"
 

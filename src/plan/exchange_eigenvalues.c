@@ -1,5 +1,5 @@
-/* Eigenvalues after an exchange of rows: see inertia.h. */
-#include "inertia.h"
+/* Eigenvalues after an exchange of rows: see exchange_eigenvalues.h. */
+#include "exchange_eigenvalues.h"
 
 #include <float.h>
 #include <math.h>

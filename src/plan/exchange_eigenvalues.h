@@ -4,8 +4,8 @@
  *   #(d_k > x) + n_plus(T) - 1,   T = [ 1 - sum y^2/(d - x)    - sum y z/(d - x)  ]
  *                                     [  - sum y z/(d - x)   -1 - sum z^2/(d - x) ]
  * with n_plus the number of positive eigenvalues of T. */
-#ifndef GONIO_INERTIA_H
-#define GONIO_INERTIA_H
+#ifndef GONIO_EXCHANGE_EIGENVALUES_H
+#define GONIO_EXCHANGE_EIGENVALUES_H
 
 #include <stdbool.h>
 #include <stddef.h>

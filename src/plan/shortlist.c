@@ -1,5 +1,5 @@
-/* A search of very many rows in rounds: see narrow.h. */
-#include "narrow.h"
+/* A search of very many rows in rounds: see shortlist.h. */
+#include "shortlist.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +10,7 @@ enum { MOST_WINNERS = 200, MOST_ROUNDS = 50 }; /* winners at each position */
 static const double least_gain = 1e-4;
 
 /* The chosen rows, and up to MOST_WINNERS winners for each position, each once, into rows[]. */
-static size_t gather_rows(gonio_i_search *s, unsigned char *used, size_t *rows)
+static size_t gather_rows(gonio_i_swap_search *s, unsigned char *used, size_t *rows)
 {
     const gonio_i_selection_problem *p = s->problem;
     size_t count = p->count;
@@ -18,7 +18,8 @@ static size_t gather_rows(gonio_i_search *s, unsigned char *used, size_t *rows)
     memcpy(used, s->taken, p->rows);
     for (size_t position = 0; position < p->count; position++) {
         const size_t from = (size_t)gonio_i_random_below(&s->random, p->rows);
-        const size_t found = gonio_i_search_winners(s, position, from, MOST_WINNERS, rows + count);
+        const size_t found =
+            gonio_i_swap_search_winners(s, position, from, MOST_WINNERS, rows + count);
         const size_t end = count + found;
         for (size_t k = count; k < end; k++) {
             const size_t row = rows[k];
@@ -32,7 +33,7 @@ static size_t gather_rows(gonio_i_search *s, unsigned char *used, size_t *rows)
 
 /* Swaps within the problem `part`, added to the history of the whole; but for the last, whose kappa
  * is computed anew from the rows of the whole. */
-static gonio_status search_part(gonio_i_search *s, const gonio_i_selection_problem *part,
+static gonio_status search_part(gonio_i_swap_search *s, const gonio_i_selection_problem *part,
                                 size_t *chosen, int restart, int *swaps,
                                 gonio_i_selection *selection)
 {
@@ -48,8 +49,8 @@ static gonio_status search_part(gonio_i_search *s, const gonio_i_selection_probl
 }
 
 /* Searches rows[count] alone, from the chosen ones, which are its first; turns to the result. */
-static gonio_status search_among(gonio_i_search *s, const size_t *rows, size_t count, int restart,
-                                 int *swaps, gonio_i_selection *selection)
+static gonio_status search_among(gonio_i_swap_search *s, const size_t *rows, size_t count,
+                                 int restart, int *swaps, gonio_i_selection *selection)
 {
     const gonio_i_selection_problem *p = s->problem;
     const size_t k = p->components;
@@ -76,7 +77,7 @@ static gonio_status search_among(gonio_i_search *s, const size_t *rows, size_t c
         for (size_t j = 0; j < p->count; j++) {
             chosen[j] = rows[chosen[j]];
         }
-        status = gonio_i_search_begin(s, chosen);
+        status = gonio_i_swap_search_begin(s, chosen);
     }
     if (status == GONIO_OK) {
         status = gonio_i_selection_record(p, selection, restart, ++*swaps, s->condition_number);
@@ -86,8 +87,8 @@ static gonio_status search_among(gonio_i_search *s, const size_t *rows, size_t c
     return status;
 }
 
-gonio_status gonio_i_narrow(gonio_i_search *s, int restart, int *swaps,
-                            gonio_i_selection *selection)
+gonio_status gonio_i_search_shortlists(gonio_i_swap_search *s, int restart, int *swaps,
+                                       gonio_i_selection *selection)
 {
     const gonio_i_selection_problem *p = s->problem;
     unsigned char *used = gonio_i_allocate(p->context, p->rows, 1);
@@ -103,7 +104,7 @@ gonio_status gonio_i_narrow(gonio_i_search *s, int restart, int *swaps,
         }
         worth = s->condition_number < before * (1.0 - least_gain);
         if (status == GONIO_OK) {
-            status = gonio_i_search_report(s, round / (round + 10.0));
+            status = gonio_i_swap_search_report(s, round / (round + 10.0));
         }
     }
     free(used);

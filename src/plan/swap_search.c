@@ -1,5 +1,5 @@
-/* The swaps of the condition-number search: see search.h. */
-#include "search.h"
+/* The swaps of the condition-number search: see swap_search.h. */
+#include "swap_search.h"
 
 #include <float.h>
 #include <math.h>
@@ -11,8 +11,8 @@
 #include <omp.h>
 
 #include "../linalg/linalg.h"
-#include "inertia.h"
-#include "narrow.h"
+#include "exchange_eigenvalues.h"
+#include "shortlist.h"
 
 /* A swap has to lower kappa by more than this share: less is rounding. */
 static const double least_gain = 1e-10;
@@ -24,7 +24,7 @@ static double seconds(clockid_t clock)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-static void begin_watch(gonio_i_search *s)
+static void begin_watch(gonio_i_swap_search *s)
 {
     s->began = seconds(CLOCK_MONOTONIC);
     s->worked = -seconds(CLOCK_THREAD_CPUTIME_ID);
@@ -33,7 +33,7 @@ static void begin_watch(gonio_i_search *s)
 /* Ends a time of waiting for the other threads. Steps may be so short that on a busy machine, where
  * a thread may be without a processor just when it is waited for, threads only cost time: where a
  * quarter of it was lost, the search goes on with one. (The plan is the same on any number.) */
-static void stop_waiting(gonio_i_search *s, double since)
+static void stop_waiting(gonio_i_swap_search *s, double since)
 {
     static const double patience = 0.02;
     static const double short_step = 0.002;
@@ -51,13 +51,13 @@ static void stop_waiting(gonio_i_search *s, double since)
 }
 
 /* The chosen rows and G = X'X. */
-static gonio_status gather(gonio_i_search *s)
+static gonio_status gather(gonio_i_swap_search *s)
 {
     return gonio_i_chosen_gram(s->problem, s->chosen, s->x, s->gram);
 }
 
 /* The eigenvectors and eigenvalues of G, and the chosen rows in that basis. */
-static gonio_status decompose(gonio_i_search *s)
+static gonio_status decompose(gonio_i_swap_search *s)
 {
     const gonio_i_selection_problem *p = s->problem;
     const size_t k = p->components;
@@ -68,12 +68,12 @@ static gonio_status decompose(gonio_i_search *s)
         status = gonio_i_product_transposed(p->context, s->x, p->count, k, s->q, k, s->y, k);
     }
     s->condition_number = status == GONIO_OK ? gonio_i_condition(s->d, k) : INFINITY;
-    gonio_i_turned_set(&s->turned, s->q);
+    gonio_i_rotated_rows_set(&s->rotated, s->q);
     return status;
 }
 
 /* The square of the longest chosen row's length. */
-static double longest_square(const gonio_i_search *s)
+static double longest_square(const gonio_i_swap_search *s)
 {
     double longest = 0.0;
     for (size_t j = 0; j < s->problem->count; j++) {
@@ -85,17 +85,18 @@ static double longest_square(const gonio_i_search *s)
 /* Sets the filter for G, from its smallest and its two largest eigenvalues, which rounding moves by
  * some kappa eps of the smallest. mu is kept off the pole there, where single precision would
  * decide little. */
-static void set_filter(gonio_i_search *s, double smallest, double second_largest, double largest)
+static void set_filter(gonio_i_swap_search *s, double smallest, double second_largest,
+                       double largest)
 {
     const double error = 1e-9 + 100.0 * DBL_EPSILON * largest / smallest;
     const double left = fmax(second_largest, largest - longest_square(s));
     const double bound = left * smallest / largest * (1.0 - error);
     const double mu = fmin(bound, smallest * (1.0 - 1e-3));
-    gonio_i_filter_set(&s->filter, s->gram, mu, largest / (smallest - mu));
+    gonio_i_swap_filter_set(&s->filter, s->gram, mu, largest / (smallest - mu));
 }
 
 /* All that the search needs to know of the choice. */
-static gonio_status consider(gonio_i_search *s)
+static gonio_status consider(gonio_i_swap_search *s)
 {
     const size_t k = s->problem->components;
     gonio_status status = gather(s);
@@ -109,14 +110,17 @@ static gonio_status consider(gonio_i_search *s)
 }
 
 /* G after a swap, in the eigenbasis of G. */
-static gonio_i_exchange exchange_of(const gonio_i_search *s, size_t position, size_t row, double *z)
+static gonio_i_exchange exchange_of(const gonio_i_swap_search *s, size_t position, size_t row,
+                                    double *z)
 {
     const size_t k = s->problem->components;
-    return (gonio_i_exchange){s->d, s->y + position * k, gonio_i_turned_row(&s->turned, row, z), k};
+    return (gonio_i_exchange){s->d, s->y + position * k, gonio_i_rotated_row(&s->rotated, row, z),
+                              k};
 }
 
 /* Whether a swap lowers kappa, exactly. Most rows are refused by a part of them. */
-static bool wins(const gonio_i_search *s, size_t position, const gonio_i_turned_candidate *c)
+static bool wins(const gonio_i_swap_search *s, size_t position,
+                 const gonio_i_rotated_rows_candidate *c)
 {
     const size_t k = s->problem->components;
     const double limit = s->condition_number * (1.0 - least_gain);
@@ -129,7 +133,7 @@ static bool wins(const gonio_i_search *s, size_t position, const gonio_i_turned_
 }
 
 /* Rows less those that are chosen, in place. */
-static size_t leave_out_taken(const gonio_i_search *s, size_t *rows, size_t count)
+static size_t leave_out_taken(const gonio_i_swap_search *s, size_t *rows, size_t count)
 {
     size_t left = 0;
     for (size_t i = 0; i < count; i++) {
@@ -140,18 +144,18 @@ static size_t leave_out_taken(const gonio_i_search *s, size_t *rows, size_t coun
 }
 
 /* The first of a chunk's rows first .. last - 1 that lowers kappa at a position; `rows` if none. */
-static size_t first_winner_among(gonio_i_search *s, size_t position, size_t first, size_t last,
+static size_t first_winner_among(gonio_i_swap_search *s, size_t position, size_t first, size_t last,
                                  int thread)
 {
-    const gonio_i_search_worker *w = &s->workers[thread];
+    const gonio_i_swap_search_worker *w = &s->workers[thread];
     const size_t passed =
-        gonio_i_filter_survivors(&s->filter, position, first, last, thread, w->survivors);
+        gonio_i_swap_filter_survivors(&s->filter, position, first, last, thread, w->survivors);
     const size_t count = leave_out_taken(s, w->survivors, passed);
-    for (size_t i = 0; i < count; i += GONIO_I_TURNED_TOGETHER) {
-        gonio_i_turned_candidate candidate[GONIO_I_TURNED_TOGETHER];
+    for (size_t i = 0; i < count; i += GONIO_I_ROTATED_TOGETHER) {
+        gonio_i_rotated_rows_candidate candidate[GONIO_I_ROTATED_TOGETHER];
         const size_t rest = count - i;
-        const size_t together = rest < GONIO_I_TURNED_TOGETHER ? rest : GONIO_I_TURNED_TOGETHER;
-        gonio_i_turned_begin(&s->turned, w->survivors + i, together, w->z, candidate);
+        const size_t together = rest < GONIO_I_ROTATED_TOGETHER ? rest : GONIO_I_ROTATED_TOGETHER;
+        gonio_i_rotated_rows_begin(&s->rotated, w->survivors + i, together, w->z, candidate);
         for (size_t j = 0; j < together; j++) {
             if (wins(s, position, &candidate[j])) {
                 return candidate[j].row;
@@ -163,10 +167,10 @@ static size_t first_winner_among(gonio_i_search *s, size_t position, size_t firs
 
 /* The same for one step of the way around: chunks in cyclic order, the one with `from` in two
  * parts. */
-static size_t first_winner_at(gonio_i_search *s, size_t position, size_t from, size_t step,
+static size_t first_winner_at(gonio_i_swap_search *s, size_t position, size_t from, size_t step,
                               int thread)
 {
-    const size_t chunks = gonio_i_panels_chunks(s->filter.panels);
+    const size_t chunks = gonio_i_packed_rows_chunks(s->filter.panels);
     const size_t begin = (from / GONIO_I_CHUNK + step) % chunks * GONIO_I_CHUNK;
     const size_t full = begin + GONIO_I_CHUNK;
     const size_t end = full < s->problem->rows ? full : s->problem->rows;
@@ -176,7 +180,8 @@ static size_t first_winner_at(gonio_i_search *s, size_t position, size_t from, s
 
 /* Some steps of the way around, by all threads. (One thread is no parallel region of one, which
  * inside another region costs more than the step.) */
-static void take_steps(gonio_i_search *s, size_t position, size_t from, size_t first, size_t count)
+static void take_steps(gonio_i_swap_search *s, size_t position, size_t from, size_t first,
+                       size_t count)
 {
     if (s->threads == 1) {
         for (size_t step = first; step < first + count; step++) {
@@ -199,12 +204,12 @@ static void take_steps(gonio_i_search *s, size_t position, size_t from, size_t f
     stop_waiting(s, since);
 }
 
-size_t gonio_i_search_winners(gonio_i_search *s, size_t position, size_t from, size_t most,
-                              size_t *found)
+size_t gonio_i_swap_search_winners(gonio_i_swap_search *s, size_t position, size_t from,
+                                   size_t most, size_t *found)
 {
     const size_t rows = s->problem->rows;
-    const size_t chunks = gonio_i_panels_chunks(s->filter.panels);
-    gonio_i_filter_turn_to(&s->filter, s->x, position);
+    const size_t chunks = gonio_i_packed_rows_chunks(s->filter.panels);
+    gonio_i_swap_filter_turn_to(&s->filter, s->x, position);
     size_t count = 0;
     size_t ahead = 1;
     for (size_t done = 0; done <= chunks && count < most; done += ahead) {
@@ -223,11 +228,11 @@ size_t gonio_i_search_winners(gonio_i_search *s, size_t position, size_t from, s
 
 /* The first row in the cyclic order from `from` on that lowers kappa at a position; `rows` if none.
  */
-static size_t first_winner(gonio_i_search *s, size_t position, size_t from)
+static size_t first_winner(gonio_i_swap_search *s, size_t position, size_t from)
 {
     const size_t rows = s->problem->rows;
     size_t row = rows;
-    if (gonio_i_search_winners(s, position, from, 1, &row) == 0) {
+    if (gonio_i_swap_search_winners(s, position, from, 1, &row) == 0) {
         s->tests += rows;
         return rows;
     }
@@ -235,7 +240,7 @@ static size_t first_winner(gonio_i_search *s, size_t position, size_t from)
     return row;
 }
 
-static void put(gonio_i_search *s, size_t position, size_t row)
+static void put(gonio_i_swap_search *s, size_t position, size_t row)
 {
     s->taken[s->chosen[position]] = 0;
     s->taken[row] = 1;
@@ -243,17 +248,17 @@ static void put(gonio_i_search *s, size_t position, size_t row)
 }
 
 /* Computes the gains that will be needed first, as long as G is being decomposed. */
-static void prepare_ahead(gonio_i_search *s, size_t first, size_t apart,
+static void prepare_ahead(gonio_i_swap_search *s, size_t first, size_t apart,
                           const _Atomic bool *decomposed)
 {
-    const size_t chunks = gonio_i_panels_chunks(s->filter.panels);
+    const size_t chunks = gonio_i_packed_rows_chunks(s->filter.panels);
     for (size_t step = first; step < chunks && !*decomposed; step += apart) {
-        gonio_i_filter_prepare(&s->filter, (s->from / GONIO_I_CHUNK + step) % chunks,
-                               omp_get_thread_num());
+        gonio_i_swap_filter_prepare(&s->filter, (s->from / GONIO_I_CHUNK + step) % chunks,
+                                    omp_get_thread_num());
     }
 }
 
-static void set_filter_after(gonio_i_search *s, const gonio_i_exchange *swap)
+static void set_filter_after(gonio_i_swap_search *s, const gonio_i_exchange *swap)
 {
     set_filter(s, gonio_i_exchange_eigenvalue(swap, 0),
                gonio_i_exchange_eigenvalue(swap, swap->n - 2),
@@ -262,7 +267,7 @@ static void set_filter_after(gonio_i_search *s, const gonio_i_exchange *swap)
 
 /* Sets the filter and decomposes G after a swap. Where there are several threads, one decomposes;
  * the eigenvalues that the filter needs are found without. */
-static gonio_status decompose_and_prepare(gonio_i_search *s, const gonio_i_exchange *swap)
+static gonio_status decompose_and_prepare(gonio_i_swap_search *s, const gonio_i_exchange *swap)
 {
     if (s->threads == 1) {
         set_filter_after(s, swap);
@@ -296,7 +301,7 @@ static gonio_status decompose_and_prepare(gonio_i_search *s, const gonio_i_excha
 }
 
 /* Makes a swap. Next to singular, rounding may promise a gain that is none: that one is undone. */
-static gonio_status make_swap(gonio_i_search *s, size_t position, size_t row, bool *gained)
+static gonio_status make_swap(gonio_i_swap_search *s, size_t position, size_t row, bool *gained)
 {
     const size_t k = s->problem->components;
     const double before = s->condition_number;
@@ -319,7 +324,7 @@ static gonio_status make_swap(gonio_i_search *s, size_t position, size_t row, bo
     return status;
 }
 
-gonio_status gonio_i_search_begin(gonio_i_search *s, const size_t *chosen)
+gonio_status gonio_i_swap_search_begin(gonio_i_swap_search *s, const size_t *chosen)
 {
     memmove(s->chosen, chosen, s->problem->count * sizeof *s->chosen);
     memset(s->taken, 0, s->problem->rows);
@@ -330,7 +335,8 @@ gonio_status gonio_i_search_begin(gonio_i_search *s, const size_t *chosen)
 }
 
 /* One turn through the positions. */
-static gonio_status sweep(gonio_i_search *s, int restart, int *swaps, gonio_i_selection *selection)
+static gonio_status sweep(gonio_i_swap_search *s, int restart, int *swaps,
+                          gonio_i_selection *selection)
 {
     gonio_status status = GONIO_OK;
     for (size_t position = 0; position < s->problem->count && status == GONIO_OK; position++) {
@@ -348,7 +354,7 @@ static gonio_status sweep(gonio_i_search *s, int restart, int *swaps, gonio_i_se
     return status;
 }
 
-gonio_status gonio_i_search_report(gonio_i_search *s, double share)
+gonio_status gonio_i_swap_search_report(gonio_i_swap_search *s, double share)
 {
     const double gained = share - s->share;
     s->share = share;
@@ -363,7 +369,8 @@ gonio_status gonio_i_search_report(gonio_i_search *s, double share)
                                                0.999 * sum / s->problem->restarts);
 }
 
-gonio_status gonio_i_search_descend(gonio_i_search *s, int restart, gonio_i_selection *selection)
+gonio_status gonio_i_swap_search_descend(gonio_i_swap_search *s, int restart,
+                                         gonio_i_selection *selection)
 {
     int swaps = 0;
     begin_watch(s);
@@ -371,41 +378,42 @@ gonio_status gonio_i_search_descend(gonio_i_search *s, int restart, gonio_i_sele
         gonio_i_selection_record(s->problem, selection, restart, swaps, s->condition_number);
     bool proved = s->problem->components < 2; /* kappa of one component is 1 */
     if (status == GONIO_OK && !proved && s->problem->rows >= GONIO_I_MANY_ROWS) {
-        status = gonio_i_narrow(s, restart, &swaps, selection);
+        status = gonio_i_search_shortlists(s, restart, &swaps, selection);
     }
     for (int turn = 0; status == GONIO_OK && !proved; turn++) {
         const int before = swaps;
         status = sweep(s, restart, &swaps, selection);
         proved = swaps == before;
         if (status == GONIO_OK) {
-            status = gonio_i_search_report(
+            status = gonio_i_swap_search_report(
                 s, proved ? 1.0 : turn / (turn + 20.0)); /* typically 20 to 40 */
         }
     }
     return status;
 }
 
-static bool allocate_workers(gonio_i_search *s)
+static bool allocate_workers(gonio_i_swap_search *s)
 {
     gonio_context *context = s->problem->context;
     bool ready = true;
     s->workers = gonio_i_allocate(context, (size_t)s->threads, sizeof *s->workers);
     for (int t = 0; t < s->threads && s->workers != NULL && ready; t++) {
-        gonio_i_search_worker *w = &s->workers[t];
-        w->z = gonio_i_turned_scratch(s->problem);
+        gonio_i_swap_search_worker *w = &s->workers[t];
+        w->z = gonio_i_rotated_rows_scratch(s->problem);
         w->survivors = gonio_i_allocate(context, GONIO_I_CHUNK + 1, sizeof *w->survivors);
         ready = w->z != NULL && w->survivors != NULL;
     }
     return ready && s->workers != NULL;
 }
 
-bool gonio_i_search_allocate(const gonio_i_selection_problem *problem, const gonio_i_panels *panels,
-                             double *progress, int threads, gonio_i_search *s)
+bool gonio_i_swap_search_allocate(const gonio_i_selection_problem *problem,
+                                  const gonio_i_packed_rows *panels, double *progress, int threads,
+                                  gonio_i_swap_search *s)
 {
     gonio_context *context = problem->context;
     const size_t k = problem->components;
     const size_t n = problem->count;
-    *s = (gonio_i_search){
+    *s = (gonio_i_swap_search){
         .problem = problem,
         .progress = progress,
         .threads = threads,
@@ -418,15 +426,17 @@ bool gonio_i_search_allocate(const gonio_i_selection_problem *problem, const gon
         .d = gonio_i_allocate(context, k, sizeof *s->d),
         .old_d = gonio_i_allocate(context, k, sizeof *s->old_d),
         .old_y = gonio_i_allocate(context, k, sizeof *s->old_y),
-        .winners = gonio_i_allocate(context, gonio_i_panels_chunks(panels) + 1, sizeof *s->winners),
+        .winners =
+            gonio_i_allocate(context, gonio_i_packed_rows_chunks(panels) + 1, sizeof *s->winners),
     };
-    return gonio_i_filter_allocate(problem, panels, threads, &s->filter) && allocate_workers(s) &&
-           gonio_i_turned_allocate(problem, &s->turned) && s->chosen != NULL && s->taken != NULL &&
-           s->x != NULL && s->y != NULL && s->gram != NULL && s->q != NULL && s->d != NULL &&
-           s->old_d != NULL && s->old_y != NULL && s->winners != NULL;
+    return gonio_i_swap_filter_allocate(problem, panels, threads, &s->filter) &&
+           allocate_workers(s) && gonio_i_rotated_rows_allocate(problem, &s->rotated) &&
+           s->chosen != NULL && s->taken != NULL && s->x != NULL && s->y != NULL &&
+           s->gram != NULL && s->q != NULL && s->d != NULL && s->old_d != NULL &&
+           s->old_y != NULL && s->winners != NULL;
 }
 
-void gonio_i_search_free(gonio_i_search *s)
+void gonio_i_swap_search_free(gonio_i_swap_search *s)
 {
     for (int t = 0; s->workers != NULL && t < s->filter.threads; t++) {
         free(s->workers[t].z);
@@ -443,6 +453,6 @@ void gonio_i_search_free(gonio_i_search *s)
     free(s->old_d);
     free(s->old_y);
     free(s->winners);
-    gonio_i_turned_free(&s->turned);
-    gonio_i_filter_free(&s->filter);
+    gonio_i_rotated_rows_free(&s->rotated);
+    gonio_i_swap_filter_free(&s->filter);
 }

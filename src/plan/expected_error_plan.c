@@ -1,5 +1,5 @@
-/* Plans of least expected error: see design.h. */
-#include "design.h"
+/* Plans of least expected error: see expected_error_plan.h. */
+#include "expected_error_plan.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "../linalg/linalg.h"
-#include "expected_error.h"
+#include "expected_error_search.h"
 
 /* Deviation of a reading, log units: noise, and what the model leaves open around it; by errors of
  * left-out materials: with 0.03 or 0.05 plans trust single readings too much. Less where a
@@ -351,20 +351,20 @@ static gonio_status fill_plan(const place_list *p, const gonio_plan_options *opt
     size_t *chosen = gonio_i_allocate(p->context, plan->count, sizeof *chosen);
     double *remaining = gonio_i_allocate(p->context, plan->count + 1, sizeof *remaining);
     plan->expected = gonio_i_allocate(p->context, plan->count, sizeof *plan->expected);
-    const gonio_i_design_problem problem = {.context = p->context,
-                                            .f = p->f,
-                                            .rows = p->rows,
-                                            .components = p->components,
-                                            .covariance =
-                                                p->known != NULL ? p->known->covariance : NULL,
-                                            .loss = p->loss,
-                                            .allowed = p->allowed,
-                                            .variance = p->noise * p->noise,
-                                            .count = plan->count};
+    const gonio_i_expected_error_problem problem = {
+        .context = p->context,
+        .f = p->f,
+        .rows = p->rows,
+        .components = p->components,
+        .covariance = p->known != NULL ? p->known->covariance : NULL,
+        .loss = p->loss,
+        .allowed = p->allowed,
+        .variance = p->noise * p->noise,
+        .count = plan->count};
     const bool done = chosen != NULL && remaining != NULL && plan->expected != NULL;
     gonio_status status = done ? GONIO_OK : GONIO_ERROR_MEMORY;
     if (status == GONIO_OK) {
-        status = gonio_i_design_find(&problem, chosen, remaining);
+        status = gonio_i_expected_error_search(&problem, chosen, remaining);
     }
     if (status == GONIO_OK) {
         status = fill_expected(p, remaining, plan);
@@ -456,15 +456,15 @@ static gonio_status make_plan(gonio_context *context, const gonio_basis *basis,
     return status;
 }
 
-gonio_status gonio_i_design_plan(gonio_context *context, const gonio_basis *basis,
-                                 const gonio_plan_options *options, gonio_plan **plan)
+gonio_status gonio_i_expected_error_plan(gonio_context *context, const gonio_basis *basis,
+                                         const gonio_plan_options *options, gonio_plan **plan)
 {
     return make_plan(context, basis, options, NULL, plan);
 }
 
-gonio_status gonio_i_design_next(gonio_context *context, const gonio_basis *basis,
-                                 const gonio_plan_options *options, const gonio_i_known *known,
-                                 gonio_plan **plan)
+gonio_status gonio_i_expected_error_next(gonio_context *context, const gonio_basis *basis,
+                                         const gonio_plan_options *options,
+                                         const gonio_i_known *known, gonio_plan **plan)
 {
     return make_plan(context, basis, options, known, plan);
 }

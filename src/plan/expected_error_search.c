@@ -13,7 +13,7 @@
  *           of 20 or more.
  * Speed     Rows are single precision and updates of q and t wait until gains are asked for: an
  *           exchange, one reading taken back and one made, reads the rows once. */
-#include "expected_error.h"
+#include "expected_error_search.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -39,7 +39,7 @@ typedef struct change {
 } change;
 
 typedef struct design {
-    const gonio_i_design_problem *problem;
+    const gonio_i_expected_error_problem *problem;
     size_t rows;
     size_t k;
     double *p;      /* [k][k]: P */
@@ -332,7 +332,7 @@ static gonio_status exchange(design *d, size_t *chosen, size_t first, size_t end
 
 static gonio_status choose_blocks(design *d, size_t *chosen)
 {
-    const gonio_i_design_problem *problem = d->problem;
+    const gonio_i_expected_error_problem *problem = d->problem;
     gonio_status status = find_gains(d);
     size_t done = 0;
     for (size_t end = FIRST_BLOCK; done < problem->count && status == GONIO_OK; end *= 2) {
@@ -371,8 +371,8 @@ static void find_remaining(design *d, const size_t *chosen, double *remaining)
     }
 }
 
-gonio_status gonio_i_design_find(const gonio_i_design_problem *problem, size_t *chosen,
-                                 double *remaining)
+gonio_status gonio_i_expected_error_search(const gonio_i_expected_error_problem *problem,
+                                           size_t *chosen, double *remaining)
 {
     gonio_context *context = problem->context;
     const size_t k = problem->components;

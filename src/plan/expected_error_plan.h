@@ -1,14 +1,15 @@
-/* Plans of least expected error for a basis: expected_error.h over its rows or over candidates. */
-#ifndef GONIO_DESIGN_H
-#define GONIO_DESIGN_H
+/* Plans of least expected error for a basis: expected_error_search.h over its rows or over
+ * candidates. */
+#ifndef GONIO_EXPECTED_ERROR_PLAN_H
+#define GONIO_EXPECTED_ERROR_PLAN_H
 
 #include <gonio/plan.h>
 
 #include "../prior/prior.h"
 
 /* As gonio_plan_create for the method expected-error. */
-gonio_status gonio_i_design_plan(gonio_context *context, const gonio_basis *basis,
-                                 const gonio_plan_options *options, gonio_plan **plan);
+gonio_status gonio_i_expected_error_plan(gonio_context *context, const gonio_basis *basis,
+                                         const gonio_plan_options *options, gonio_plan **plan);
 
 /* What is known of a material already, for the readings that come next. */
 typedef struct gonio_i_known {
@@ -22,12 +23,12 @@ typedef struct gonio_i_known {
 
 /* The same for a material of which something is known; options->count readings of those that were
  * not made. The plan's expected[] are per cent of the material itself. */
-gonio_status gonio_i_design_next(gonio_context *context, const gonio_basis *basis,
-                                 const gonio_plan_options *options, const gonio_i_known *known,
-                                 gonio_plan **plan);
+gonio_status gonio_i_expected_error_next(gonio_context *context, const gonio_basis *basis,
+                                         const gonio_plan_options *options,
+                                         const gonio_i_known *known, gonio_plan **plan);
 
-/* What plan.c and design.c share: a plan with room for its entries, NULL after a message; and where
- * to measure a cell. */
+/* What plan.c and expected_error_plan.c share: a plan with room for its entries, NULL after a
+ * message; and where to measure a cell. */
 gonio_plan *gonio_i_allocate_plan(gonio_context *context, size_t count);
 gonio_pair gonio_i_pair_of(const gonio_basis_view *basis, int32_t cell, double phi_d);
 

@@ -1,10 +1,10 @@
-/* Choosing the readings that leave the least expected error: see expected_error.c. */
-#ifndef GONIO_EXPECTED_ERROR_H
-#define GONIO_EXPECTED_ERROR_H
+/* Choosing the readings that leave the least expected error: see expected_error_search.c. */
+#ifndef GONIO_EXPECTED_ERROR_SEARCH_H
+#define GONIO_EXPECTED_ERROR_SEARCH_H
 
 #include "method.h"
 
-typedef struct gonio_i_design_problem {
+typedef struct gonio_i_expected_error_problem {
     gonio_context *context;
     const float *f; /* [rows][components] */
     size_t rows;
@@ -14,12 +14,12 @@ typedef struct gonio_i_design_problem {
     const bool *allowed;      /* [rows]: whether it can be read */
     double variance;          /* of the noise of a reading, log units */
     size_t count;
-} gonio_i_design_problem;
+} gonio_i_expected_error_problem;
 
 /* chosen[count], in the order of reading; remaining[count + 1] (or NULL): the expected loss before
  * the first and after each of them. `count` is at most the number of rows allowed. Errors: _MEMORY,
  * _CANCELLED. */
-gonio_status gonio_i_design_find(const gonio_i_design_problem *problem, size_t *chosen,
-                                 double *remaining);
+gonio_status gonio_i_expected_error_search(const gonio_i_expected_error_problem *problem,
+                                           size_t *chosen, double *remaining);
 
 #endif

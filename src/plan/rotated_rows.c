@@ -1,5 +1,5 @@
-/* Rows in the eigenbasis of G: see turned.h. */
-#include "turned.h"
+/* Rows in the eigenbasis of G: see rotated_rows.h. */
+#include "rotated_rows.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -14,7 +14,7 @@ enum { ROTATED = 32, VECTOR = 8 };
 
 typedef enum extent { IN_PART, WHOLE } extent;
 
-struct turned {
+struct rotated {
     uint64_t basis; /* counted from 1 */
     extent extent;
 };
@@ -35,10 +35,11 @@ static double *aligned_doubles(gonio_context *context, size_t count)
     return memset(made, 0, size);
 }
 
-bool gonio_i_turned_allocate(const gonio_i_selection_problem *problem, gonio_i_turned *t)
+bool gonio_i_rotated_rows_allocate(const gonio_i_selection_problem *problem,
+                                   gonio_i_rotated_rows *t)
 {
     const size_t k = problem->components;
-    *t = (gonio_i_turned){.problem = problem, .stride = stride_of(k)};
+    *t = (gonio_i_rotated_rows){.problem = problem, .stride = stride_of(k)};
     t->columns = aligned_doubles(problem->context, k * t->stride);
     t->leading = gonio_i_allocate(problem->context, k, sizeof *t->leading);
     const bool keep = problem->rows <= MOST_KEPT / k;
@@ -50,7 +51,7 @@ bool gonio_i_turned_allocate(const gonio_i_selection_problem *problem, gonio_i_t
            (!keep || (t->kept != NULL && t->state != NULL));
 }
 
-void gonio_i_turned_free(gonio_i_turned *t)
+void gonio_i_rotated_rows_free(gonio_i_rotated_rows *t)
 {
     free(t->columns);
     free(t->leading);
@@ -58,13 +59,13 @@ void gonio_i_turned_free(gonio_i_turned *t)
     free(t->state);
 }
 
-double *gonio_i_turned_scratch(const gonio_i_selection_problem *problem)
+double *gonio_i_rotated_rows_scratch(const gonio_i_selection_problem *problem)
 {
     return aligned_doubles(problem->context,
-                           GONIO_I_TURNED_TOGETHER * stride_of(problem->components));
+                           GONIO_I_ROTATED_TOGETHER * stride_of(problem->components));
 }
 
-void gonio_i_turned_set(gonio_i_turned *t, const double *q)
+void gonio_i_rotated_rows_set(gonio_i_rotated_rows *t, const double *q)
 {
     const size_t k = t->problem->components;
     for (size_t j = 0; j < k; j++) {
@@ -121,7 +122,7 @@ GONIO_I_VECTORISED static void rotate_few(size_t k, size_t stride, const double 
 
 /* The components of z from `from` on (0 or ROTATED); the last ones together with some of those
  * before them, which come out the same again. */
-static void rotate(const gonio_i_turned *t, size_t row, size_t from, double *z)
+static void rotate(const gonio_i_rotated_rows *t, size_t row, size_t from, double *z)
 {
     const size_t k = t->problem->components;
     const double *u = gonio_i_row(t->problem, row);
@@ -137,24 +138,24 @@ static void rotate(const gonio_i_turned *t, size_t row, size_t from, double *z)
 
 /* ---- rows ---- */
 
-static double *place_of(const gonio_i_turned *t, size_t row, double *z)
+static double *place_of(const gonio_i_rotated_rows *t, size_t row, double *z)
 {
     return t->kept != NULL ? t->kept + row * t->stride : z;
 }
 
-static bool is_there(const gonio_i_turned *t, size_t row, extent much)
+static bool is_there(const gonio_i_rotated_rows *t, size_t row, extent much)
 {
     return t->kept != NULL && t->state[row].basis == t->bases && t->state[row].extent >= much;
 }
 
-static void mark(const gonio_i_turned *t, size_t row, extent much)
+static void mark(const gonio_i_rotated_rows *t, size_t row, extent much)
 {
     if (t->kept != NULL) {
-        t->state[row] = (struct turned){t->bases, much};
+        t->state[row] = (struct rotated){t->bases, much};
     }
 }
 
-const double *gonio_i_turned_row(const gonio_i_turned *t, size_t row, double *z)
+const double *gonio_i_rotated_row(const gonio_i_rotated_rows *t, size_t row, double *z)
 {
     double *made = place_of(t, row, z);
     if (!is_there(t, row, WHOLE)) {
@@ -164,18 +165,18 @@ const double *gonio_i_turned_row(const gonio_i_turned *t, size_t row, double *z)
     return made;
 }
 
-void gonio_i_turned_begin(const gonio_i_turned *t, const size_t *rows, size_t count,
-                          double *scratch, gonio_i_turned_candidate *candidates)
+void gonio_i_rotated_rows_begin(const gonio_i_rotated_rows *t, const size_t *rows, size_t count,
+                                double *scratch, gonio_i_rotated_rows_candidate *candidates)
 {
     const size_t k = t->problem->components;
     const bool whole = t->stride <= ROTATED;
-    const gonio_i_turned_candidate *missing[GONIO_I_TURNED_TOGETHER];
+    const gonio_i_rotated_rows_candidate *missing[GONIO_I_ROTATED_TOGETHER];
     size_t wanted = 0;
     for (size_t i = 0; i < count; i++) {
         double *z = place_of(t, rows[i], scratch + i * t->stride);
-        candidates[i] = (gonio_i_turned_candidate){rows[i], whole ? k : ROTATED, z};
+        candidates[i] = (gonio_i_rotated_rows_candidate){rows[i], whole ? k : ROTATED, z};
         if (whole) {
-            gonio_i_turned_row(t, rows[i], z);
+            gonio_i_rotated_row(t, rows[i], z);
         } else if (!is_there(t, rows[i], IN_PART)) {
             z[k - 1] = gonio_i_dot(t->leading, gonio_i_row(t->problem, rows[i]), k);
             mark(t, rows[i], IN_PART);
@@ -183,7 +184,7 @@ void gonio_i_turned_begin(const gonio_i_turned *t, const size_t *rows, size_t co
         }
     }
     const gonio_i_selection_problem *p = t->problem;
-    if (wanted == GONIO_I_TURNED_TOGETHER) {
+    if (wanted == GONIO_I_ROTATED_TOGETHER) {
         rotate_two(k, t->stride, t->columns, gonio_i_row(p, missing[0]->row),
                    gonio_i_row(p, missing[1]->row), missing[0]->z, missing[1]->z);
     } else if (wanted == 1) {

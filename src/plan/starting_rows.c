@@ -1,5 +1,5 @@
-/* Starts of the condition-number search: see start.h. */
-#include "start.h"
+/* Starts of the condition-number search: see starting_rows.h. */
+#include "starting_rows.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-/* The inner loops of the filter: see panels.h. */
-#include "panels.h"
+/* The inner loops of the filter: see packed_rows.h. */
+#include "packed_rows.h"
 
 #include <float.h>
 #include <math.h>
@@ -24,7 +24,7 @@ static size_t round_up(size_t n, size_t multiple)
 }
 
 /* Values in the panels of `rows` rows. */
-static size_t size_of(const gonio_i_panels *panels, size_t rows)
+static size_t size_of(const gonio_i_packed_rows *panels, size_t rows)
 {
     return rows * panels->components;
 }
@@ -43,7 +43,7 @@ GONIO_I_VECTORISED static void transpose(const double *restrict rows, size_t str
 }
 
 /* A panel from row `first` on, of which there may be fewer than fill it. */
-static void lay_out(const gonio_i_panels *panels, size_t first, float *panel)
+static void lay_out(const gonio_i_packed_rows *panels, size_t first, float *panel)
 {
     const gonio_i_selection_problem *p = panels->problem;
     const size_t rows = first < p->rows ? p->rows - first : 0;
@@ -68,12 +68,12 @@ static float *aligned_floats(size_t count)
     return aligned_alloc(sizeof(lanes), count * sizeof(float));
 }
 
-bool gonio_i_panels_make(const gonio_i_selection_problem *problem, gonio_i_panels *panels)
+bool gonio_i_packed_rows_make(const gonio_i_selection_problem *problem, gonio_i_packed_rows *panels)
 {
     gonio_context *context = problem->context;
-    *panels = (gonio_i_panels){.problem = problem,
-                               .components = round_up(problem->components, BLOCK),
-                               .rows = round_up(problem->rows, WIDTH)};
+    *panels = (gonio_i_packed_rows){.problem = problem,
+                                    .components = round_up(problem->components, BLOCK),
+                                    .rows = round_up(problem->rows, WIDTH)};
     const size_t size = size_of(panels, panels->rows);
     const bool keep = size <= most_kept / sizeof(float);
     panels->values = keep ? aligned_floats(size) : NULL;
@@ -95,25 +95,26 @@ bool gonio_i_panels_make(const gonio_i_selection_problem *problem, gonio_i_panel
     return true;
 }
 
-void gonio_i_panels_free(gonio_i_panels *panels)
+void gonio_i_packed_rows_free(gonio_i_packed_rows *panels)
 {
     free(panels->values);
     free(panels->length);
 }
 
-size_t gonio_i_panels_chunks(const gonio_i_panels *panels)
+size_t gonio_i_packed_rows_chunks(const gonio_i_packed_rows *panels)
 {
     return (panels->rows + GONIO_I_CHUNK - 1) / GONIO_I_CHUNK;
 }
 
-float *gonio_i_panels_scratch(const gonio_i_panels *panels, bool *failed)
+float *gonio_i_packed_rows_scratch(const gonio_i_packed_rows *panels, bool *failed)
 {
     float *scratch = panels->values == NULL ? aligned_floats(size_of(panels, GONIO_I_CHUNK)) : NULL;
     *failed = panels->values == NULL && scratch == NULL;
     return scratch;
 }
 
-gonio_i_chunk gonio_i_panels_chunk(const gonio_i_panels *panels, size_t chunk, float *scratch)
+gonio_i_chunk gonio_i_packed_rows_chunk(const gonio_i_packed_rows *panels, size_t chunk,
+                                        float *scratch)
 {
     const size_t first = chunk * GONIO_I_CHUNK;
     const size_t rest = panels->rows - first;

@@ -8,42 +8,43 @@
  *
  * Taking a row v out leaves a largest eigenvalue of at least d_{K-1}, the second largest of G, and
  * of at least d_K - |v|^2, so a swap that lowers kappa must have lambda_min > mu, the larger of
- * these for the longest chosen row over kappa. The filter (filter.h) finds the rows that do, all at
- * once, and those are decided exactly (inertia.h). Nothing is approximated: the same swaps win as
- * if kappa were computed for every one. A full turn without a swap proves a local optimum. */
-#ifndef GONIO_SEARCH_H
-#define GONIO_SEARCH_H
+ * these for the longest chosen row over kappa. The filter (swap_filter.h) finds the rows that do,
+ * all at once, and those are decided exactly (exchange_eigenvalues.h). Nothing is approximated: the
+ * same swaps win as if kappa were computed for every one. A full turn without a swap proves a local
+ * optimum. */
+#ifndef GONIO_SWAP_SEARCH_H
+#define GONIO_SWAP_SEARCH_H
 
 #include <time.h>
 
 #include "../core/random.h"
-#include "filter.h"
+#include "swap_filter.h"
 #include "method.h"
-#include "turned.h"
+#include "rotated_rows.h"
 
 /* Scratch of one thread. */
-typedef struct gonio_i_search_worker {
-    double *z;         /* gonio_i_turned_scratch */
+typedef struct gonio_i_swap_search_worker {
+    double *z;         /* gonio_i_rotated_rows_scratch */
     size_t *survivors; /* [GONIO_I_CHUNK + 1] */
-} gonio_i_search_worker;
+} gonio_i_swap_search_worker;
 
-typedef struct gonio_i_search {
+typedef struct gonio_i_swap_search {
     const gonio_i_selection_problem *problem;
     size_t *chosen;
-    unsigned char *taken;  /* [rows] */
-    double *x;             /* [count][K]: the chosen rows */
-    double *y;             /* [count][K]: the chosen rows in the eigenbasis of G */
-    double *gram;          /* G, [K][K] */
-    double *q;             /* [K][K]: the eigenvectors of G as rows */
-    double *d;             /* [K] eigenvalues, ascending */
-    gonio_i_turned turned; /* rows in the eigenbasis of G */
+    unsigned char *taken;         /* [rows] */
+    double *x;                    /* [count][K]: the chosen rows */
+    double *y;                    /* [count][K]: the chosen rows in the eigenbasis of G */
+    double *gram;                 /* G, [K][K] */
+    double *q;                    /* [K][K]: the eigenvectors of G as rows */
+    double *d;                    /* [K] eigenvalues, ascending */
+    gonio_i_rotated_rows rotated; /* rows in the eigenbasis of G */
     uint64_t decompositions;
     double *old_d; /* [K] before a swap */
     double *old_y; /* [K] of the row that went out */
     double condition_number;
-    gonio_i_filter filter;
-    gonio_i_search_worker *workers; /* [threads] */
-    size_t *winners;                /* [chunks + 1]: scratch */
+    gonio_i_swap_filter filter;
+    gonio_i_swap_search_worker *workers; /* [threads] */
+    size_t *winners;                     /* [chunks + 1]: scratch */
     int threads;
     double began;   /* s: when the descent began */
     uint64_t waits; /* for other threads */
@@ -53,27 +54,28 @@ typedef struct gonio_i_search {
     uint64_t tests;   /* that a search without the filter would have made */
     double share;     /* how far this search is, 0 to 1 */
     double *progress; /* the sum of all searches' shares */
-} gonio_i_search;
+} gonio_i_swap_search;
 
 /* The panels hold the problem's rows and must outlive the search; *progress is the sum of the
  * shares of all searches of the problem. False when out of memory, after a message. */
-bool gonio_i_search_allocate(const gonio_i_selection_problem *problem, const gonio_i_panels *panels,
-                             double *progress, int threads, gonio_i_search *search);
-void gonio_i_search_free(gonio_i_search *search);
+bool gonio_i_swap_search_allocate(const gonio_i_selection_problem *problem,
+                                  const gonio_i_packed_rows *panels, double *progress, int threads,
+                                  gonio_i_swap_search *search);
+void gonio_i_swap_search_free(gonio_i_swap_search *search);
 
 /* Turns to a choice, chosen[count]; search->condition_number then is its kappa. */
-gonio_status gonio_i_search_begin(gonio_i_search *search, const size_t *chosen);
+gonio_status gonio_i_swap_search_begin(gonio_i_swap_search *search, const size_t *chosen);
 
 /* The rows that lower kappa at a position, each the first of its chunk, in cyclic order from `from`
  * on, into found[most]; returns how many. */
-size_t gonio_i_search_winners(gonio_i_search *search, size_t position, size_t from, size_t most,
-                              size_t *found);
+size_t gonio_i_swap_search_winners(gonio_i_swap_search *search, size_t position, size_t from,
+                                   size_t most, size_t *found);
 
 /* Swaps until no single swap lowers kappa; records them in the selection's history. */
-gonio_status gonio_i_search_descend(gonio_i_search *search, int restart,
-                                    gonio_i_selection *selection);
+gonio_status gonio_i_swap_search_descend(gonio_i_swap_search *search, int restart,
+                                         gonio_i_selection *selection);
 
 /* Reports how far this search is, 0 to 1, as its share of the progress of all. */
-gonio_status gonio_i_search_report(gonio_i_search *search, double share);
+gonio_status gonio_i_swap_search_report(gonio_i_swap_search *search, double share);
 
 #endif

@@ -1,4 +1,5 @@
-/* The candidate rows in single precision, laid out for the filter (filter.h), and its inner loops.
+/* The candidate rows in single precision, laid out for the filter (swap_filter.h), and its inner
+ * loops.
  *
  * Thirty-two rows make a panel, value[k][row]: all loops then run over rows, in vector registers,
  * with the other operand broadcast. Panels make chunks, which stay in the cache while they are
@@ -6,8 +7,8 @@
  *
  * The panels of up to a million or so rows are kept; of more, they are laid out anew each time a
  * chunk is worked on, which costs little of the work and no memory. */
-#ifndef GONIO_PANELS_H
-#define GONIO_PANELS_H
+#ifndef GONIO_PACKED_ROWS_H
+#define GONIO_PACKED_ROWS_H
 
 #include <stddef.h>
 
@@ -17,23 +18,24 @@ enum { GONIO_I_PANEL = 32, GONIO_I_CHUNK_PANELS = 32 };
 enum { GONIO_I_CHUNK = GONIO_I_PANEL * GONIO_I_CHUNK_PANELS }; /* rows */
 enum { GONIO_I_COLUMNS = 8 };                                  /* products at a time */
 
-typedef struct gonio_i_panels {
+typedef struct gonio_i_packed_rows {
     const gonio_i_selection_problem *problem;
     size_t components; /* padded */
     size_t rows;       /* padded to whole panels */
     float *values;     /* [panel][components][GONIO_I_PANEL]; NULL if not kept */
     float *length;     /* [rows]: Euclidean norms, rounded up */
-} gonio_i_panels;
+} gonio_i_packed_rows;
 
 /* Lays out the rows of a problem; false after a message when out of memory. */
-bool gonio_i_panels_make(const gonio_i_selection_problem *problem, gonio_i_panels *panels);
-void gonio_i_panels_free(gonio_i_panels *panels);
+bool gonio_i_packed_rows_make(const gonio_i_selection_problem *problem,
+                              gonio_i_packed_rows *panels);
+void gonio_i_packed_rows_free(gonio_i_packed_rows *panels);
 
-size_t gonio_i_panels_chunks(const gonio_i_panels *panels);
+size_t gonio_i_packed_rows_chunks(const gonio_i_packed_rows *panels);
 
 /* Room for the panels of a chunk, aligned for the loops below, or NULL if panels are kept or (then
  * *failed) memory ran out. */
-float *gonio_i_panels_scratch(const gonio_i_panels *panels, bool *failed);
+float *gonio_i_packed_rows_scratch(const gonio_i_packed_rows *panels, bool *failed);
 
 /* One chunk: its rows first .. first + count - 1 (padded) and their panels, laid out in the scratch
  * unless they are kept. */
@@ -45,14 +47,15 @@ typedef struct gonio_i_chunk {
     const float *length; /* of its rows */
 } gonio_i_chunk;
 
-gonio_i_chunk gonio_i_panels_chunk(const gonio_i_panels *panels, size_t chunk, float *scratch);
+gonio_i_chunk gonio_i_packed_rows_chunk(const gonio_i_packed_rows *panels, size_t chunk,
+                                        float *scratch);
 
 /* gain[row] <= 1 + |T u|^2, a lower bound as close as rounding allows, for a lower triangular T,
  * t[column][row] = T_row,column (padded with zeros), whose products have errors of at most
  * |error of T u| <= margin |u|. gain: of the chunk's rows. */
 void gonio_i_chunk_gain(const gonio_i_chunk *chunk, const float *t, float margin, float *gain);
 
-/* The test of filter.h for one column or GONIO_I_COLUMNS at once, c[components][columns]:
+/* The test of swap_filter.h for one column or GONIO_I_COLUMNS at once, c[components][columns]:
  * pass[column][row] is 1 unless (u'c)^2 <= loss gain for certain, where |error of u'c| <= margin
  * |u|; the columns of pass lie `apart`. loss > 0. */
 typedef struct gonio_i_test {

@@ -1,5 +1,5 @@
-/* The filter of the condition-number search: see filter.h. */
-#include "filter.h"
+/* The filter of the condition-number search: see swap_filter.h. */
+#include "swap_filter.h"
 
 #include <float.h>
 #include <math.h>
@@ -10,24 +10,25 @@
 
 static const double unit = FLT_EPSILON / 2.0; /* of rounding */
 
-static bool allocate_scratch(gonio_i_filter *f)
+static bool allocate_scratch(gonio_i_swap_filter *f)
 {
     f->scratch = gonio_i_allocate(f->problem->context, (size_t)f->threads, sizeof *f->scratch);
     bool failed = f->scratch == NULL;
     for (int t = 0; t < f->threads && !failed; t++) {
-        f->scratch[t] = gonio_i_panels_scratch(f->panels, &failed);
+        f->scratch[t] = gonio_i_packed_rows_scratch(f->panels, &failed);
     }
     return !failed;
 }
 
-bool gonio_i_filter_allocate(const gonio_i_selection_problem *problem, const gonio_i_panels *panels,
-                             int threads, gonio_i_filter *f)
+bool gonio_i_swap_filter_allocate(const gonio_i_selection_problem *problem,
+                                  const gonio_i_packed_rows *panels, int threads,
+                                  gonio_i_swap_filter *f)
 {
     gonio_context *context = problem->context;
     const size_t k = problem->components;
     const size_t padded = panels->components;
-    const size_t chunks = gonio_i_panels_chunks(panels);
-    *f = (gonio_i_filter){.problem = problem, .panels = panels, .threads = threads};
+    const size_t chunks = gonio_i_packed_rows_chunks(panels);
+    *f = (gonio_i_swap_filter){.problem = problem, .panels = panels, .threads = threads};
     f->root = gonio_i_allocate(context, k * k, sizeof *f->root);
     f->t = gonio_i_allocate(context, padded * padded, sizeof *f->t);
     f->image = gonio_i_allocate(context, 2 * k, sizeof *f->image);
@@ -41,7 +42,7 @@ bool gonio_i_filter_allocate(const gonio_i_selection_problem *problem, const gon
            f->batch_is_set != NULL;
 }
 
-void gonio_i_filter_free(gonio_i_filter *f)
+void gonio_i_swap_filter_free(gonio_i_swap_filter *f)
 {
     for (int t = 0; f->scratch != NULL && t < f->threads; t++) {
         free(f->scratch[t]);
@@ -58,13 +59,14 @@ void gonio_i_filter_free(gonio_i_filter *f)
 }
 
 /* Of a product u'c for |u| = |c| = 1: that of the sum, and of rounding u and c. */
-static double product_error(const gonio_i_filter *f)
+static double product_error(const gonio_i_swap_filter *f)
 {
     return ((double)f->panels->components + 4.0) * unit * 1.001;
 }
 
 /* T = L^-1 of G - mu = L L', and what the gains need of it. */
-void gonio_i_filter_set(gonio_i_filter *f, const double *gram, double mu, double condition)
+void gonio_i_swap_filter_set(gonio_i_swap_filter *f, const double *gram, double mu,
+                             double condition)
 {
     const size_t k = f->problem->components;
     const size_t padded = f->panels->components;
@@ -82,7 +84,7 @@ void gonio_i_filter_set(gonio_i_filter *f, const double *gram, double mu, double
         }
     }
     f->gain_margin = (float)(product_error(f) * sqrt(squares));
-    memset(f->gain_is_set, 0, gonio_i_panels_chunks(f->panels) * sizeof *f->gain_is_set);
+    memset(f->gain_is_set, 0, gonio_i_packed_rows_chunks(f->panels) * sizeof *f->gain_is_set);
     f->batch = 0;
     f->next = 1;
 }
@@ -110,7 +112,7 @@ GONIO_I_VECTORISED static double apply(size_t k, const double *restrict root, co
 }
 
 /* Bv of the j-th position of the batch as a column in single precision, with what goes with it. */
-static void fill_column(gonio_i_filter *f, const double *v, size_t j)
+static void fill_column(gonio_i_swap_filter *f, const double *v, size_t j)
 {
     const size_t k = f->problem->components;
     gonio_i_test *test = &f->tests[j / GONIO_I_COLUMNS];
@@ -131,7 +133,7 @@ static void fill_column(gonio_i_filter *f, const double *v, size_t j)
     test->margin[column] = (float)(product_error(f) * sqrt(squares));
 }
 
-void gonio_i_filter_turn_to(gonio_i_filter *f, const double *x, size_t position)
+void gonio_i_swap_filter_turn_to(gonio_i_swap_filter *f, const double *x, size_t position)
 {
     const size_t k = f->problem->components;
     if (position >= f->first && position < f->first + f->batch) {
@@ -142,7 +144,7 @@ void gonio_i_filter_turn_to(gonio_i_filter *f, const double *x, size_t position)
     f->first = position;
     f->batch = rest < f->next ? rest : f->next;
     /* Where chunks are many, fetching them costs more than tests that a swap makes useless. */
-    const bool many = gonio_i_panels_chunks(f->panels) >= 64;
+    const bool many = gonio_i_packed_rows_chunks(f->panels) >= 64;
     f->next = many && f->next > 1 ? GONIO_I_BATCH : GONIO_I_COLUMNS;
     memset(f->columns, 0, f->panels->components * GONIO_I_BATCH * sizeof *f->columns);
     for (size_t j = 0; j < f->batch; j += columns) {
@@ -151,10 +153,10 @@ void gonio_i_filter_turn_to(gonio_i_filter *f, const double *x, size_t position)
     for (size_t j = 0; j < f->batch; j++) {
         fill_column(f, x + (position + j) * k, j);
     }
-    memset(f->batch_is_set, 0, gonio_i_panels_chunks(f->panels) * sizeof *f->batch_is_set);
+    memset(f->batch_is_set, 0, gonio_i_packed_rows_chunks(f->panels) * sizeof *f->batch_is_set);
 }
 
-static void set_gain(gonio_i_filter *f, const gonio_i_chunk *chunk, size_t index)
+static void set_gain(gonio_i_swap_filter *f, const gonio_i_chunk *chunk, size_t index)
 {
     if (!f->gain_is_set[index]) {
         gonio_i_chunk_gain(chunk, f->t, f->gain_margin, f->gain + chunk->first);
@@ -162,19 +164,19 @@ static void set_gain(gonio_i_filter *f, const gonio_i_chunk *chunk, size_t index
     }
 }
 
-void gonio_i_filter_prepare(gonio_i_filter *f, size_t index, int thread)
+void gonio_i_swap_filter_prepare(gonio_i_swap_filter *f, size_t index, int thread)
 {
-    const gonio_i_chunk chunk = gonio_i_panels_chunk(f->panels, index, f->scratch[thread]);
+    const gonio_i_chunk chunk = gonio_i_packed_rows_chunk(f->panels, index, f->scratch[thread]);
     set_gain(f, &chunk, index);
 }
 
 /* Tests a chunk's rows at the positions of the batch, if that is still to be done. */
-static void look_at(gonio_i_filter *f, size_t index, int thread)
+static void look_at(gonio_i_swap_filter *f, size_t index, int thread)
 {
     if (f->blind || f->batch_is_set[index]) {
         return;
     }
-    const gonio_i_chunk chunk = gonio_i_panels_chunk(f->panels, index, f->scratch[thread]);
+    const gonio_i_chunk chunk = gonio_i_packed_rows_chunk(f->panels, index, f->scratch[thread]);
     set_gain(f, &chunk, index);
     for (size_t j = 0; j < f->batch; j += GONIO_I_COLUMNS) {
         gonio_i_test test = f->tests[j / GONIO_I_COLUMNS];
@@ -185,8 +187,8 @@ static void look_at(gonio_i_filter *f, size_t index, int thread)
     f->batch_is_set[index] = true;
 }
 
-size_t gonio_i_filter_survivors(gonio_i_filter *f, size_t position, size_t first, size_t last,
-                                int thread, size_t *survivors)
+size_t gonio_i_swap_filter_survivors(gonio_i_swap_filter *f, size_t position, size_t first,
+                                     size_t last, int thread, size_t *survivors)
 {
     const size_t j = position - f->first;
     const unsigned char *pass = f->pass + j * f->panels->rows;

@@ -5,15 +5,15 @@
  * not single winners but several for each; then only those and the chosen rows are searched, to
  * their own local optimum; and so on until a turn brings little. The search proper then finds the
  * few swaps that are left, and proves the optimum as ever. */
-#ifndef GONIO_NARROW_H
-#define GONIO_NARROW_H
+#ifndef GONIO_SHORTLIST_H
+#define GONIO_SHORTLIST_H
 
-#include "search.h"
+#include "swap_search.h"
 
 enum { GONIO_I_MANY_ROWS = 100000 };
 
 /* Makes those swaps; counts and records them. */
-gonio_status gonio_i_narrow(gonio_i_search *search, int restart, int *swaps,
-                            gonio_i_selection *selection);
+gonio_status gonio_i_search_shortlists(gonio_i_swap_search *search, int restart, int *swaps,
+                                       gonio_i_selection *selection);
 
 #endif
