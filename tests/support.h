@@ -9,7 +9,7 @@
 #include <stdint.h>
 
 #include <cmocka.h>
-#include <gonio/context.h>
+#include <gonio/basis.h>
 
 /* A test's main is one function of the program gonio-tests: see main.c. */
 #ifdef GONIO_TEST
@@ -31,6 +31,9 @@ extern const char *const support_merl[SUPPORT_MERL];
 /* A context that keeps the last error message in support_message(). */
 gonio_context *support_context(void);
 const char *support_message(void);
+
+/* V of a basis, [rows][components]; released with free(). */
+double *support_vectors(const gonio_basis *basis);
 
 /* A new folder for a test's files; support_remove deletes it with its contents. */
 char *support_folder(void);

@@ -83,8 +83,7 @@ typedef struct gonio_basis_view {
     const int32_t *cell; /* [cells], database.h */
     size_t rows;
     size_t components;
-    const double *mean;      /* m, [rows] */
-    const double *vectors;   /* V, [rows][components] */
+    const double *mean;      /* m, [rows]; V: gonio_basis_rows */
     size_t variance_count;   /* all of them, not only the first `components` */
     const double *variances; /* lambda_k = S_k^2/(columns - 1), descending */
     const double *loadings;  /* W, [columns][components], orthonormal; NULL in files without */
@@ -98,6 +97,13 @@ typedef struct gonio_basis_view {
 } gonio_basis_view;
 
 GONIO_API gonio_basis_view gonio_basis_describe(const gonio_basis *basis);
+
+/* Rows first .. first + count - 1 of V, the first `components` values of each:
+ * values[count][components]. Threads may call it at the same time. Errors: _ARGUMENT for rows or
+ * components that the basis does not have. */
+GONIO_API gonio_status gonio_basis_rows(gonio_context *context, const gonio_basis *basis,
+                                        size_t first, size_t count, size_t components,
+                                        double *values);
 
 /* S_k, k from 0. */
 GONIO_API double gonio_basis_singular_value(const gonio_basis_view *view, size_t k);

@@ -7,8 +7,9 @@
 #include <string.h>
 
 #include "../direction/grid.h"
+#include "../linalg/linalg.h"
 
-size_t gonio_i_basis_rows(size_t cells, gonio_channel_model channels)
+size_t gonio_i_basis_row_count(size_t cells, gonio_channel_model channels)
 {
     return channels == GONIO_JOINT ? GONIO_CHANNELS * cells : cells;
 }
@@ -27,7 +28,7 @@ gonio_basis *gonio_i_basis_allocate(gonio_context *context, size_t materials, si
     if (made == NULL) {
         return NULL;
     }
-    const size_t rows = gonio_i_basis_rows(cells, channels);
+    const size_t rows = gonio_i_basis_row_count(cells, channels);
     made->channels = channels;
     made->materials = materials;
     made->mixtures = mixtures;
@@ -269,7 +270,6 @@ gonio_basis_view gonio_basis_describe(const gonio_basis *basis)
         .rows = basis->rows,
         .components = basis->components,
         .mean = basis->mean,
-        .vectors = basis->vectors,
         .variance_count = basis->variance_count,
         .variances = basis->variances,
         .loadings = basis->loadings,
@@ -279,6 +279,35 @@ gonio_basis_view gonio_basis_describe(const gonio_basis *basis)
         .program = basis->program != NULL ? basis->program : "",
         .command = basis->command != NULL ? basis->command : "",
     };
+}
+
+/* ---- rows of V ---- */
+
+void gonio_i_basis_rows(const gonio_basis *basis, size_t first, size_t count, size_t components,
+                        double *values)
+{
+    for (size_t i = 0; i < count; i++) {
+        memcpy(values + i * components, basis->vectors + (first + i) * basis->components,
+               components * sizeof *values);
+    }
+}
+
+gonio_status gonio_basis_rows(gonio_context *context, const gonio_basis *basis, size_t first,
+                              size_t count, size_t components, double *values)
+{
+    if (first > basis->rows || count > basis->rows - first || components > basis->components) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "%zu components of the rows %zu .. %zu asked for, but the basis has "
+                            "%zu components and %zu rows",
+                            components, first, first + count, basis->components, basis->rows);
+    }
+    gonio_i_basis_rows(basis, first, count, components, values);
+    return GONIO_OK;
+}
+
+double gonio_i_basis_dot(const gonio_basis *basis, size_t row, const double *c, size_t components)
+{
+    return gonio_i_dot(basis->vectors + row * basis->components, c, components);
 }
 
 double gonio_basis_singular_value(const gonio_basis_view *view, size_t k)

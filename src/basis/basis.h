@@ -42,8 +42,15 @@ gonio_basis *gonio_i_basis_allocate(gonio_context *context, size_t materials, si
 /* The last step of making one: its fingerprint, its checksum and the map of nearest cells. */
 gonio_status gonio_i_basis_finish(gonio_context *context, gonio_basis *basis);
 
-size_t gonio_i_basis_rows(size_t cells, gonio_channel_model channels);
+size_t gonio_i_basis_row_count(size_t cells, gonio_channel_model channels);
 size_t gonio_i_basis_columns(const gonio_basis *basis);
+
+/* gonio_basis_rows without its checks. */
+void gonio_i_basis_rows(const gonio_basis *basis, size_t first, size_t count, size_t components,
+                        double *values);
+
+/* The first `components` values of a row of V times c. */
+double gonio_i_basis_dot(const gonio_basis *basis, size_t row, const double *c, size_t components);
 
 /* Finds the cell that stands for each one of the grid: part of _finish, of use before. */
 gonio_status gonio_i_basis_map_cells(gonio_context *context, gonio_basis *basis);

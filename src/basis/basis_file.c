@@ -291,7 +291,7 @@ static gonio_status check_log_scale(const contents *c)
 static gonio_status read_numbers(contents *c)
 {
     /* Each size limits the next, so that no file asks for more memory than its grid needs. */
-    const size_t rows = gonio_i_basis_rows(c->cells, (gonio_channel_model)c->channels);
+    const size_t rows = gonio_i_basis_row_count(c->cells, (gonio_channel_model)c->channels);
     size_t shape[2] = {0, 0};
     const char *what = "mean";
     const char *problem =

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../basis/basis.h"
 #include "../direction/grid.h"
 #include "../linalg/linalg.h"
 #include "expected_error_plan.h"
@@ -337,19 +338,23 @@ gonio_plan *gonio_i_allocate_plan(gonio_context *context, size_t count)
     return made;
 }
 
-static gonio_status choose(gonio_context *context, const gonio_basis_view *basis,
+static gonio_status choose(gonio_context *context, const gonio_basis *basis,
                            const gonio_plan_options *options, gonio_plan *plan)
 {
+    const gonio_basis_view view = gonio_basis_describe(basis);
+    const size_t values = view.rows * plan->components;
     size_t *chosen = gonio_i_allocate(context, plan->count, sizeof *chosen);
+    double *vectors = gonio_i_allocate(context, values, sizeof *vectors);
     gonio_selection_report report;
-    gonio_status status = chosen == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    gonio_status status = chosen == NULL || vectors == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
     if (status == GONIO_OK) {
+        gonio_i_basis_rows(basis, 0, view.rows, plan->components, vectors);
         gonio_i_selection_problem problem = {.context = context,
-                                             .vectors = basis->vectors,
-                                             .rows = basis->rows,
+                                             .vectors = vectors,
+                                             .rows = view.rows,
                                              .components = plan->components,
-                                             .stride = basis->components,
-                                             .basis = basis};
+                                             .stride = plan->components,
+                                             .basis = &view};
         status = select_rows(&problem, options, chosen, &report);
     }
     if (status == GONIO_OK) {
@@ -357,8 +362,9 @@ static gonio_status choose(gonio_context *context, const gonio_basis_view *basis
         plan->tests = report.tests;
         plan->history = report.history;
         plan->steps = report.steps;
-        fill_entries(basis, chosen, options->phi_d, plan);
+        fill_entries(&view, chosen, options->phi_d, plan);
     }
+    free(vectors);
     free(chosen);
     return status;
 }
@@ -411,7 +417,7 @@ gonio_status gonio_plan_create(gonio_context *context, const gonio_basis *basis,
     made->components = components;
     made->basis = view.fingerprint;
     snprintf(made->method, sizeof made->method, "%s", options->method);
-    status = choose(context, &view, options, made);
+    status = choose(context, basis, options, made);
     if (status != GONIO_OK) {
         gonio_plan_free(&made);
         return status;

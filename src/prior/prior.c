@@ -90,10 +90,7 @@ void gonio_i_prior_at(const gonio_i_prior *prior, gonio_half_difference at, int 
 
 void gonio_i_prior_row(const gonio_i_prior *prior, size_t row, double *f)
 {
-    const double *v = prior->view.vectors + row * prior->components;
-    for (size_t k = 0; k < prior->components; k++) {
-        f[k] = v[k];
-    }
+    gonio_i_basis_rows(prior->basis, row, 1, prior->components, f);
     scale(prior, f);
 }
 

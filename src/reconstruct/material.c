@@ -4,10 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../core/core.h"
+#include "../basis/basis.h"
 #include "../core/vector_math.h"
 #include "../direction/grid.h"
-#include "../linalg/linalg.h"
 #include "field.h"
 
 typedef struct reconstructed {
@@ -25,8 +24,7 @@ static double log_value(const reconstructed *r, int32_t cell, size_t channel)
     const size_t position = gonio_basis_position(r->basis, cell);
     const size_t row = joint ? GONIO_CHANNELS * position + channel : position;
     const double *c = r->coefficients + (joint ? 0 : channel * r->components);
-    return r->view.mean[row] +
-           gonio_i_dot(r->view.vectors + row * r->view.components, c, r->components);
+    return r->view.mean[row] + gonio_i_basis_dot(r->basis, row, c, r->components);
 }
 
 /* Between 0 and a number whose exponential is finite; 0 for NaN. */
@@ -162,9 +160,9 @@ static gonio_status sectored_material(gonio_context *context, const gonio_basis 
     }
     for (size_t k = 0; k < values; k++) {
         const size_t row = k % view.rows;
-        const double *v = view.vectors + row * view.components;
         const double *c = reconstruction->coefficients + k / view.rows * reconstruction->components;
-        with_field.field[k] = view.mean[row] + gonio_i_dot(v, c, reconstruction->components);
+        with_field.field[k] =
+            view.mean[row] + gonio_i_basis_dot(basis, row, c, reconstruction->components);
     }
     const gonio_status status = gonio_i_field_material(context, basis, &with_field, name, material);
     free(with_field.field);

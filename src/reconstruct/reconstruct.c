@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../basis/basis.h"
 #include "../linalg/linalg.h"
 #include "../measurement/readings.h"
 #include "estimate.h"
@@ -362,9 +363,10 @@ gonio_status gonio_reconstruct(gonio_context *context, const gonio_basis *basis,
 
 /* ---- from rows of the basis ---- */
 
-static gonio_status solve_rows(const solver *s, const gonio_basis_view *basis, const size_t *rows,
+static gonio_status solve_rows(const solver *s, const gonio_basis *basis, const size_t *rows,
                                size_t count, const double *b, gonio_reconstruction *r)
 {
+    const double *mean = gonio_basis_describe(basis).mean;
     gathered e = {0};
     const size_t k = r->components;
     gonio_status status = GONIO_ERROR_MEMORY;
@@ -374,8 +376,8 @@ static gonio_status solve_rows(const solver *s, const gonio_basis_view *basis, c
     for (size_t column = 0; column < r->columns && status == GONIO_OK; column++) {
         e.count = count;
         for (size_t i = 0; i < count; i++) {
-            memcpy(e.x + i * k, basis->vectors + rows[i] * basis->components, k * sizeof *e.x);
-            e.b[i] = b[column * count + i] - basis->mean[rows[i]];
+            gonio_i_basis_rows(basis, rows[i], 1, k, e.x + i * k);
+            e.b[i] = b[column * count + i] - mean[rows[i]];
         }
         status = solve_column(s, &e, column, r);
     }
@@ -399,7 +401,7 @@ static gonio_status reconstruct_rows(solver *s, const gonio_basis *basis, size_t
     }
     gonio_status status = find_singular(s, &view, components);
     if (status == GONIO_OK) {
-        status = solve_rows(s, &view, rows, count, b, made);
+        status = solve_rows(s, basis, rows, count, b, made);
     }
     free(s->singular);
     if (status != GONIO_OK) {

@@ -16,15 +16,22 @@ gonio_status gonio_i_trial_begin(gonio_context *context, const gonio_i_collectio
     *trial = (gonio_i_trial){.collection = collection, .test = test, .tests = tests};
     const gonio_status status =
         gonio_basis_learn(context, collection->database, &options, &trial->basis);
-    if (status == GONIO_OK) {
-        trial->view = gonio_basis_describe(trial->basis);
+    if (status != GONIO_OK) {
+        return status;
     }
-    return status;
+    trial->view = gonio_basis_describe(trial->basis);
+    const size_t values = trial->view.rows * trial->view.components;
+    trial->vectors = gonio_i_allocate(context, values, sizeof *trial->vectors);
+    return trial->vectors == NULL ? GONIO_ERROR_MEMORY
+                                  : gonio_basis_rows(context, trial->basis, 0, trial->view.rows,
+                                                     trial->view.components, trial->vectors);
 }
 
 void gonio_i_trial_end(gonio_i_trial *trial)
 {
     gonio_basis_free(&trial->basis);
+    free(trial->vectors);
+    trial->vectors = NULL;
 }
 
 /* ---- from coefficients to errors ---- */
@@ -57,8 +64,8 @@ static gonio_status errors_of(gonio_context *context, const gonio_i_trial *t, co
     double *g = gonio_i_allocate(context, (size_t)GONIO_CELLS * GONIO_CHANNELS, sizeof *g);
     gonio_status status = product == NULL || g == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
     if (status == GONIO_OK) {
-        status = gonio_i_product_transposed(context, t->view.vectors, t->view.rows,
-                                            t->view.components, c, t->tests, product, t->tests);
+        status = gonio_i_product_transposed(context, t->vectors, t->view.rows, t->view.components,
+                                            c, t->tests, product, t->tests);
     }
     for (size_t k = 0; k < t->tests && status == GONIO_OK; k++) {
         spread(t, product, k, g);
@@ -83,7 +90,7 @@ gonio_status gonio_i_trial_all_rows(gonio_context *context, const gonio_i_trial 
         for (size_t row = 0; row < trial->view.rows; row++) {
             const double b = centred_reading(trial, test, row);
             for (size_t k = 0; k < components; k++) {
-                c[test * components + k] += trial->view.vectors[row * components + k] * b;
+                c[test * components + k] += trial->vectors[row * components + k] * b;
             }
         }
     }
@@ -98,7 +105,7 @@ static void fill_equations(const gonio_i_trial *t, const size_t *rows, size_t co
 {
     const size_t components = t->view.components;
     for (size_t i = 0; i < count; i++) {
-        memcpy(x + i * components, t->view.vectors + rows[i] * components, components * sizeof *x);
+        memcpy(x + i * components, t->vectors + rows[i] * components, components * sizeof *x);
         for (size_t test = 0; test < t->tests; test++) {
             b[test * count + i] = centred_reading(t, test, rows[i]);
         }
@@ -147,9 +154,9 @@ gonio_status gonio_i_trial_plan(gonio_context *context, const gonio_i_trial *tri
     size_t *rows = gonio_i_allocate(context, samples, sizeof *rows);
     gonio_status status = rows == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
     if (status == GONIO_OK) {
-        status = gonio_plan_select(context, trial->view.vectors, trial->view.rows,
-                                   trial->view.components, trial->view.components, &options, rows,
-                                   &report);
+        status =
+            gonio_plan_select(context, trial->vectors, trial->view.rows, trial->view.components,
+                              trial->view.components, &options, rows, &report);
     }
     if (status == GONIO_OK) {
         *condition = report.condition_number;

@@ -11,6 +11,7 @@ typedef struct gonio_i_trial {
     size_t tests;
     gonio_basis *basis; /* bivariate, joint; all of its components are used */
     gonio_basis_view view;
+    double *vectors; /* V, [rows][components] */
 } gonio_i_trial;
 
 /* Learns a basis of the materials subset[count] (NULL: all). To be freed in any case. */

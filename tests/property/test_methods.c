@@ -204,6 +204,7 @@ static void test_loadings(void **state)
         const gonio_basis_view view = gonio_basis_describe(basis);
         const size_t k = view.components;
         assert_int_equal(k, without_mean ? MATERIALS : MATERIALS - 1);
+        double *vectors = support_vectors(basis);
         for (size_t i = 0; i < view.rows; i += 97) {
             double h[MATERIALS];
             assert_int_equal(gonio_database_read_rows(database, NULL, i, 1, NULL, 0, h), GONIO_OK);
@@ -211,12 +212,13 @@ static void test_loadings(void **state)
             for (size_t column = 0; column < MATERIALS; column++) {
                 double sum = view.mean[i];
                 for (size_t j = 0; j < k; j++) {
-                    sum += view.vectors[i * k + j] * gonio_basis_singular_value(&view, j) *
+                    sum += vectors[i * k + j] * gonio_basis_singular_value(&view, j) *
                            view.loadings[column * k + j];
                 }
                 assert_close(sum, h[column], 1e-9);
             }
         }
+        free(vectors);
         for (size_t a = 0; a < k * k; a++) {
             double sum = 0.0;
             for (size_t column = 0; column < MATERIALS; column++) {
@@ -269,14 +271,15 @@ static size_t *make_rows(const fixture *f, const gonio_basis *basis, const char 
 }
 
 /* V S, [rows][components]. */
-static double *make_scaled(const gonio_basis_view *view, size_t components)
+static double *make_scaled(const gonio_basis *basis, size_t components)
 {
-    double *q = malloc(view->rows * components * sizeof *q);
+    const gonio_basis_view view = gonio_basis_describe(basis);
+    double *q = malloc(view.rows * components * sizeof *q);
     assert_non_null(q);
-    for (size_t i = 0; i < view->rows; i++) {
+    assert_int_equal(gonio_basis_rows(NULL, basis, 0, view.rows, components, q), GONIO_OK);
+    for (size_t i = 0; i < view.rows; i++) {
         for (size_t k = 0; k < components; k++) {
-            q[i * components + k] =
-                view->vectors[i * view->components + k] * gonio_basis_singular_value(view, k);
+            q[i * components + k] *= gonio_basis_singular_value(&view, k);
         }
     }
     return q;
@@ -297,7 +300,7 @@ static void test_matusik_gives_its_materials_back(void **state)
     double condition = 0.0;
     size_t *rows = make_rows(f, f->plain, "matusik", 20, &condition);
     const gonio_basis_view view = gonio_basis_describe(f->plain);
-    double *q = make_scaled(&view, view.components);
+    double *q = make_scaled(f->plain, view.components);
     assert_close(condition_of(q, view.components, rows, 20), condition, 1e-6 * condition);
     for (size_t k = 0; k < MATERIALS; k++) {
         gonio_material *original = NULL;
@@ -350,7 +353,7 @@ static void test_nielsen_ends_where_no_move_helps(void **state)
     double condition = 0.0;
     size_t *rows = make_rows(f, f->relative, "nielsen", N, &condition);
     const gonio_basis_view view = gonio_basis_describe(f->relative);
-    double *q = make_scaled(&view, N);
+    double *q = make_scaled(f->relative, N);
     assert_close(condition_of(q, N, rows, N), condition, 1e-6 * condition);
     static const int moves[8][2] = {{1, 0}, {-1, 0}, {3, 0}, {-3, 0},
                                     {0, 1}, {0, -1}, {0, 3}, {0, -3}};
@@ -426,15 +429,16 @@ static void residual_of(const double *d, const size_t *chosen, size_t count, con
 }
 
 /* Columns of pinv(S) V', each of length 1: d[position][component]. */
-static double *make_dictionary(const gonio_basis_view *view)
+static double *make_dictionary(const gonio_basis *basis)
 {
-    double *d = malloc(view->rows * PURSUED * sizeof *d);
+    const gonio_basis_view view = gonio_basis_describe(basis);
+    double *d = malloc(view.rows * PURSUED * sizeof *d);
     assert_non_null(d);
-    for (size_t i = 0; i < view->rows; i++) {
+    assert_int_equal(gonio_basis_rows(NULL, basis, 0, view.rows, PURSUED, d), GONIO_OK);
+    for (size_t i = 0; i < view.rows; i++) {
         double squares = 0.0;
         for (size_t k = 0; k < PURSUED; k++) {
-            d[i * PURSUED + k] =
-                view->vectors[i * view->components + k] / gonio_basis_singular_value(view, k);
+            d[i * PURSUED + k] /= gonio_basis_singular_value(&view, k);
             squares += d[i * PURSUED + k] * d[i * PURSUED + k];
         }
         for (size_t k = 0; k < PURSUED; k++) {
@@ -450,8 +454,8 @@ static void test_frost_is_simultaneous_matching_pursuit(void **state)
     double condition = 0.0;
     size_t *rows = make_rows(f, f->relative, "frost", PURSUED, &condition);
     const gonio_basis_view view = gonio_basis_describe(f->relative);
-    double *d = make_dictionary(&view);
-    double *q = make_scaled(&view, PURSUED);
+    double *d = make_dictionary(f->relative);
+    double *q = make_scaled(f->relative, PURSUED);
     double target[PURSUED][PURSUED];
     double residual[PURSUED][PURSUED];
     size_t chosen[PURSUED];
@@ -595,7 +599,9 @@ static void test_ridge_solves_the_normal_equations(void **state)
                 a[p * k + p] = eta > 0.0 ? eta : 40.0;
             }
             for (size_t i = 0; i < count; i++) {
-                const double *v = view.vectors + rows[i] * view.components;
+                double v[MOST];
+                assert_int_equal(gonio_basis_rows(f->context, f->relative, rows[i], 1, k, v),
+                                 GONIO_OK);
                 for (size_t p = 0; p < k; p++) {
                     const double left = v[p] * gonio_basis_singular_value(&view, p);
                     c[p] += left * (b[column * count + i] - view.mean[rows[i]]);

@@ -43,32 +43,37 @@ static gonio_basis *learn(gonio_context *context, const gonio_database *database
     return basis;
 }
 
-static void assert_orthonormal(const gonio_basis_view *view)
+static void assert_orthonormal(const gonio_basis *basis)
 {
-    const size_t k = view->components;
+    const gonio_basis_view view = gonio_basis_describe(basis);
+    const size_t k = view.components;
+    double *vectors = support_vectors(basis);
     for (size_t a = 0; a < k; a++) {
         double largest = 0.0;
         for (size_t b = 0; b <= a; b++) {
             double sum = 0.0;
-            for (size_t i = 0; i < view->rows; i++) {
-                sum += view->vectors[i * k + a] * view->vectors[i * k + b];
+            for (size_t i = 0; i < view.rows; i++) {
+                sum += vectors[i * k + a] * vectors[i * k + b];
             }
             assert_close(sum, a == b ? 1.0 : 0.0, 1e-12);
         }
-        for (size_t i = 0; i < view->rows; i++) {
-            const double v = view->vectors[i * k + a];
+        for (size_t i = 0; i < view.rows; i++) {
+            const double v = vectors[i * k + a];
             largest = fabs(v) > fabs(largest) ? v : largest;
         }
         assert_true(largest > 0.0);
     }
+    free(vectors);
 }
 
 /* With all components, what was learned from lies in the span: V V'(h - m) = h - m; and the scatter
  * along component k is its variance. */
-static void assert_projection(const gonio_database *database, const gonio_basis_view *view)
+static void assert_projection(const gonio_database *database, const gonio_basis *basis)
 {
+    const gonio_basis_view view = gonio_basis_describe(basis);
     const gonio_database_view data = gonio_database_describe(database);
-    const size_t k = view->components;
+    const size_t k = view.components;
+    double *vectors = support_vectors(basis);
     double *h = malloc(data.rows * data.columns * sizeof *h);
     double *c = calloc(k, sizeof *c);
     double *variance = calloc(k, sizeof *variance);
@@ -80,16 +85,16 @@ static void assert_projection(const gonio_database *database, const gonio_basis_
         double rest = 0.0;
         memset(c, 0, k * sizeof *c);
         for (size_t i = 0; i < data.rows; i++) {
-            x[i] -= view->mean[i];
+            x[i] -= view.mean[i];
             scatter += x[i] * x[i];
             for (size_t j = 0; j < k; j++) {
-                c[j] += view->vectors[i * k + j] * x[i];
+                c[j] += vectors[i * k + j] * x[i];
             }
         }
         for (size_t i = 0; i < data.rows; i++) {
             double residual = x[i];
             for (size_t j = 0; j < k; j++) {
-                residual -= view->vectors[i * k + j] * c[j];
+                residual -= vectors[i * k + j] * c[j];
             }
             rest += residual * residual;
         }
@@ -100,10 +105,10 @@ static void assert_projection(const gonio_database *database, const gonio_basis_
         }
     }
     for (size_t j = 0; j < k; j++) {
-        assert_true(j == 0 || view->variances[j] <= view->variances[j - 1]);
-        assert_close(variance[j] / view->variances[0], view->variances[j] / view->variances[0],
-                     1e-11);
+        assert_true(j == 0 || view.variances[j] <= view.variances[j - 1]);
+        assert_close(variance[j] / view.variances[0], view.variances[j] / view.variances[0], 1e-11);
     }
+    free(vectors);
     free(h);
     free(c);
     free(variance);
@@ -121,8 +126,8 @@ static void test_joint(void **state)
     assert_string_equal(view.names[1], "red-glossy-plastic");
     assert_close(gonio_basis_cumulative_variance(basis, MATERIALS - 1), 1.0, 1e-15);
     assert_true(gonio_basis_cumulative_variance(basis, 1) < 1.0);
-    assert_orthonormal(&view);
-    assert_projection(database, &view);
+    assert_orthonormal(basis);
+    assert_projection(database, basis);
     gonio_basis_free(&basis);
     assert_null(basis);
     gonio_database_free(&database);
@@ -136,8 +141,8 @@ static void test_separate(void **state)
     const gonio_basis_view view = gonio_basis_describe(basis);
     assert_int_equal(view.rows, view.cells);
     assert_int_equal(view.materials, MATERIALS);
-    assert_orthonormal(&view);
-    assert_projection(database, &view);
+    assert_orthonormal(basis);
+    assert_projection(database, basis);
     gonio_basis_free(&basis);
     gonio_database_free(&database);
 }
@@ -184,8 +189,8 @@ static void test_the_full_grid_on_any_number_of_threads(void **state)
         checksum = threads == 1 ? view.checksum : checksum;
         assert_true(view.checksum == checksum);
         if (threads == 1) {
-            assert_orthonormal(&view);
-            assert_projection(database, &view);
+            assert_orthonormal(basis);
+            assert_projection(database, basis);
         }
         gonio_basis_free(&basis);
         gonio_database_free(&database);
@@ -215,7 +220,7 @@ static void test_nearly_dependent_columns(void **state)
     gonio_basis *basis = learn(NULL, database, 2);
     const gonio_basis_view view = gonio_basis_describe(basis);
     assert_true(view.variances[1] < 1e-8 * view.variances[0]);
-    assert_orthonormal(&view);
+    assert_orthonormal(basis);
     gonio_basis_free(&basis);
     gonio_database_free(&database);
     support_remove(folder);
@@ -295,7 +300,10 @@ static void test_the_file_keeps_everything(void **state)
         assert_int_equal(a.materials, b.materials);
         assert_memory_equal(a.cell, b.cell, a.cells * sizeof *a.cell);
         assert_memory_equal(a.mean, b.mean, a.rows * sizeof *a.mean);
-        assert_memory_equal(a.vectors, b.vectors, a.rows * a.components * sizeof *a.vectors);
+        double *vectors[2] = {support_vectors(basis), support_vectors(again)};
+        assert_memory_equal(vectors[0], vectors[1], a.rows * a.components * sizeof *vectors[0]);
+        free(vectors[0]);
+        free(vectors[1]);
         assert_memory_equal(a.variances, b.variances, a.variance_count * sizeof *a.variances);
         assert_memory_equal(a.fingerprints, b.fingerprints, 3 * sizeof *a.fingerprints);
         assert_string_equal(a.names[2], b.names[2]);
@@ -315,6 +323,7 @@ static void test_row_at_a_centre_is_the_cells_own(void **state)
     gonio_database *database = make_database(NULL, 3, GONIO_BIVARIATE, GONIO_JOINT);
     gonio_basis *basis = learn(NULL, database, 2);
     const gonio_basis_view view = gonio_basis_describe(basis);
+    double *vectors = support_vectors(basis);
     for (size_t position = 0; position < view.cells; position += 17) {
         const int32_t cell = view.cell[position];
         const gonio_bin bin = {cell / GONIO_THETA_D_BINS, cell % GONIO_THETA_D_BINS, 50};
@@ -325,10 +334,11 @@ static void test_row_at_a_centre_is_the_cells_own(void **state)
             double found[2];
             gonio_basis_row_at(basis, gonio_bin_centre(bin), channel, 2, &mean, found);
             assert_close(mean, view.mean[row], 1e-11);
-            assert_close(found[0], view.vectors[2 * row], 1e-13);
-            assert_close(found[1], view.vectors[2 * row + 1], 1e-13);
+            assert_close(found[0], vectors[2 * row], 1e-13);
+            assert_close(found[1], vectors[2 * row + 1], 1e-13);
         }
     }
+    free(vectors);
     /* Half way between two centres: their average. */
     const gonio_half_difference a = gonio_bin_centre((gonio_bin){20, 30, 0});
     const gonio_half_difference b = gonio_bin_centre((gonio_bin){20, 31, 0});
@@ -422,6 +432,34 @@ static void test_cells_without_data_have_the_nearest(void **state)
     support_remove(folder);
 }
 
+static void test_rows_that_a_basis_does_not_have(void **state)
+{
+    (void)state;
+    gonio_context *context = support_context();
+    gonio_database *database = make_database(NULL, 3, GONIO_BIVARIATE, GONIO_JOINT);
+    gonio_basis *basis = learn(NULL, database, 2);
+    const size_t rows = gonio_basis_describe(basis).rows;
+    const struct {
+        size_t first, count, components;
+    } wrong[] = {{rows, 1, 2}, {0, rows + 1, 2}, {rows - 1, 2, 1}, {rows + 1, 0, 1}, {0, 1, 3}};
+    double *all = support_vectors(basis);
+    double few[3] = {7.0, 7.0, 7.0};
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
+        assert_int_equal(gonio_basis_rows(context, basis, wrong[k].first, wrong[k].count,
+                                          wrong[k].components, few),
+                         GONIO_ERROR_ARGUMENT);
+        assert_non_null(strstr(support_message(), "but the basis has 2 components"));
+        assert_true(few[0] == 7.0);
+    }
+    assert_int_equal(gonio_basis_rows(context, basis, rows - 2, 2, 1, few), GONIO_OK);
+    assert_true(few[0] == all[2 * rows - 4] && few[1] == all[2 * rows - 2] && few[2] == 7.0);
+    assert_int_equal(gonio_basis_rows(context, basis, rows, 0, 2, few), GONIO_OK);
+    free(all);
+    gonio_basis_free(&basis);
+    gonio_database_free(&database);
+    gonio_context_free(&context);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -433,6 +471,7 @@ int main(void)
         cmocka_unit_test(test_learning_can_be_stopped),
         cmocka_unit_test(test_what_cannot_be_learned),
         cmocka_unit_test(test_the_file_keeps_everything),
+        cmocka_unit_test(test_rows_that_a_basis_does_not_have),
         cmocka_unit_test(test_row_at_a_centre_is_the_cells_own),
         cmocka_unit_test(test_cells_without_data_have_the_nearest),
     };

@@ -14,6 +14,7 @@ typedef struct fixture {
     gonio_database *database;
     gonio_basis *basis;
     gonio_basis_view view;
+    double *vectors;
 } fixture;
 
 static fixture data;
@@ -30,12 +31,14 @@ static int set_up(void **state)
     assert_int_equal(gonio_database_create(NULL, paths, PATHS, NULL, &data.database), GONIO_OK);
     assert_int_equal(gonio_basis_learn(NULL, data.database, &options, &data.basis), GONIO_OK);
     data.view = gonio_basis_describe(data.basis);
+    data.vectors = support_vectors(data.basis);
     return 0;
 }
 
 static int tear_down(void **state)
 {
     (void)state;
+    free(data.vectors);
     gonio_basis_free(&data.basis);
     gonio_database_free(&data.database);
     return 0;
@@ -58,7 +61,7 @@ static double *estimate_of(double c[COMPONENTS])
             double *value = &g[(size_t)cell * GONIO_CHANNELS + channel];
             *value = data.view.mean[row];
             for (size_t k = 0; k < COMPONENTS; k++) {
-                *value += data.view.vectors[row * COMPONENTS + k] * c[k];
+                *value += data.vectors[row * COMPONENTS + k] * c[k];
             }
         }
     }
