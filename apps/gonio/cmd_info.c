@@ -247,7 +247,7 @@ static int info_readings(const tool *t, const char *path, json_t *results)
     size_t measured = 0;
     for (size_t k = 0; k < view.count; k++) {
         bool any = false;
-        for (size_t c = 0; c < gonio_readings_channels(readings); c++) {
+        for (size_t c = 0; c < view.channels; c++) {
             any = any || !isnan(gonio_readings_value(readings, k, c));
         }
         measured += any;

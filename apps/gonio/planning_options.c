@@ -37,7 +37,7 @@ gonio_status tool_candidates(tool *t, const char *path, gonio_pair **pairs, size
     *pairs = calloc(view.count, sizeof **pairs);
     *count = view.count;
     for (size_t k = 0; *pairs != NULL && k < view.count; k++) {
-        (*pairs)[k] = view.reading[k].pair;
+        (*pairs)[k] = view.pair[k];
     }
     gonio_readings_free(&readings);
     return *pairs != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;

@@ -1,14 +1,12 @@
-/* Measurements: readings of a new material at chosen directions, and the simulated instrument.
+/* Measurements: readings of a material at pairs of directions, from arrays, plans or files, and the
+ * simulated instrument.
  *
- * A readings file is CSV (docs/plan-and-readings.md): `#` comment lines, a line of column names in
- * any order, then a line a direction. theta_i_deg, phi_i_deg, theta_o_deg, phi_o_deg and at least
- * one of R_per_sr, G_per_sr, B_per_sr are needed; channel (R, G, B or all) says what the plan meant
- * to read there; other columns are kept. A plan is such a file without values.
+ * Readings are numbers: a pair of directions each, and a value for each channel. Channels are the
+ * colours R, G, B, or wavelengths, or neither (a single sensor: one channel without a wavelength).
+ * The value of a reading in a channel is at value[reading * channels + channel], in 1/sr, NaN where
+ * nothing was read. A plan is readings without values.
  *
- * Spectral readings have columns named by wavelength, 400nm_per_sr and so on, instead. Scattered
- * readings as text, as Cornell's laboratory and pbrt have them, are read too: `#` comments, the
- * number of wavelengths, the wavelengths in nm, then for each reading theta_i, phi_i, theta_o,
- * phi_o in radians and a value in 1/sr for each wavelength, with line breaks anywhere. */
+ * Readings may be shared by threads as long as none of them changes them. */
 #ifndef GONIO_MEASUREMENT_H
 #define GONIO_MEASUREMENT_H
 
@@ -18,54 +16,134 @@
 extern "C" {
 #endif
 
-typedef struct gonio_reading {
-    gonio_pair pair;              /* radians */
-    int channel;                  /* what was planned: 0 .. 2 or GONIO_ALL_CHANNELS */
-    double value[GONIO_CHANNELS]; /* 1/sr; NaN where nothing was read */
-    size_t line;                  /* of the file, for messages; 0 if there is none */
-} gonio_reading;
-
 typedef struct gonio_readings gonio_readings;
 
 typedef struct gonio_readings_options {
-    bool values_needed;    /* false: a plan will do */
+    bool values_needed;    /* of files: false: a plan will do */
     bool average_repeats;  /* a direction read more than once in the same channel: true to accept
-                            * (least  squares averages it), false to refuse */
+                            * (least squares averages it), false to refuse */
     bool negative_to_zero; /* a reading below zero: true to take it as 0, false to refuse */
 } gonio_readings_options;
 
 /* Values needed, repeats and negative readings refused. */
 GONIO_API void gonio_readings_options_default(gonio_readings_options *options);
 
-/* Reads a file. Accepts commas, semicolons or tabs, CRLF, a byte-order mark, comments, empty lines.
+/* ---- from arrays ---- */
+
+/* What readings are made of; all arrays stay the caller's. */
+typedef struct gonio_readings_arrays {
+    size_t count;           /* readings, at least 1 */
+    size_t channels;        /* 3 without wavelengths: R, G, B; at least 1 */
+    const gonio_pair *pair; /* [count], radians: theta in [0, pi/2), phi in [-2 pi, 2 pi] */
+    const int *planned;     /* [count], the channel to be read there: 0 .. channels - 1, or
+                             * GONIO_ALL_CHANNELS; NULL: all */
+    const double
+        *wavelength;     /* [channels], nm, no two the same; NULL: colours or unnamed channels */
+    const double *value; /* [count][channels], 1/sr, NaN: not read; NULL: nothing was read */
+    const double *deviation; /* [count][channels], standard deviations of the values, 1/sr, NaN:
+                              * not known; NULL: none is known */
+} gonio_readings_arrays;
+
+/* Makes readings from arrays. options may be NULL (values_needed does not count). Messages call
+ * them "readings", and reading k its line k + 1. Errors: _ARGUMENT (no readings or channels, a
+ * planned channel that there is not, wavelengths that are not positive or the same twice); _DATA as
+ * of files; _MEMORY. */
+GONIO_API gonio_status gonio_readings_create(gonio_context *context,
+                                             const gonio_readings_arrays *arrays,
+                                             const gonio_readings_options *options,
+                                             gonio_readings **readings);
+
+/* The directions of a plan as readings of R, G, B without values; they state the plan's basis,
+ * components and method as its file does. Repeats are accepted. Errors: _ARGUMENT for a plan
+ * without entries; _MEMORY. */
+GONIO_API gonio_status gonio_readings_create_from_plan(gonio_context *context,
+                                                       const gonio_plan *plan,
+                                                       gonio_readings **readings);
+
+GONIO_API void gonio_readings_free(gonio_readings **readings);
+
+/* ---- what is in them ---- */
+
+/* Pointers belong to the readings; those to values, deviations and wavelengths last until values or
+ * deviations of another number of channels are set. */
+typedef struct gonio_readings_view {
+    size_t count;
+    size_t channels;
+    const gonio_pair *pair;   /* [count], radians, phi in [0, 2 pi) */
+    const int *planned;       /* [count], a channel or GONIO_ALL_CHANNELS */
+    const double *wavelength; /* [channels], nm; NULL: colours or unnamed channels */
+    const double *value;      /* [count][channels], 1/sr; NaN where nothing was read */
+    const double *deviation; /* [count][channels], 1/sr, NaN where not known; NULL: none is known */
+    const size_t *line;      /* [count], of the file, for messages */
+    const char *path;        /* where they were read from, for messages */
+    uint64_t basis;          /* fingerprint of the basis the plan was made for; 0: not stated */
+    size_t components;       /* K of the plan; 0: not stated */
+    const char *method;      /* of the plan; "": not stated */
+    size_t notes;            /* what the file's reader has to say of it: */
+    const char *const *note; /* [notes] */
+} gonio_readings_view;
+
+GONIO_API gonio_readings_view gonio_readings_describe(const gonio_readings *readings);
+
+/* Whether the channels are R, G, B: three without wavelengths. */
+GONIO_API bool gonio_readings_are_colours(const gonio_readings *readings);
+
+/* One value (NaN if it was not read or there is no such reading or channel), and the scale s of log
+ * space of a channel: gonio_log_scale of a colour, 1/1500 1/sr of any other channel. */
+GONIO_API double gonio_readings_value(const gonio_readings *readings, size_t reading,
+                                      size_t channel);
+GONIO_API double gonio_readings_scale(const gonio_readings *readings, size_t channel);
+
+/* ---- changing them ---- */
+
+/* Replaces channels and all values: value[count][channels] as in gonio_readings_arrays, NULL for
+ * nothing read; deviations are dropped. options may be NULL; only negative_to_zero counts. Errors:
+ * as gonio_readings_create; the readings are as before then. */
+GONIO_API gonio_status gonio_readings_set_values(gonio_context *context, gonio_readings *readings,
+                                                 size_t channels, const double *wavelength,
+                                                 const double *value,
+                                                 const gonio_readings_options *options);
+
+/* Replaces one value. Errors: _ARGUMENT (no such reading or channel), _DATA (negative, infinite).
+ */
+GONIO_API gonio_status gonio_readings_set_value(gonio_context *context, gonio_readings *readings,
+                                                size_t reading, size_t channel, double value);
+
+/* Replaces the standard deviations: deviation[count][channels], 1/sr, NaN where not known; NULL
+ * drops them. Errors: _DATA (negative, infinite), _MEMORY. */
+GONIO_API gonio_status gonio_readings_set_deviations(gonio_context *context,
+                                                     gonio_readings *readings,
+                                                     const double *deviation);
+
+/* ---- files ---- */
+
+/* Reads a file of any format that gonio knows, which its content tells:
+ *
+ * CSV (docs/plan-and-readings.md): `#` comment lines, a line of column names in any order, then a
+ * line a reading. theta_i_deg, phi_i_deg, theta_o_deg, phi_o_deg and at least one of R_per_sr,
+ * G_per_sr, B_per_sr are needed, or columns named by wavelength (400nm_per_sr); channel (R, G, B or
+ * all) says what the plan meant to read there. A plan is such a file without values. Commas,
+ * semicolons or tabs, CRLF, a byte-order mark, comments, empty lines are understood; other columns
+ * and comments are kept and written again.
+ *
+ * Scattered readings as text, as Cornell's laboratory and pbrt have them: `#` comments, the number
+ * of wavelengths, the wavelengths in nm, then for each reading theta_i, phi_i, theta_o, phi_o in
+ * radians and a value in 1/sr for each wavelength, with line breaks anywhere.
+ *
  * Angles: theta in [0, 90) degrees (a direction at or below the horizon is refused), phi in
- * [-360, 360].
+ * [-360, 360]. options may be NULL.
  * Errors: _IO, _FORMAT (not such a file, missing columns, not a number), _DATA (angles out of
  * range, repeats, negative or non-finite values, no readings); the message names the line. */
 GONIO_API gonio_status gonio_readings_read(gonio_context *context, const char *path,
                                            const gonio_readings_options *options,
                                            gonio_readings **readings);
 
-GONIO_API void gonio_readings_free(gonio_readings **readings);
+/* Writes readings as CSV, with the other columns and the comments of the file that they came from.
+ * command may be NULL. Whole or not at all. Errors: _IO, _MEMORY. */
+GONIO_API gonio_status gonio_readings_write(gonio_context *context, const gonio_readings *readings,
+                                            const char *command, const char *path);
 
-typedef struct gonio_readings_view {
-    size_t count;
-    const gonio_reading *reading;
-    const char *path;         /* where it was read from, for messages */
-    uint64_t basis;           /* fingerprint of the basis the plan was made for; 0 if not stated */
-    size_t components;        /* K of the plan; 0 if not stated */
-    const char *method;       /* of the plan; "" if not stated */
-    size_t wavelengths;       /* of spectral readings; 0: R, G, B */
-    const double *wavelength; /* [wavelengths], nm */
-    const double *spectrum;   /* [count][wavelengths], 1/sr; NaN where nothing was read */
-} gonio_readings_view;
-
-/* Channels of the readings: 3, or their wavelengths; the value of one of them (NaN if it was not
- * read), and its scale s of log space: gonio_log_scale, 1/1500 for a wavelength. */
-GONIO_API size_t gonio_readings_channels(const gonio_readings *readings);
-GONIO_API double gonio_readings_value(const gonio_readings *readings, size_t reading,
-                                      size_t channel);
-GONIO_API double gonio_readings_scale(const gonio_readings *readings, size_t channel);
+/* ---- readings of other readings ---- */
 
 /* Which readings have the directions of one in `others`: same[count]. */
 GONIO_API gonio_status gonio_readings_find(gonio_context *context, const gonio_readings *readings,
@@ -77,7 +155,7 @@ GONIO_API gonio_status gonio_readings_find(gonio_context *context, const gonio_r
 GONIO_API gonio_status gonio_readings_look_up(gonio_context *context, gonio_readings *plan,
                                               const gonio_readings *known);
 
-GONIO_API gonio_readings_view gonio_readings_describe(const gonio_readings *readings);
+/* ---- the simulated instrument ---- */
 
 typedef struct gonio_instrument_options {
     double noise; /* standard deviation relative to the value: 0.01 is 1 per cent */
@@ -91,16 +169,12 @@ typedef struct gonio_instrument_options {
 GONIO_API void gonio_instrument_options_default(gonio_instrument_options *options);
 
 /* The simulated instrument: puts a known material at the directions of `readings` (a plan) and
- * fills in all channels with rho (1 + noise z) + floor z', z and z' standard normal and
+ * fills in R, G, B with rho (1 + noise z) + floor z', z and z' standard normal and
  * independent, clamped at 0. A direction that occurs several times is read once. Errors: _DATA if
  * the material has no data around a direction; _ARGUMENT for negative noise. */
 GONIO_API gonio_status gonio_measure(gonio_context *context, gonio_readings *readings,
                                      const gonio_table *table,
                                      const gonio_instrument_options *options);
-
-/* Writes readings, other columns and comments of the file they came from included. */
-GONIO_API gonio_status gonio_readings_write(gonio_context *context, const gonio_readings *readings,
-                                            const char *command, const char *path);
 
 #ifdef __cplusplus
 }

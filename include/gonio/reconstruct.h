@@ -30,8 +30,8 @@ typedef struct gonio_reconstruct_options {
     double floor;      /* standard deviation of a reading of darkness, 1/sr; default 1e-5 */
     double saturation; /* readings of this value or more, 1/sr, mean at least it; 0: none */
     bool deviation;    /* find the standard deviation of every cell too */
-    bool no_checks;    /* do not look for usual mistakes (gonio_reconstruction.suspicion) nor for a
-                        * dark level (gonio_reconstruction.dark) */
+    bool believe; /* do not look for wrong units (gonio_reconstruction.suspicion) nor for a dark
+                   * level (gonio_reconstruction.dark) */
 } gonio_reconstruct_options;
 
 GONIO_API void gonio_reconstruct_options_default(gonio_reconstruct_options *options);
@@ -56,14 +56,14 @@ typedef struct gonio_reconstruction {
     double surprise;     /* root mean square of what the others say of each reading, in deviations:
                           * 1 where the material is as the database expects */
     size_t outlying;     /* readings that the others contradict; they hardly count */
-    size_t wavelengths;  /* 0 for R, G, B */
+    size_t wavelengths;  /* 0 without wavelengths: R, G, B if there are three */
     double *wavelength;  /* [wavelengths], nm */
     const char *suspicion; /* what would explain the readings far better than what they say they
                             * are ("the values include the cosine of theta_o"); NULL if nothing */
     double *dark; /* [columns], 1/sr: what the instrument seems to subtract too much; it reads
                    * max(0, rho - dark/cos theta_i) of rho. The field is the material's, without it.
                    * NULL where no reading is zero, where levels explain little, with a suspicion,
-                   * with no_checks, with a joint basis and from rows */
+                   * if asked to believe, with a joint basis and from rows */
 } gonio_reconstruction;
 
 /* What a reconstruction by posterior says of the material at any directions: value[channels] in

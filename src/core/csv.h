@@ -1,14 +1,12 @@
-/* Tables as text (CSV), on libcsv: `#` comment lines, a line of column names, then rows. Commas,
- * semicolons or tabs between cells, quotes, CRLF and a byte-order mark are understood; with
- * semicolons or tabs a decimal comma is too. */
+/* Small tables as text (CSV), whole: every cell is a string. What is large is read row by row
+ * (csv_reader.h, which also says what a table looks like). */
 #ifndef GONIO_CSV_H
 #define GONIO_CSV_H
 
-#include "core.h"
+#include "comments.h"
 
 typedef struct gonio_i_csv {
-    size_t comments;
-    char **comment; /* without the leading '#' and blanks */
+    gonio_i_comments comment;
     size_t columns;
     char **name;
     size_t rows;
@@ -25,7 +23,6 @@ void gonio_i_csv_free(gonio_i_csv **csv);
 
 /* Building one by hand. Text is copied; false when out of memory. */
 gonio_i_csv *gonio_i_csv_create(gonio_context *context);
-bool gonio_i_csv_add_comment(gonio_i_csv *csv, const char *format, ...) GONIO_I_PRINTF(2, 3);
 bool gonio_i_csv_add_column(gonio_i_csv *csv, const char *name); /* empty cells in every row */
 bool gonio_i_csv_add_row(gonio_i_csv *csv, size_t line);         /* of empty cells */
 bool gonio_i_csv_set(gonio_i_csv *csv, size_t row, size_t column, const char *format, ...)
@@ -37,11 +34,5 @@ const char *gonio_i_csv_cell(const gonio_i_csv *csv, size_t row, size_t column);
 
 /* Whether a cell is a number, all of it. */
 bool gonio_i_csv_number(const gonio_i_csv *csv, size_t row, size_t column, double *value);
-
-/* The text behind "key:" in the comments; NULL if there is none. */
-const char *gonio_i_csv_note(const gonio_i_csv *csv, const char *key);
-
-/* Removes the comments that begin with "key:". */
-void gonio_i_csv_drop_note(gonio_i_csv *csv, const char *key);
 
 #endif

@@ -29,11 +29,11 @@ static gonio_status check(gonio_context *context, const gonio_readings *referenc
 {
     const gonio_readings_view a = gonio_readings_describe(reference);
     const gonio_readings_view b = gonio_readings_describe(other);
-    if (a.count != b.count || a.wavelengths != b.wavelengths) {
+    if (a.count != b.count || a.channels != b.channels ||
+        (a.wavelength == NULL) != (b.wavelength == NULL)) {
         return gonio_i_fail(context, GONIO_ERROR_MISMATCH,
                             "%s has %zu readings in %zu channels, %s has %zu in %zu", a.path,
-                            a.count, gonio_readings_channels(reference), b.path, b.count,
-                            gonio_readings_channels(other));
+                            a.count, a.channels, b.path, b.count, b.channels);
     }
     return GONIO_OK;
 }
@@ -51,8 +51,8 @@ gonio_status gonio_compare_readings(gonio_context *context, const gonio_readings
         if (left_out != NULL && left_out[k]) {
             continue;
         }
-        const gonio_half_difference at = gonio_half_difference_from_pair(view.reading[k].pair);
-        for (size_t c = 0; c < gonio_readings_channels(reference); c++) {
+        const gonio_half_difference at = gonio_half_difference_from_pair(view.pair[k]);
+        for (size_t c = 0; c < view.channels; c++) {
             const double a = gonio_readings_value(reference, k, c);
             const double b = gonio_readings_value(other, k, c);
             if (!isnan(a) && !isnan(b)) {

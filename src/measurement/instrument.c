@@ -25,27 +25,27 @@ static uint64_t stream_of(const gonio_pair *pair)
     return stream;
 }
 
-static gonio_status read_one(gonio_context *context, const gonio_readings *readings,
-                             gonio_reading *reading, const gonio_table *table,
-                             const gonio_instrument_options *options)
+static gonio_status read_one(gonio_context *context, gonio_readings *readings, size_t reading,
+                             const gonio_table *table, const gonio_instrument_options *options)
 {
-    const gonio_half_difference c = gonio_half_difference_from_pair(reading->pair);
-    if (!gonio_table_value(table, c, reading->value)) {
+    const gonio_pair *pair = &readings->pair[reading];
+    double *value = gonio_i_readings_values(readings, reading);
+    if (!gonio_table_value(table, gonio_half_difference_from_pair(*pair), value)) {
         return gonio_i_fail(context, GONIO_ERROR_DATA,
                             "%s:%zu: the material has no data around these directions; delete "
                             "the line, or take another material (gonio info shows its share)",
-                            readings->path, reading->line);
+                            readings->path, readings->line[reading]);
     }
     gonio_i_random random;
     gonio_i_random wrongness;
-    gonio_i_random_seed(&random, options->seed, stream_of(&reading->pair));
-    gonio_i_random_seed(&wrongness, ~options->seed, stream_of(&reading->pair));
+    gonio_i_random_seed(&random, options->seed, stream_of(pair));
+    gonio_i_random_seed(&wrongness, ~options->seed, stream_of(pair));
     const bool wrong = gonio_i_random_uniform(&wrongness) < options->outliers;
     const double factor = !wrong ? 1.0 : gonio_i_random_uniform(&wrongness) < 0.5 ? 10.0 : 0.1;
     for (int k = 0; k < GONIO_CHANNELS; k++) {
         const double gain = 1.0 + options->noise * gonio_i_random_normal(&random);
         const double offset = options->floor * gonio_i_random_normal(&random);
-        reading->value[k] = fmax(factor * reading->value[k] * gain + offset, 0.0);
+        value[k] = fmax(factor * value[k] * gain + offset, 0.0);
     }
     return GONIO_OK;
 }
@@ -65,9 +65,9 @@ gonio_status gonio_measure(gonio_context *context, gonio_readings *readings,
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
                             "the share of outliers is a number from 0 to 1");
     }
-    gonio_status status = GONIO_OK;
+    gonio_status status = gonio_i_readings_set_channels(context, readings, GONIO_CHANNELS, NULL);
     for (size_t k = 0; k < readings->count && status == GONIO_OK; k++) {
-        status = read_one(context, readings, &readings->reading[k], table, options);
+        status = read_one(context, readings, k, table, options);
     }
     return status;
 }

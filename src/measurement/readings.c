@@ -1,22 +1,38 @@
-/* Reading and writing readings (and plans) as CSV: docs/plan-and-readings.md. */
+/* Readings as numbers: see measurement.h. */
 #include "readings.h"
 
-#include <ctype.h>
-#include <errno.h>
-#include <inttypes.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const angle_columns[] = {"theta_i_deg", "phi_i_deg", "theta_o_deg", "phi_o_deg"};
-static const char *const value_columns[GONIO_CHANNELS] = {"R_per_sr", "G_per_sr", "B_per_sr"};
-static const char *const channel_names[] = {"all", "R", "G", "B"};
-static const char grid_name[] = "half/difference 90 x 90 x 180";
+#include "../plan/plan_file.h"
+#include "rules.h"
+
+enum { FIRST_ROOM = 64 };
 
 void gonio_readings_options_default(gonio_readings_options *options)
 {
     *options = (gonio_readings_options){.values_needed = true};
+}
+
+gonio_readings *gonio_i_readings_new(gonio_context *context, const char *path,
+                                     const gonio_readings_options *options)
+{
+    gonio_readings *made = gonio_i_allocate(context, 1, sizeof *made);
+    if (made == NULL) {
+        return NULL;
+    }
+    gonio_readings_options_default(&made->options);
+    made->options = options != NULL ? *options : made->options;
+    made->method = "";
+    made->path = strdup(path);
+    if (made->path == NULL) {
+        gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", path);
+        gonio_readings_free(&made);
+    }
+    return made;
 }
 
 void gonio_readings_free(gonio_readings **readings)
@@ -24,449 +40,401 @@ void gonio_readings_free(gonio_readings **readings)
     if (readings == NULL || *readings == NULL) {
         return;
     }
-    gonio_i_csv_free(&(*readings)->csv);
-    free((*readings)->path);
-    free((*readings)->reading);
-    free((*readings)->first_same);
-    free((*readings)->wavelength);
-    free((*readings)->spectrum);
-    free(*readings);
+    gonio_readings *old = *readings;
+    if (old->attachment.release != NULL) {
+        old->attachment.release(old->attachment.data);
+    }
+    gonio_i_comments_free(&old->comment);
+    gonio_i_comments_free(&old->note);
+    free(old->path);
+    free(old->pair);
+    free(old->planned);
+    free(old->line);
+    free(old->value);
+    free(old->deviation);
+    free(old->wavelength);
+    free(old->given);
+    free(old->first_same);
+    free(old);
     *readings = NULL;
 }
 
+/* ---- what is in them ---- */
+
 gonio_readings_view gonio_readings_describe(const gonio_readings *readings)
 {
-    const char *method = gonio_i_csv_note(readings->csv, "method");
     return (gonio_readings_view){.count = readings->count,
-                                 .reading = readings->reading,
+                                 .channels = readings->channels,
+                                 .pair = readings->pair,
+                                 .planned = readings->planned,
+                                 .wavelength = readings->wavelength,
+                                 .value = readings->value,
+                                 .deviation = readings->deviation,
+                                 .line = readings->line,
                                  .path = readings->path,
                                  .basis = readings->basis,
                                  .components = readings->components,
-                                 .method = method != NULL ? method : "",
-                                 .wavelengths = readings->wavelengths,
-                                 .wavelength = readings->wavelength,
-                                 .spectrum = readings->spectrum};
+                                 .method = readings->method,
+                                 .notes = readings->note.count,
+                                 .note = (const char *const *)readings->note.line};
 }
 
-size_t gonio_readings_channels(const gonio_readings *readings)
+bool gonio_readings_are_colours(const gonio_readings *readings)
 {
-    return readings->wavelengths > 0 ? readings->wavelengths : GONIO_CHANNELS;
+    return readings->wavelength == NULL && readings->channels == GONIO_CHANNELS;
 }
 
 double gonio_readings_value(const gonio_readings *readings, size_t reading, size_t channel)
 {
-    return readings->wavelengths > 0 ? readings->spectrum[reading * readings->wavelengths + channel]
-                                     : readings->reading[reading].value[channel];
+    const bool held = reading < readings->count && channel < readings->channels;
+    return held ? readings->value[reading * readings->channels + channel] : NAN;
 }
 
 double gonio_readings_scale(const gonio_readings *readings, size_t channel)
 {
-    return gonio_log_scale(readings->wavelengths > 0 ? GONIO_CHANNELS : (int)channel);
+    return gonio_log_scale(gonio_readings_are_colours(readings) ? (int)channel : GONIO_CHANNELS);
 }
 
-gonio_status gonio_i_readings_set_wavelengths(gonio_context *context, gonio_readings *readings,
-                                              const double *wavelength, size_t count)
+void gonio_i_value_name(const gonio_readings *readings, size_t channel, bool deviation,
+                        char name[GONIO_I_NAME_ROOM])
 {
-    double *kept = gonio_i_allocate(context, count, sizeof *kept);
-    double *spectrum = gonio_i_allocate(context, readings->count * count, sizeof *spectrum);
-    if (kept == NULL || spectrum == NULL) {
-        free(kept);
-        free(spectrum);
-        return GONIO_ERROR_MEMORY;
+    const char *end = deviation ? "_deviation_per_sr" : "_per_sr";
+    if (readings->wavelength != NULL) {
+        snprintf(name, GONIO_I_NAME_ROOM, "%.10gnm%s", readings->wavelength[channel], end);
+    } else if (gonio_readings_are_colours(readings)) {
+        snprintf(name, GONIO_I_NAME_ROOM, "%c%s", "RGB"[channel], end);
+    } else if (readings->channels == 1) {
+        snprintf(name, GONIO_I_NAME_ROOM, "value%s", end);
+    } else {
+        snprintf(name, GONIO_I_NAME_ROOM, "value%zu%s", channel + 1, end);
     }
-    memcpy(kept, wavelength, count * sizeof *kept);
-    free(readings->wavelength);
-    free(readings->spectrum);
-    readings->wavelength = kept;
-    readings->spectrum = spectrum;
-    readings->wavelengths = count;
-    return GONIO_OK;
 }
 
-/* ---- same directions ---- */
+/* ---- channels ---- */
 
-typedef struct indexed_reading {
-    const gonio_reading *reading;
-    size_t index;
-} indexed_reading;
-
-static int compare_numbers(double a, double b)
+static gonio_status check_wavelengths(gonio_context *context, const char *path, size_t channels,
+                                      const double *wavelength)
 {
-    return (a > b) - (a < b);
-}
-
-static int compare_pairs(const gonio_pair *a, const gonio_pair *b)
-{
-    int order = compare_numbers(a->incident.theta, b->incident.theta);
-    order = order != 0 ? order : compare_numbers(a->incident.phi, b->incident.phi);
-    order = order != 0 ? order : compare_numbers(a->outgoing.theta, b->outgoing.theta);
-    return order != 0 ? order : compare_numbers(a->outgoing.phi, b->outgoing.phi);
-}
-
-static int compare_indexed(const void *a, const void *b)
-{
-    const indexed_reading *x = a;
-    const indexed_reading *y = b;
-    const int order = compare_pairs(&x->reading->pair, &y->reading->pair);
-    return order != 0 ? order : (x->index > y->index) - (x->index < y->index);
-}
-
-gonio_status gonio_i_readings_group(gonio_context *context, const gonio_reading *reading,
-                                    size_t count, size_t *first_same)
-{
-    indexed_reading *sorted = gonio_i_allocate(context, count, sizeof *sorted);
-    if (sorted == NULL) {
-        return GONIO_ERROR_MEMORY;
-    }
-    for (size_t k = 0; k < count; k++) {
-        sorted[k] = (indexed_reading){&reading[k], k};
-    }
-    qsort(sorted, count, sizeof *sorted, compare_indexed);
-    for (size_t k = 0; k < count; k++) {
-        const bool same =
-            k > 0 && compare_pairs(&sorted[k - 1].reading->pair, &sorted[k].reading->pair) == 0;
-        first_same[sorted[k].index] = same ? first_same[sorted[k - 1].index] : sorted[k].index;
-    }
-    free(sorted);
-    return GONIO_OK;
-}
-
-static bool channels_overlap(int a, int b)
-{
-    return a == b || a == GONIO_ALL_CHANNELS || b == GONIO_ALL_CHANNELS;
-}
-
-/* A direction may be listed once for each channel. `seen` holds, for each group, the last reading
- * of each channel plus one. */
-static gonio_status refuse_repeats(gonio_context *context, const gonio_readings *readings,
-                                   bool measured)
-{
-    size_t(*seen)[GONIO_CHANNELS + 1] = gonio_i_allocate(context, readings->count, sizeof *seen);
-    if (seen == NULL) {
-        return GONIO_ERROR_MEMORY;
-    }
-    gonio_status status = GONIO_OK;
-    for (size_t k = 0; k < readings->count && status == GONIO_OK; k++) {
-        size_t *group = seen[readings->first_same[k]];
-        const int channel = readings->reading[k].channel;
-        for (int other = GONIO_ALL_CHANNELS; other < GONIO_CHANNELS; other++) {
-            const size_t earlier = group[other + 1];
-            if (earlier > 0 && channels_overlap(channel, other) && status == GONIO_OK) {
-                status = gonio_i_fail(
-                    context, GONIO_ERROR_DATA,
-                    "%s:%zu: the same directions and channel as line %zu; delete one%s",
-                    readings->path, readings->reading[k].line, readings->reading[earlier - 1].line,
-                    measured ? ", or accept repeats with --average-repeats" : "");
+    for (size_t k = 0; k < channels && wavelength != NULL; k++) {
+        if (!(wavelength[k] > 0.0 && wavelength[k] < 1e6)) {
+            return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "%s: %g is no wavelength in nm",
+                                path, wavelength[k]);
+        }
+        for (size_t j = 0; j < k; j++) {
+            if (wavelength[j] == wavelength[k]) {
+                return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "%s: %g nm occurs twice", path,
+                                    wavelength[k]);
             }
         }
-        group[channel + 1] = k + 1;
     }
-    free(seen);
-    return status;
+    return GONIO_OK;
 }
 
-/* ---- reading ---- */
-
-typedef struct columns {
-    int angle[4];
-    int value[GONIO_CHANNELS];
-    int channel;
-    size_t wavelengths;
-    int *spectral;      /* [wavelengths] */
-    double *wavelength; /* [wavelengths], nm */
-} columns;
-
-/* The wavelength that a column is named by; 0 if it is another column. */
-static double wavelength_of(const char *name)
+static gonio_status copy_wavelengths(gonio_context *context, const char *path, size_t channels,
+                                     const double *wavelength, double **copy)
 {
-    char *end = NULL;
-    const double wavelength = strtod(name, &end);
-    const bool named = isdigit((unsigned char)*name) && strcasecmp(end, "nm_per_sr") == 0;
-    return named && wavelength > 0.0 && wavelength < 1e6 ? wavelength : 0.0;
-}
-
-static gonio_status find_wavelengths(gonio_context *context, const gonio_readings *readings,
-                                     columns *c)
-{
-    c->spectral = gonio_i_allocate(context, readings->csv->columns, sizeof *c->spectral);
-    c->wavelength = gonio_i_allocate(context, readings->csv->columns, sizeof *c->wavelength);
-    if (c->spectral == NULL || c->wavelength == NULL) {
+    *copy = NULL;
+    if (channels == 0) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "%s: no channels", path);
+    }
+    const gonio_status status = check_wavelengths(context, path, channels, wavelength);
+    if (status != GONIO_OK || wavelength == NULL) {
+        return status;
+    }
+    *copy = gonio_i_allocate(context, channels, sizeof **copy);
+    if (*copy == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    for (size_t k = 0; k < readings->csv->columns; k++) {
-        const double wavelength = wavelength_of(readings->csv->name[k]);
-        if (wavelength > 0.0) {
-            c->spectral[c->wavelengths] = (int)k;
-            c->wavelength[c->wavelengths++] = wavelength;
+    memcpy(*copy, wavelength, channels * sizeof **copy);
+    return GONIO_OK;
+}
+
+gonio_status gonio_i_readings_begin(gonio_context *context, gonio_readings *readings,
+                                    size_t channels, const double *wavelength)
+{
+    readings->channels = channels;
+    return copy_wavelengths(context, readings->path, channels, wavelength, &readings->wavelength);
+}
+
+/* Room for values of other channels: count * channels of them, all NaN; NULL when out of memory. */
+static double *make_values(gonio_context *context, const gonio_readings *readings, size_t channels)
+{
+    const bool fits = channels == 0 || readings->count <= SIZE_MAX / channels;
+    double *value =
+        gonio_i_allocate(context, fits ? readings->count * channels : SIZE_MAX, sizeof *value);
+    for (size_t k = 0; value != NULL && k < readings->count * channels; k++) {
+        value[k] = NAN;
+    }
+    return value;
+}
+
+gonio_status gonio_i_readings_set_channels(gonio_context *context, gonio_readings *readings,
+                                           size_t channels, const double *wavelength)
+{
+    double *kept = NULL;
+    const gonio_status status =
+        copy_wavelengths(context, readings->path, channels, wavelength, &kept);
+    double *value = status == GONIO_OK ? make_values(context, readings, channels) : NULL;
+    if (value == NULL) {
+        free(kept);
+        return status != GONIO_OK ? status : GONIO_ERROR_MEMORY;
+    }
+    free(readings->wavelength);
+    free(readings->value);
+    free(readings->deviation);
+    readings->wavelength = kept;
+    readings->value = value;
+    readings->deviation = NULL;
+    readings->channels = channels;
+    return GONIO_OK;
+}
+
+/* ---- one reading after another ---- */
+
+/* The block with room for more, or as it is and *done false. */
+static void *enlarge(void *block, size_t room, size_t size, bool *done)
+{
+    void *more = reallocarray(block, room, size);
+    *done = *done && more != NULL;
+    return more != NULL ? more : block;
+}
+
+static gonio_status make_room(gonio_context *context, gonio_readings *r, bool deviations)
+{
+    if (r->count < r->room) {
+        return GONIO_OK;
+    }
+    const size_t room = r->room > 0 ? 2 * r->room : FIRST_ROOM;
+    const size_t values = r->channels * sizeof(double);
+    bool done = true;
+    r->pair = enlarge(r->pair, room, sizeof *r->pair, &done);
+    r->planned = enlarge(r->planned, room, sizeof *r->planned, &done);
+    r->line = enlarge(r->line, room, sizeof *r->line, &done);
+    r->value = enlarge(r->value, room, values, &done);
+    if (deviations) {
+        r->deviation = enlarge(r->deviation, room, values, &done);
+    }
+    if (r->keep_angles) {
+        r->given = enlarge(r->given, room, sizeof *r->given, &done);
+    }
+    if (!done) {
+        return gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", r->path);
+    }
+    r->room = room;
+    return GONIO_OK;
+}
+
+static gonio_status bad_number(gonio_context *context, const gonio_readings *r, size_t line,
+                               const char *name, double number, const char *problem,
+                               gonio_status status)
+{
+    return gonio_i_fail(context, status, "%s:%zu: %s '%.9g' %s", r->path, line, name, number,
+                        problem);
+}
+
+static gonio_status check_angles(gonio_context *context, const gonio_readings *r, size_t line,
+                                 const double degrees[4])
+{
+    for (int k = 0; k < 4; k++) {
+        gonio_status status = GONIO_OK;
+        const char *problem = gonio_i_angle_problem(k, degrees[k], &status);
+        if (problem != NULL) {
+            return bad_number(context, r, line, gonio_i_angle_names[k], degrees[k], problem,
+                              status);
         }
     }
     return GONIO_OK;
 }
 
-static gonio_status find_columns(gonio_context *context, const gonio_readings *readings,
-                                 bool values_needed, columns *c)
+/* Checks a value and takes it as 0 where it is below and may be. */
+static gonio_status take_value(gonio_context *context, const gonio_readings *r, size_t line,
+                               size_t channel, const gonio_readings_options *options, double value,
+                               double *to)
 {
-    const gonio_status status = find_wavelengths(context, readings, c);
-    bool any = c->wavelengths > 0;
+    gonio_status status = GONIO_OK;
+    const char *problem = isnan(value) ? NULL : gonio_i_value_problem(value, options, &status);
+    if (problem != NULL) {
+        char name[GONIO_I_NAME_ROOM];
+        gonio_i_value_name(r, channel, false, name);
+        return bad_number(context, r, line, name, value, problem, status);
+    }
+    *to = isnan(value) ? value : fmax(value, 0.0);
+    return GONIO_OK;
+}
+
+static gonio_status take_deviation(gonio_context *context, const gonio_readings *r, size_t line,
+                                   size_t channel, double deviation, double *to)
+{
+    gonio_status status = GONIO_OK;
+    const char *problem = isnan(deviation) ? NULL : gonio_i_deviation_problem(deviation, &status);
+    if (problem != NULL) {
+        char name[GONIO_I_NAME_ROOM];
+        gonio_i_value_name(r, channel, true, name);
+        return bad_number(context, r, line, name, deviation, problem, status);
+    }
+    *to = deviation;
+    return GONIO_OK;
+}
+
+gonio_status gonio_i_readings_add(gonio_context *context, gonio_readings *r,
+                                  const gonio_i_reading *reading)
+{
+    gonio_status status = make_room(context, r, reading->deviation != NULL);
+    if (status == GONIO_OK) {
+        status = check_angles(context, r, reading->line, reading->degrees);
+    }
+    const size_t first = r->count * r->channels;
+    for (size_t k = 0; k < r->channels && status == GONIO_OK; k++) {
+        status = take_value(context, r, reading->line, k, &r->options, reading->value[k],
+                            &r->value[first + k]);
+        if (status == GONIO_OK && reading->deviation != NULL) {
+            status = take_deviation(context, r, reading->line, k, reading->deviation[k],
+                                    &r->deviation[first + k]);
+        }
+    }
     if (status != GONIO_OK) {
         return status;
     }
-    for (int k = 0; k < 4; k++) {
-        c->angle[k] = gonio_i_csv_column(readings->csv, angle_columns[k]);
-        if (c->angle[k] < 0) {
-            return gonio_i_fail(context, GONIO_ERROR_FORMAT,
-                                "%s: no column '%s'; theta_i_deg, phi_i_deg, theta_o_deg and "
-                                "phi_o_deg are needed",
-                                readings->path, angle_columns[k]);
-        }
+    const double *d = reading->degrees;
+    r->pair[r->count] = (gonio_pair){gonio_i_angles_from_degrees(d[0], d[1]),
+                                     gonio_i_angles_from_degrees(d[2], d[3])};
+    r->planned[r->count] = reading->planned;
+    r->line[r->count] = reading->line;
+    if (r->keep_angles) {
+        memcpy(r->given[r->count], d, sizeof *r->given);
     }
-    for (int k = 0; k < GONIO_CHANNELS; k++) {
-        c->value[k] = gonio_i_csv_column(readings->csv, value_columns[k]);
-        any = any || c->value[k] >= 0;
-        if (c->value[k] >= 0 && c->wavelengths > 0) {
-            return gonio_i_fail(context, GONIO_ERROR_FORMAT,
-                                "%s: columns of colours (%s) and of wavelengths (%gnm_per_sr); "
-                                "delete one kind",
-                                readings->path, value_columns[k], c->wavelength[0]);
-        }
-    }
-    if (values_needed && !any) {
-        return gonio_i_fail(context, GONIO_ERROR_FORMAT,
-                            "%s: no column of values (R_per_sr, G_per_sr, B_per_sr, or "
-                            "400nm_per_sr ...): a plan that was "
-                            "not measured yet?",
-                            readings->path);
-    }
-    c->channel = gonio_i_csv_column(readings->csv, "channel");
+    r->count++;
     return GONIO_OK;
 }
 
-static gonio_status bad_cell(gonio_context *context, const gonio_readings *readings, size_t row,
-                             int column, gonio_status status, const char *problem)
+gonio_status gonio_i_readings_finish(gonio_context *context, gonio_readings *readings,
+                                     bool measured)
 {
-    return gonio_i_fail(context, status, "%s:%zu: %s '%.60s' %s", readings->path,
-                        readings->csv->line[row], readings->csv->name[column],
-                        gonio_i_csv_cell(readings->csv, row, (size_t)column), problem);
-}
-
-static gonio_status read_angles(gonio_context *context, const gonio_readings *readings, size_t row,
-                                const columns *c, double degrees[4])
-{
-    for (int k = 0; k < 4; k++) {
-        if (!gonio_i_csv_number(readings->csv, row, (size_t)c->angle[k], &degrees[k]) ||
-            !isfinite(degrees[k])) {
-            return bad_cell(context, readings, row, c->angle[k], GONIO_ERROR_FORMAT,
-                            "is not a finite number");
-        }
-        const bool polar = k % 2 == 0;
-        if (polar && !(degrees[k] >= 0.0 && degrees[k] < 90.0)) {
-            return bad_cell(context, readings, row, c->angle[k], GONIO_ERROR_DATA,
-                            degrees[k] < 0.0 ? "is negative: give 0 to 90, and turn phi by 180"
-                                             : "is at or below the horizon: theta is less than 90");
-        }
-        if (!polar && !(fabs(degrees[k]) <= 360.0)) {
-            return bad_cell(context, readings, row, c->angle[k], GONIO_ERROR_DATA,
-                            "is outside -360 to 360 degrees");
-        }
-    }
-    return GONIO_OK;
-}
-
-static gonio_angles to_angles(double theta, double phi)
-{
-    const double turned = fmod(phi < 0.0 ? phi + 360.0 : phi, 360.0);
-    return (gonio_angles){theta * M_PI / 180.0, turned * M_PI / 180.0};
-}
-
-static bool is_missing(const char *cell)
-{
-    return *cell == '\0' || strcasecmp(cell, "na") == 0 || strcasecmp(cell, "nan") == 0;
-}
-
-/* 1/sr: far above any peak, in any unit, and far below where squares overflow. */
-static const double MOST_VALUE = 1e30;
-
-/* NaN for a column that there is not (-1) and for an empty cell. */
-static gonio_status read_value(gonio_context *context, const gonio_readings *readings, size_t row,
-                               int column, const gonio_readings_options *options, double *value)
-{
-    *value = NAN;
-    if (column < 0 || is_missing(gonio_i_csv_cell(readings->csv, row, (size_t)column))) {
-        return GONIO_OK;
-    }
-    if (!gonio_i_csv_number(readings->csv, row, (size_t)column, value) || !isfinite(*value)) {
-        return bad_cell(context, readings, row, column, GONIO_ERROR_FORMAT,
-                        "is not a finite number (leave the cell empty where nothing was read)");
-    }
-    if (*value > MOST_VALUE) {
-        return bad_cell(context, readings, row, column, GONIO_ERROR_DATA,
-                        "is larger than any BRDF (leave the cell empty where nothing was read)");
-    }
-    if (*value < 0.0 && !options->negative_to_zero) {
-        return bad_cell(context, readings, row, column, GONIO_ERROR_DATA,
-                        "is negative: a dark level too high? --negative-to-zero takes it as 0");
-    }
-    *value = fmax(*value, 0.0);
-    return GONIO_OK;
-}
-
-static gonio_status read_values(gonio_context *context, gonio_readings *readings, size_t row,
-                                const columns *c, const gonio_readings_options *options)
-{
-    gonio_status status = GONIO_OK;
-    for (int k = 0; k < GONIO_CHANNELS && status == GONIO_OK; k++) {
-        status = read_value(context, readings, row, c->value[k], options,
-                            &readings->reading[row].value[k]);
-    }
-    for (size_t k = 0; k < c->wavelengths && status == GONIO_OK; k++) {
-        status = read_value(context, readings, row, c->spectral[k], options,
-                            &readings->spectrum[row * c->wavelengths + k]);
-    }
-    return status;
-}
-
-static gonio_status read_channel(gonio_context *context, const gonio_readings *readings, size_t row,
-                                 const columns *c, int *channel)
-{
-    *channel = GONIO_ALL_CHANNELS;
-    if (c->channel < 0) {
-        return GONIO_OK;
-    }
-    const char *cell = gonio_i_csv_cell(readings->csv, row, (size_t)c->channel);
-    if (*cell == '\0') {
-        return GONIO_OK;
-    }
-    for (int k = GONIO_ALL_CHANNELS; k < GONIO_CHANNELS; k++) {
-        if (strcasecmp(cell, channel_names[k + 1]) == 0) {
-            *channel = k;
-            return GONIO_OK;
-        }
-    }
-    return bad_cell(context, readings, row, c->channel, GONIO_ERROR_FORMAT,
-                    "is no channel: R, G, B or all");
-}
-
-static gonio_status read_row(gonio_context *context, gonio_readings *readings, size_t row,
-                             const columns *c, const gonio_readings_options *options)
-{
-    gonio_reading *reading = &readings->reading[row];
-    double degrees[4];
-    gonio_status status = read_angles(context, readings, row, c, degrees);
-    if (status == GONIO_OK) {
-        reading->pair =
-            (gonio_pair){to_angles(degrees[0], degrees[1]), to_angles(degrees[2], degrees[3])};
-        reading->line = readings->csv->line[row];
-        status = read_channel(context, readings, row, c, &reading->channel);
-    }
-    if (status == GONIO_OK) {
-        status = read_values(context, readings, row, c, options);
-    }
-    return status;
-}
-
-/* The number of a "# key: number" line; 0 if there is no such line. */
-static gonio_status read_note(gonio_context *context, const gonio_readings *readings,
-                              const char *key, int base, uint64_t *number)
-{
-    const char *text = gonio_i_csv_note(readings->csv, key);
-    if (text == NULL) {
-        *number = 0;
-        return GONIO_OK;
-    }
-    char *end = NULL;
-    errno = 0;
-    *number = strtoull(text, &end, base);
-    if (!isxdigit((unsigned char)*text) || *end != '\0' || errno != 0 || *number == 0) {
-        return gonio_i_fail(
-            context, GONIO_ERROR_FORMAT,
-            "%s: '# %s: %.60s' is not what gonio plan writes; restore it, or delete "
-            "the line",
-            readings->path, key, text);
-    }
-    return GONIO_OK;
-}
-
-static gonio_status read_notes(gonio_context *context, gonio_readings *readings)
-{
-    const char *grid = gonio_i_csv_note(readings->csv, "grid");
-    if (grid != NULL && strcmp(grid, grid_name) != 0) {
-        return gonio_i_fail(context, GONIO_ERROR_MISMATCH,
-                            "%s: made for the grid '%s'; this gonio works on '%s'", readings->path,
-                            grid, grid_name);
-    }
-    uint64_t components = 0;
-    gonio_status status = read_note(context, readings, "basis", 16, &readings->basis);
-    if (status == GONIO_OK) {
-        status = read_note(context, readings, "components", 10, &components);
-    }
-    readings->components = (size_t)components;
-    return status;
-}
-
-static gonio_status read_all(gonio_context *context, gonio_readings *readings,
-                             const gonio_readings_options *options, columns *c)
-{
-    readings->count = readings->csv->rows;
     if (readings->count == 0) {
         return gonio_i_fail(context, GONIO_ERROR_DATA, "%s: no lines below the column names",
                             readings->path);
     }
-    gonio_status status = find_columns(context, readings, options->values_needed, c);
-    if (status != GONIO_OK) {
-        return status;
+    const char *method = gonio_i_comments_value(&readings->comment, "method");
+    readings->method = method != NULL ? method : "";
+    const gonio_status status = gonio_i_readings_group(context, readings);
+    return status == GONIO_OK && !readings->options.average_repeats
+               ? gonio_i_readings_refuse_repeats(context, readings, measured)
+               : status;
+}
+
+gonio_status gonio_i_readings_note(gonio_context *context, gonio_readings *readings,
+                                   const char *format, ...)
+{
+    char *text = NULL;
+    va_list arguments;
+    va_start(arguments, format);
+    const int length = vasprintf(&text, format, arguments);
+    va_end(arguments);
+    const bool kept =
+        length >= 0 && gonio_i_comments_add_text(&readings->note, text, (size_t)length);
+    if (kept) {
+        gonio_i_note(context, "%s: %s", readings->path, text);
     }
-    readings->reading = gonio_i_allocate(context, readings->count, sizeof *readings->reading);
-    readings->first_same = gonio_i_allocate(context, readings->count, sizeof *readings->first_same);
-    if (readings->reading == NULL || readings->first_same == NULL) {
-        return GONIO_ERROR_MEMORY;
+    free(length >= 0 ? text : NULL);
+    return kept ? GONIO_OK
+                : gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", readings->path);
+}
+
+/* ---- from arrays ---- */
+
+static double to_degrees(double radians)
+{
+    return radians * 180.0 / M_PI;
+}
+
+static double within_a_turn(double phi)
+{
+    return phi >= 0.0 && phi < 2.0 * M_PI ? phi
+                                          : fmod(phi < 0.0 ? phi + 2.0 * M_PI : phi, 2.0 * M_PI);
+}
+
+static gonio_status take_pair(gonio_context *context, gonio_readings *r, size_t k,
+                              const gonio_pair *pair)
+{
+    const double degrees[4] = {to_degrees(pair->incident.theta), to_degrees(pair->incident.phi),
+                               to_degrees(pair->outgoing.theta), to_degrees(pair->outgoing.phi)};
+    r->pair[k] = (gonio_pair){{pair->incident.theta, within_a_turn(pair->incident.phi)},
+                              {pair->outgoing.theta, within_a_turn(pair->outgoing.phi)}};
+    r->line[k] = k + 1;
+    return check_angles(context, r, k + 1, degrees);
+}
+
+static gonio_status take_planned(gonio_context *context, gonio_readings *r, size_t k, int planned)
+{
+    r->planned[k] = planned;
+    if (planned != GONIO_ALL_CHANNELS && !(planned >= 0 && (size_t)planned < r->channels)) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "%s:%zu: channel %d of %zu channels",
+                            r->path, k + 1, planned, r->channels);
     }
-    if (c->wavelengths > 0) {
-        status = gonio_i_readings_set_wavelengths(context, readings, c->wavelength, c->wavelengths);
-    }
-    for (size_t row = 0; row < readings->count && status == GONIO_OK; row++) {
-        status = read_row(context, readings, row, c, options);
-    }
-    if (status == GONIO_OK) {
-        status = gonio_i_readings_group(context, readings->reading, readings->count,
-                                        readings->first_same);
-    }
-    if (status == GONIO_OK && !options->average_repeats) {
-        status = refuse_repeats(context, readings, options->values_needed);
+    return GONIO_OK;
+}
+
+static gonio_status allocate_directions(gonio_context *context, gonio_readings *r, size_t count)
+{
+    r->count = count;
+    r->room = count;
+    r->pair = gonio_i_allocate(context, count, sizeof *r->pair);
+    r->planned = gonio_i_allocate(context, count, sizeof *r->planned);
+    r->line = gonio_i_allocate(context, count, sizeof *r->line);
+    return r->pair && r->planned && r->line ? GONIO_OK : GONIO_ERROR_MEMORY;
+}
+
+static gonio_status take_directions(gonio_context *context, gonio_readings *r,
+                                    const gonio_readings_arrays *a)
+{
+    gonio_status status = allocate_directions(context, r, a->count);
+    for (size_t k = 0; k < a->count && status == GONIO_OK; k++) {
+        status = take_pair(context, r, k, &a->pair[k]);
+        if (status == GONIO_OK) {
+            status = take_planned(context, r, k,
+                                  a->planned != NULL ? a->planned[k] : GONIO_ALL_CHANNELS);
+        }
     }
     return status;
 }
 
-static gonio_status read_rows(gonio_context *context, gonio_readings *readings,
-                              const gonio_readings_options *options)
+/* Checks and copies values[count][channels]. */
+static gonio_status copy_values(gonio_context *context, const gonio_readings *r,
+                                const gonio_readings_options *options, const double *value,
+                                double *to)
 {
-    columns c = {0};
-    const gonio_status status = read_all(context, readings, options, &c);
-    free(c.spectral);
-    free(c.wavelength);
+    gonio_status status = GONIO_OK;
+    for (size_t k = 0; k < r->count * r->channels && status == GONIO_OK; k++) {
+        status = take_value(context, r, r->line[k / r->channels], k % r->channels, options,
+                            value[k], &to[k]);
+    }
     return status;
 }
 
-gonio_status gonio_readings_read(gonio_context *context, const char *path,
-                                 const gonio_readings_options *options, gonio_readings **readings)
+static gonio_status fill(gonio_context *context, gonio_readings *r, const gonio_readings_arrays *a)
 {
-    gonio_readings_options defaults;
-    gonio_readings_options_default(&defaults);
-    gonio_readings *made = gonio_i_allocate(context, 1, sizeof *made);
-    if (made == NULL) {
-        return GONIO_ERROR_MEMORY;
+    if (a->count == 0) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "no readings given");
     }
-    made->path = strdup(path);
-    gonio_status status = GONIO_ERROR_MEMORY;
-    if (made->path != NULL) {
-        status = gonio_i_scattered_probe(path) ? gonio_i_scattered_read(context, path, &made->csv)
-                                               : gonio_i_csv_read(context, path, &made->csv);
+    r->count = a->count;
+    gonio_status status = gonio_i_readings_set_channels(context, r, a->channels, a->wavelength);
+    if (status == GONIO_OK) {
+        status = take_directions(context, r, a);
+    }
+    if (status == GONIO_OK && a->value != NULL) {
+        status = copy_values(context, r, &r->options, a->value, r->value);
     }
     if (status == GONIO_OK) {
-        status = read_notes(context, made);
+        status = gonio_readings_set_deviations(context, r, a->deviation);
     }
-    if (status == GONIO_OK) {
-        status = read_rows(context, made, options != NULL ? options : &defaults);
-    }
+    return status == GONIO_OK ? gonio_i_readings_finish(context, r, a->value != NULL) : status;
+}
+
+gonio_status gonio_readings_create(gonio_context *context, const gonio_readings_arrays *arrays,
+                                   const gonio_readings_options *options, gonio_readings **readings)
+{
+    gonio_readings *made = gonio_i_readings_new(context, "readings", options);
+    const gonio_status status = made != NULL ? fill(context, made, arrays) : GONIO_ERROR_MEMORY;
     if (status != GONIO_OK) {
         gonio_readings_free(&made);
         return status;
@@ -475,66 +443,99 @@ gonio_status gonio_readings_read(gonio_context *context, const char *path,
     return GONIO_OK;
 }
 
-/* ---- writing ---- */
-
-static int column_or_new(gonio_i_csv *csv, const char *name)
+static gonio_status fill_from_plan(gonio_context *context, gonio_readings *r,
+                                   const gonio_plan *plan)
 {
-    const int column = gonio_i_csv_column(csv, name);
-    if (column >= 0) {
-        return column;
+    if (plan->count == 0) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "a plan without entries");
     }
-    return gonio_i_csv_add_column(csv, name) ? (int)csv->columns - 1 : -1;
+    gonio_status status = allocate_directions(context, r, plan->count);
+    if (status == GONIO_OK) {
+        status = gonio_i_readings_set_channels(context, r, GONIO_CHANNELS, NULL);
+    }
+    for (size_t k = 0; k < plan->count && status == GONIO_OK; k++) {
+        status = take_pair(context, r, k, &plan->entries[k].pair);
+        r->planned[k] = plan->entries[k].channel;
+    }
+    r->basis = plan->basis;
+    r->components = plan->expected == NULL ? plan->components : 0;
+    if (status == GONIO_OK && !gonio_i_plan_comments(plan, &r->comment)) {
+        status = gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", r->path);
+    }
+    return status == GONIO_OK ? gonio_i_readings_finish(context, r, false) : status;
 }
 
-static bool set_channel(gonio_i_csv *csv, const gonio_readings *readings, size_t channel,
-                        const char *name)
+gonio_status gonio_readings_create_from_plan(gonio_context *context, const gonio_plan *plan,
+                                             gonio_readings **readings)
 {
-    const int column = column_or_new(csv, name);
-    bool set = column >= 0;
-    for (size_t row = 0; row < readings->count && set; row++) {
-        const double value = gonio_readings_value(readings, row, channel);
-        set = isnan(value) ? gonio_i_csv_set(csv, row, (size_t)column, "%s", "")
-                           : gonio_i_csv_set(csv, row, (size_t)column, "%.10g", value);
+    const gonio_readings_options any = {.average_repeats = true};
+    gonio_readings *made = gonio_i_readings_new(context, "plan", &any);
+    const gonio_status status =
+        made != NULL ? fill_from_plan(context, made, plan) : GONIO_ERROR_MEMORY;
+    if (status != GONIO_OK) {
+        gonio_readings_free(&made);
+        return status;
     }
-    return set;
+    *readings = made;
+    return GONIO_OK;
 }
 
-static bool set_values(gonio_i_csv *csv, const gonio_readings *readings)
+/* ---- changing them ---- */
+
+gonio_status gonio_readings_set_values(gonio_context *context, gonio_readings *readings,
+                                       size_t channels, const double *wavelength,
+                                       const double *value, const gonio_readings_options *options)
 {
-    bool set = true;
-    for (size_t k = 0; k < gonio_readings_channels(readings) && set; k++) {
-        char name[48];
-        if (readings->wavelengths > 0) {
-            snprintf(name, sizeof name, "%.10gnm_per_sr", readings->wavelength[k]);
-        }
-        set = set_channel(csv, readings, k, readings->wavelengths > 0 ? name : value_columns[k]);
+    gonio_readings_options defaults;
+    gonio_readings_options_default(&defaults);
+    gonio_readings changed = *readings; /* what fails leaves the readings as they are */
+    changed.value = NULL;
+    changed.deviation = NULL;
+    changed.wavelength = NULL;
+    gonio_status status = gonio_i_readings_set_channels(context, &changed, channels, wavelength);
+    if (status == GONIO_OK && value != NULL) {
+        status = copy_values(context, &changed, options != NULL ? options : &defaults, value,
+                             changed.value);
     }
-    return set;
+    gonio_readings *dropped = status == GONIO_OK ? readings : &changed;
+    free(dropped->value);
+    free(dropped->deviation);
+    free(dropped->wavelength);
+    if (status == GONIO_OK) {
+        *readings = changed;
+    }
+    return status;
 }
 
-/* The header lines of a readings file: what it is and who wrote it, then what the plan said. */
-static bool set_comments(gonio_i_csv *csv, const char *command)
+gonio_status gonio_readings_set_value(gonio_context *context, gonio_readings *readings,
+                                      size_t reading, size_t channel, double value)
 {
-    static const char plan_title[] = "gonio plan";
-    if (csv->comments > 0 && strcmp(csv->comment[0], plan_title) == 0) {
-        char *title = strdup("gonio readings");
-        if (title == NULL) {
-            return false;
-        }
-        free(csv->comment[0]);
-        csv->comment[0] = title;
+    if (reading >= readings->count || channel >= readings->channels) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "%s: reading %zu, channel %zu of %zu readings in %zu channels",
+                            readings->path, reading, channel, readings->count, readings->channels);
     }
-    gonio_i_csv_drop_note(csv, "program");
-    gonio_i_csv_drop_note(csv, "command");
-    return gonio_i_csv_add_comment(csv, "program: gonio %s", gonio_version()) &&
-           (command == NULL || gonio_i_csv_add_comment(csv, "command: %s", command));
+    gonio_readings_options strict;
+    gonio_readings_options_default(&strict);
+    return take_value(context, readings, readings->line[reading], channel, &strict, value,
+                      &gonio_i_readings_values(readings, reading)[channel]);
 }
 
-gonio_status gonio_readings_write(gonio_context *context, const gonio_readings *readings,
-                                  const char *command, const char *path)
+gonio_status gonio_readings_set_deviations(gonio_context *context, gonio_readings *readings,
+                                           const double *deviation)
 {
-    if (!set_values(readings->csv, readings) || !set_comments(readings->csv, command)) {
-        return gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", path);
+    double *made = deviation != NULL ? make_values(context, readings, readings->channels) : NULL;
+    gonio_status status = deviation != NULL && made == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    const size_t channels = readings->channels;
+    for (size_t k = 0; made != NULL && k < readings->count * channels && status == GONIO_OK; k++) {
+        status = take_deviation(context, readings, readings->line[k / channels], k % channels,
+                                deviation[k], &made[k]);
     }
-    return gonio_i_csv_write(context, readings->csv, path);
+    if (status != GONIO_OK) {
+        free(made);
+        return status;
+    }
+    free(readings->deviation);
+    readings->deviation = made;
+    return GONIO_OK;
 }

@@ -1,35 +1,97 @@
-/* The inside of readings, shared by files and the instrument. */
+/* The inside of readings, shared by file formats and the instrument. */
 #ifndef GONIO_READINGS_INTERNAL_H
 #define GONIO_READINGS_INTERNAL_H
 
 #include <gonio/measurement.h>
 
+#include "../core/comments.h"
 #include "../core/core.h"
-#include "../core/csv.h"
+
+/* What a file holds besides readings: its format's, which writes it again. */
+typedef struct gonio_i_attachment {
+    void *data;
+    void (*release)(void *data);
+} gonio_i_attachment;
 
 struct gonio_readings {
     char *path;
-    gonio_i_csv *csv; /* the whole file, other columns included */
+    gonio_readings_options options; /* that they were made with */
     size_t count;
-    gonio_reading *reading;
+    size_t room; /* readings that the arrays below have room for */
+    size_t channels;
+    gonio_pair *pair;
+    int *planned;
+    size_t *line;
+    double *value;      /* [count][channels] */
+    double *deviation;  /* [count][channels]; NULL: none is known */
+    double *wavelength; /* [channels]; NULL: colours or unnamed channels */
+    bool keep_angles;   /* angles are written as they were given: */
+    double (*given)[4]; /* [count], theta_i, phi_i, theta_o, phi_o in degrees; or NULL */
     size_t *first_same; /* [count]: the first reading with the same directions */
     uint64_t basis;
     size_t components;
-    size_t wavelengths; /* 0: R, G, B */
-    double *wavelength; /* [wavelengths] */
-    double *spectrum;   /* [count][wavelengths] */
+    const char *method;       /* that the comments state; "" */
+    gonio_i_comments comment; /* of the file, which CSV has room for */
+    gonio_i_comments note;    /* what its reader has to say of it */
+    gonio_i_attachment attachment;
 };
 
-/* Whether a file is scattered readings as text; and its table, with columns as in a CSV file. */
-bool gonio_i_scattered_probe(const char *path);
-gonio_status gonio_i_scattered_read(gonio_context *context, const char *path, gonio_i_csv **csv);
+/* ---- making them ---- */
 
-/* Room for a spectrum of these wavelengths in every reading; what was there is dropped. */
-gonio_status gonio_i_readings_set_wavelengths(gonio_context *context, gonio_readings *readings,
-                                              const double *wavelength, size_t count);
+/* options may be NULL. NULL when out of memory. */
+gonio_readings *gonio_i_readings_new(gonio_context *context, const char *path,
+                                     const gonio_readings_options *options);
 
-/* Fills first_same for readings in any order. */
-gonio_status gonio_i_readings_group(gonio_context *context, const gonio_reading *reading,
-                                    size_t count, size_t *first_same);
+/* The channels of readings that hold nothing yet. wavelength[channels] or NULL. */
+gonio_status gonio_i_readings_begin(gonio_context *context, gonio_readings *readings,
+                                    size_t channels, const double *wavelength);
+
+/* One reading as files have them. */
+typedef struct gonio_i_reading {
+    double degrees[4]; /* theta_i, phi_i, theta_o, phi_o; phi in [-360, 360] */
+    int planned;
+    size_t line;
+    const double *value;     /* [channels] */
+    const double *deviation; /* [channels] or NULL, in all readings the same */
+} gonio_i_reading;
+
+/* Adds a reading; every number is checked, and a value below zero becomes 0 if it may. */
+gonio_status gonio_i_readings_add(gonio_context *context, gonio_readings *readings,
+                                  const gonio_i_reading *reading);
+
+/* The last step: the same directions are found, and refused unless repeats are to be averaged.
+ * `measured`: they are readings, not a plan. */
+gonio_status gonio_i_readings_finish(gonio_context *context, gonio_readings *readings,
+                                     bool measured);
+
+/* Other channels for all readings; their values are NaN. */
+gonio_status gonio_i_readings_set_channels(gonio_context *context, gonio_readings *readings,
+                                           size_t channels, const double *wavelength);
+
+/* What the reader of a file says of it ("taken as reflectance factor"): kept, and told to the
+ * context. */
+gonio_status gonio_i_readings_note(gonio_context *context, gonio_readings *readings,
+                                   const char *format, ...) GONIO_I_PRINTF(3, 4);
+
+/* The values of one reading. */
+static inline double *gonio_i_readings_values(gonio_readings *readings, size_t reading)
+{
+    return readings->value + reading * readings->channels;
+}
+
+/* The name of a channel's column of values: R_per_sr, 400nm_per_sr, value_per_sr; of their
+ * deviations: R_deviation_per_sr and so on. */
+enum { GONIO_I_NAME_ROOM = 64 };
+void gonio_i_value_name(const gonio_readings *readings, size_t channel, bool deviation,
+                        char name[GONIO_I_NAME_ROOM]);
+
+/* ---- the same directions (repeats.c) ---- */
+
+/* Fills in first_same for readings in any order. */
+gonio_status gonio_i_readings_group(gonio_context *context, gonio_readings *readings);
+
+/* _DATA if a direction is listed more than once for a channel. */
+gonio_status gonio_i_readings_refuse_repeats(gonio_context *context, const gonio_readings *readings,
+                                             bool measured);
 
 #endif

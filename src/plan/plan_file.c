@@ -1,5 +1,5 @@
 /* Plans and their history as CSV (docs/plan-and-readings.md). */
-#include <gonio/plan.h>
+#include "plan_file.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -9,27 +9,33 @@
 
 static const char *const channel_names[] = {"all", "R", "G", "B"};
 
-static bool add_origin(gonio_i_csv *csv, const char *kind, const char *command)
+static bool add_origin(gonio_i_comments *comments, const char *kind, const char *command)
 {
-    return gonio_i_csv_add_comment(csv, "gonio %s", kind) &&
-           gonio_i_csv_add_comment(csv, "program: gonio %s", gonio_version()) &&
-           (command == NULL || gonio_i_csv_add_comment(csv, "command: %s", command));
+    return gonio_i_comments_add(comments, "gonio %s", kind) &&
+           gonio_i_comments_add(comments, "program: gonio %s", gonio_version()) &&
+           (command == NULL || gonio_i_comments_add(comments, "command: %s", command));
 }
 
-static bool add_plan_notes(gonio_i_csv *csv, const gonio_plan *plan)
+static bool add_plan_notes(gonio_i_comments *comments, const gonio_plan *plan)
 {
-    return gonio_i_csv_add_comment(csv, "basis: %016" PRIx64, plan->basis) &&
+    return gonio_i_comments_add(comments, "basis: %016" PRIx64, plan->basis) &&
            (plan->expected != NULL ||
-            gonio_i_csv_add_comment(csv, "components: %zu", plan->components)) &&
-           gonio_i_csv_add_comment(csv, "method: %s", plan->method) &&
-           (plan->expected != NULL
-                ? gonio_i_csv_add_comment(csv, "expected_e6_percent: %.4g",
-                                          plan->expected[plan->count - 1])
-                : gonio_i_csv_add_comment(csv, "condition_number: %.6g", plan->condition_number)) &&
-           gonio_i_csv_add_comment(csv, "grid: half/difference 90 x 90 x 180") &&
-           gonio_i_csv_add_comment(csv, "theta from the normal, phi about it, incident (i) towards "
-                                        "the light, outgoing (o) towards the detector; a row asks "
-                                        "for one channel, other channels read there may be kept");
+            gonio_i_comments_add(comments, "components: %zu", plan->components)) &&
+           gonio_i_comments_add(comments, "method: %s", plan->method) &&
+           (plan->expected != NULL ? gonio_i_comments_add(comments, "expected_e6_percent: %.4g",
+                                                          plan->expected[plan->count - 1])
+                                   : gonio_i_comments_add(comments, "condition_number: %.6g",
+                                                          plan->condition_number)) &&
+           gonio_i_comments_add(comments, "grid: half/difference 90 x 90 x 180") &&
+           gonio_i_comments_add(comments,
+                                "theta from the normal, phi about it, incident (i) towards "
+                                "the light, outgoing (o) towards the detector; a row asks "
+                                "for one channel, other channels read there may be kept");
+}
+
+bool gonio_i_plan_comments(const gonio_plan *plan, gonio_i_comments *comments)
+{
+    return gonio_i_comments_add(comments, "gonio plan") && add_plan_notes(comments, plan);
 }
 
 static bool add_entry(gonio_i_csv *csv, const gonio_plan_entry *entry)
@@ -47,7 +53,7 @@ static bool add_entry(gonio_i_csv *csv, const gonio_plan_entry *entry)
 static bool fill_plan(gonio_i_csv *csv, const gonio_plan *plan, const char *command)
 {
     bool done =
-        add_origin(csv, "plan", command) && add_plan_notes(csv, plan) &&
+        add_origin(&csv->comment, "plan", command) && add_plan_notes(&csv->comment, plan) &&
         gonio_i_csv_add_column(csv, "theta_i_deg") && gonio_i_csv_add_column(csv, "phi_i_deg") &&
         gonio_i_csv_add_column(csv, "theta_o_deg") && gonio_i_csv_add_column(csv, "phi_o_deg") &&
         gonio_i_csv_add_column(csv, "channel") &&
@@ -61,7 +67,7 @@ static bool fill_plan(gonio_i_csv *csv, const gonio_plan *plan, const char *comm
 
 static bool fill_history(gonio_i_csv *csv, const gonio_plan *plan, const char *command)
 {
-    bool done = add_origin(csv, "plan history", command) &&
+    bool done = add_origin(&csv->comment, "plan history", command) &&
                 gonio_i_csv_add_column(csv, "restart") && gonio_i_csv_add_column(csv, "swap") &&
                 gonio_i_csv_add_column(csv, "condition_number");
     for (size_t k = 0; done && k < plan->steps; k++) {

@@ -69,7 +69,7 @@ enum { HYPOTHESES = sizeof hypotheses / sizeof *hypotheses };
 static bool is_possible(const gonio_readings_view *view, const gonio_i_transform *transform)
 {
     for (size_t k = 0; k < view->count && transform->turn != NULL; k++) {
-        const gonio_pair turned = transform->turn(view->reading[k].pair);
+        const gonio_pair turned = transform->turn(view->pair[k]);
         const double largest = fmax(turned.incident.theta, turned.outgoing.theta);
         const double least = fmin(turned.incident.theta, turned.outgoing.theta);
         if (!(largest < M_PI / 2.0 && least >= 0.0)) {

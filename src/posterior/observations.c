@@ -19,20 +19,20 @@ static double variance_of(double value, double s, const gonio_i_noise *noise)
 }
 
 /* What a value is multiplied by. */
-static double factor_of(const gonio_reading *reading, double s, const gonio_i_transform *transform)
+static double factor_of(gonio_pair pair, double s, const gonio_i_transform *transform)
 {
-    const double cosine = transform->by_cosine ? cos(reading->pair.outgoing.theta) : 1.0;
+    const double cosine = transform->by_cosine ? cos(pair.outgoing.theta) : 1.0;
     return transform->factor * (transform->merl ? s : 1.0) / fmax(cosine, 1e-3);
 }
 
-static double true_value(const gonio_reading *reading, size_t channel, double value, double s,
+static double true_value(gonio_pair pair, size_t channel, double value, double s,
                          const gonio_i_transform *transform)
 {
     if (transform == NULL) {
         return value;
     }
-    return value * factor_of(reading, s, transform) +
-           gonio_i_dark_level_missing(transform->dark, channel, reading->pair.incident.theta);
+    return value * factor_of(pair, s, transform) +
+           gonio_i_dark_level_missing(transform->dark, channel, pair.incident.theta);
 }
 
 /* Of a value as it was read. */
@@ -45,17 +45,17 @@ static int bound_of(double read, const gonio_i_noise *noise)
 static gonio_i_observation observe(const gonio_readings *readings, size_t index, size_t channel,
                                    const gonio_i_noise *noise, const gonio_i_transform *transform)
 {
-    const gonio_reading *reading = &gonio_readings_describe(readings).reading[index];
+    const gonio_pair pair = gonio_readings_describe(readings).pair[index];
     const double s = gonio_readings_scale(readings, channel);
     const double read = gonio_readings_value(readings, index, channel);
-    const double value = true_value(reading, channel, read, s, transform);
+    const double value = true_value(pair, channel, read, s, transform);
     const bool turned = transform != NULL && transform->turn != NULL;
-    return (gonio_i_observation){.at = gonio_half_difference_from_pair(
-                                     turned ? transform->turn(reading->pair) : reading->pair),
-                                 .channel = (int)channel,
-                                 .g = log1p(value / s),
-                                 .variance = variance_of(value, s, noise),
-                                 .bound = bound_of(read, noise)};
+    return (gonio_i_observation){
+        .at = gonio_half_difference_from_pair(turned ? transform->turn(pair) : pair),
+        .channel = (int)channel,
+        .g = log1p(value / s),
+        .variance = variance_of(value, s, noise),
+        .bound = bound_of(read, noise)};
 }
 
 static void add_channel(const gonio_readings *readings, size_t channel, const gonio_i_noise *noise,
@@ -73,7 +73,7 @@ gonio_status gonio_i_columns_create(gonio_context *context, const gonio_basis_vi
                                     const gonio_i_transform *transform, gonio_i_columns *columns)
 {
     const bool joint = view->channels == GONIO_JOINT;
-    const size_t channels = gonio_readings_channels(readings);
+    const size_t channels = gonio_readings_describe(readings).channels;
     const size_t each = gonio_readings_describe(readings).count * (joint ? channels : 1);
     *columns = (gonio_i_columns){.count = joint ? 1 : channels};
     columns->column = gonio_i_allocate(context, columns->count, sizeof *columns->column);
@@ -121,9 +121,8 @@ double gonio_i_transform_logarithm(const gonio_readings *readings, size_t channe
     for (size_t k = 0; k < view.count; k++) {
         const double value = gonio_readings_value(readings, k, channel);
         if (!isnan(value) && bound_of(value, noise) == 0) {
-            const double factor = factor_of(&view.reading[k], s, transform);
-            sum +=
-                log(factor) - log(s + true_value(&view.reading[k], channel, value, s, transform));
+            const double factor = factor_of(view.pair[k], s, transform);
+            sum += log(factor) - log(s + true_value(view.pair[k], channel, value, s, transform));
         }
     }
     return sum;

@@ -42,7 +42,7 @@ gonio_status gonio_i_estimate_check(gonio_context *context, const gonio_basis *b
     const gonio_basis_view view = gonio_basis_describe(basis);
     const gonio_status status = check(context, &view, options);
     if (status == GONIO_OK && view.channels == GONIO_JOINT &&
-        gonio_readings_describe(readings).wavelengths > 0) {
+        !gonio_readings_are_colours(readings)) {
         return gonio_i_fail(context, GONIO_ERROR_MISMATCH,
                             "spectral readings need a basis of separate channels (gonio learn "
                             "--channels separate)");
@@ -98,15 +98,15 @@ static gonio_status keep_wavelengths(gonio_context *context, const gonio_reading
                                      gonio_reconstruction *r)
 {
     const gonio_readings_view view = gonio_readings_describe(readings);
-    if (view.wavelengths == 0) {
+    if (view.wavelength == NULL) {
         return GONIO_OK;
     }
-    r->wavelengths = view.wavelengths;
-    r->wavelength = gonio_i_allocate(context, view.wavelengths, sizeof *r->wavelength);
+    r->wavelengths = view.channels;
+    r->wavelength = gonio_i_allocate(context, view.channels, sizeof *r->wavelength);
     if (r->wavelength == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    memcpy(r->wavelength, view.wavelength, view.wavelengths * sizeof *r->wavelength);
+    memcpy(r->wavelength, view.wavelength, view.channels * sizeof *r->wavelength);
     return GONIO_OK;
 }
 
@@ -117,7 +117,7 @@ static gonio_status estimate(gonio_context *context, const gonio_i_prior *prior,
 {
     const gonio_i_noise noise = gonio_i_estimate_noise(options);
     gonio_status status = keep_wavelengths(context, readings, r);
-    if (status == GONIO_OK && !options->no_checks) {
+    if (status == GONIO_OK && !options->believe) {
         status =
             gonio_i_interpret(context, prior, readings, &noise, columns, &r->dark, &r->suspicion);
     }

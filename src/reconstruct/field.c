@@ -45,31 +45,41 @@ double gonio_i_field_at(const gonio_basis *basis, const double *field, int chann
 
 /* ---- predicting ---- */
 
-static size_t channels_of(const gonio_reconstruction *r)
+static bool is_joint(const gonio_basis *basis)
 {
-    return r->wavelengths > 0 ? r->wavelengths : GONIO_CHANNELS;
+    return gonio_basis_describe(basis).channels == GONIO_JOINT;
 }
 
-static double scale_of(const gonio_reconstruction *r, size_t channel)
+static size_t channels_of(const gonio_basis *basis, const gonio_reconstruction *r)
 {
-    return gonio_log_scale(r->wavelengths > 0 ? GONIO_CHANNELS : (int)channel);
+    return is_joint(basis) ? GONIO_CHANNELS : r->columns;
+}
+
+/* R, G, B, as gonio_readings_are_colours has it. */
+static bool has_colours(const gonio_basis *basis, const gonio_reconstruction *r)
+{
+    return r->wavelengths == 0 && channels_of(basis, r) == GONIO_CHANNELS;
+}
+
+static double scale_of(const gonio_basis *basis, const gonio_reconstruction *r, size_t channel)
+{
+    return gonio_log_scale(has_colours(basis, r) ? (int)channel : GONIO_CHANNELS);
 }
 
 /* Where a channel's rows begin in a field or a deviation. */
-static const double *rows_of(const gonio_basis *basis, const gonio_reconstruction *r,
-                             const double *field, size_t channel)
+static const double *rows_of(const gonio_basis *basis, const double *field, size_t channel)
 {
-    return field + (r->columns > 1 ? channel * gonio_basis_describe(basis).rows : 0);
+    return field + (is_joint(basis) ? 0 : channel * gonio_basis_describe(basis).rows);
 }
 
 void gonio_reconstruction_predict(const gonio_basis *basis, const gonio_reconstruction *r,
                                   gonio_half_difference at, double *value, double *deviation)
 {
-    for (size_t k = 0; k < channels_of(r); k++) {
-        const double g = gonio_i_field_at(basis, rows_of(basis, r, r->field, k), (int)k, at);
-        value[k] = scale_of(r, k) * expm1(fmin(fmax(g, 0.0), GONIO_I_LARGEST_LOG));
+    for (size_t k = 0; k < channels_of(basis, r); k++) {
+        const double g = gonio_i_field_at(basis, rows_of(basis, r->field, k), (int)k, at);
+        value[k] = scale_of(basis, r, k) * expm1(fmin(fmax(g, 0.0), GONIO_I_LARGEST_LOG));
         if (deviation != NULL) {
-            deviation[k] = gonio_i_field_at(basis, rows_of(basis, r, r->deviation, k), (int)k, at);
+            deviation[k] = gonio_i_field_at(basis, rows_of(basis, r->deviation, k), (int)k, at);
         }
     }
 }
@@ -82,24 +92,17 @@ gonio_status gonio_reconstruction_predict_readings(gonio_context *context, const
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
                             "only a reconstruction by posterior predicts single readings");
     }
-    double *value = gonio_i_allocate(context, channels_of(r), sizeof *value);
-    gonio_status status = value == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
-    if (status == GONIO_OK && r->wavelengths > 0) {
-        status = gonio_i_readings_set_wavelengths(context, readings, r->wavelength, r->wavelengths);
-    }
+    const size_t channels = channels_of(basis, r);
+    gonio_status status = gonio_i_readings_set_channels(context, readings, channels, r->wavelength);
     for (size_t k = 0; k < readings->count && status == GONIO_OK; k++) {
-        gonio_reading *reading = &readings->reading[k];
-        gonio_reconstruction_predict(basis, r, gonio_half_difference_from_pair(reading->pair),
-                                     value, NULL);
-        for (size_t c = 0; c < channels_of(r); c++) {
-            const double missing =
-                gonio_i_dark_level_missing(r->dark, c, reading->pair.incident.theta);
+        const gonio_pair *pair = &readings->pair[k];
+        double *value = gonio_i_readings_values(readings, k);
+        gonio_reconstruction_predict(basis, r, gonio_half_difference_from_pair(*pair), value, NULL);
+        for (size_t c = 0; c < channels; c++) {
+            const double missing = gonio_i_dark_level_missing(r->dark, c, pair->incident.theta);
             value[c] = fmax(value[c] - missing, 0.0);
         }
-        double *to = r->wavelengths > 0 ? readings->spectrum + k * r->wavelengths : reading->value;
-        memcpy(to, value, channels_of(r) * sizeof *value);
     }
-    free(value);
     return status;
 }
 
@@ -170,13 +173,25 @@ static gonio_status read_field(void *self, gonio_context *context, int theta_h, 
 }
 
 /* [channel][position] of R, G, B. */
-static void copy_colours(const gonio_reconstruction *r, const double *from, spread_field *f)
+static void copy_colours(const double *from, spread_field *f)
 {
-    const bool joint = r->columns == 1;
+    const bool joint = is_joint(f->basis);
     for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
         for (size_t k = 0; k < f->view.cells; k++) {
             f->g[channel * f->view.cells + k] =
                 joint ? from[k * GONIO_CHANNELS + channel] : from[channel * f->view.rows + k];
+        }
+    }
+}
+
+/* A single channel without a wavelength as grey. */
+static void copy_grey(const gonio_reconstruction *r, spread_field *f)
+{
+    for (size_t k = 0; k < f->view.cells; k++) {
+        const double rho =
+            scale_of(f->basis, r, 0) * expm1(fmin(fmax(r->field[k], 0.0), GONIO_I_LARGEST_LOG));
+        for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
+            f->g[channel * f->view.cells + k] = gonio_log_from_brdf(rho, (int)channel);
         }
     }
 }
@@ -188,7 +203,7 @@ static void mix_colours(const gonio_reconstruction *r, double *spectrum, spread_
         double rgb[GONIO_CHANNELS];
         for (size_t j = 0; j < r->wavelengths; j++) {
             const double g = r->field[j * f->view.rows + k];
-            spectrum[j] = scale_of(r, j) * expm1(fmin(fmax(g, 0.0), GONIO_I_LARGEST_LOG));
+            spectrum[j] = scale_of(f->basis, r, j) * expm1(fmin(fmax(g, 0.0), GONIO_I_LARGEST_LOG));
         }
         gonio_i_spectrum_to_rgb(r->wavelength, spectrum, r->wavelengths, rgb);
         for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
@@ -200,9 +215,19 @@ static void mix_colours(const gonio_reconstruction *r, double *spectrum, spread_
 static gonio_status fill_field(gonio_context *context, const gonio_reconstruction *r,
                                const double *from, spread_field *f)
 {
-    if (r->wavelengths == 0) {
-        copy_colours(r, from, f);
+    if (has_colours(f->basis, r)) {
+        copy_colours(from, f);
         return GONIO_OK;
+    }
+    if (r->wavelengths == 0 && r->columns == 1) {
+        copy_grey(r, f);
+        return GONIO_OK;
+    }
+    if (r->wavelengths == 0) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "a table is made of R, G, B, of a spectrum or of a single channel, "
+                            "not of %zu channels",
+                            r->columns);
     }
     double *spectrum = gonio_i_allocate(context, r->wavelengths, sizeof *spectrum);
     if (spectrum == NULL) {
@@ -248,7 +273,7 @@ gonio_status gonio_reconstruction_deviation_material(gonio_context *context,
                                                      const gonio_reconstruction *r,
                                                      gonio_material **material)
 {
-    if (r->deviation == NULL || r->wavelengths > 0) {
+    if (r->deviation == NULL || !has_colours(basis, r)) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
                             "a table of deviations is made of readings in R, G, B, where they "
                             "were asked for");

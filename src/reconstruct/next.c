@@ -32,7 +32,7 @@ static gonio_status allocate(next *n)
     p->covariance = gonio_i_allocate(n->context, k * k, sizeof *p->covariance);
     n->read = gonio_i_allocate(n->context, n->readings->count, sizeof *n->read);
     for (size_t i = 0; n->read != NULL && i < n->readings->count; i++) {
-        n->read[i] = gonio_half_difference_from_pair(n->readings->reading[i].pair);
+        n->read[i] = gonio_half_difference_from_pair(n->readings->pair[i]);
     }
     const bool done = p->coefficients && p->field && p->covariance && n->read;
     return done ? GONIO_OK : GONIO_ERROR_MEMORY;
@@ -64,7 +64,7 @@ static gonio_status find_posterior(next *n, const gonio_reconstruct_options *opt
     if (status == GONIO_OK) {
         status = gonio_i_prior_create(n->context, n->basis, &n->prior);
     }
-    if (status == GONIO_OK && !options->no_checks) {
+    if (status == GONIO_OK && !options->believe) {
         status = gonio_i_interpret(n->context, n->prior, n->readings, &noise, &n->columns, &dark,
                                    &n->suspicion);
     }

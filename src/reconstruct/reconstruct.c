@@ -83,7 +83,7 @@ static gonio_status undetermined(gonio_context *context, const gathered *e, size
         context, GONIO_ERROR_UNDETERMINED,
         "%s%zu readings%s of which %zu are independent cannot determine %zu "
         "coefficients: measure at least %zu more directions, or use fewer components "
-        "(--components %zu)",
+        "(--basis %zu)",
         e->origin, e->count, channel, rank, needed, needed - rank, rank);
 }
 
@@ -220,29 +220,30 @@ typedef struct task {
  * line of the same directions says does not count again. */
 static bool is_used(const task *t, size_t index, int channel)
 {
-    const gonio_reading *reading = &t->readings->reading[index];
-    if (!t->options->all_channels || reading->channel == GONIO_ALL_CHANNELS) {
-        return reading->channel == GONIO_ALL_CHANNELS || reading->channel == channel;
+    const gonio_readings *r = t->readings;
+    if (!t->options->all_channels || r->planned[index] == GONIO_ALL_CHANNELS) {
+        return r->planned[index] == GONIO_ALL_CHANNELS || r->planned[index] == channel;
     }
-    const size_t first = t->readings->first_same[index];
-    return first == index || reading->value[channel] != t->readings->reading[first].value[channel];
+    const size_t first = r->first_same[index];
+    return first == index || r->value[index * GONIO_CHANNELS + (size_t)channel] !=
+                                 r->value[first * GONIO_CHANNELS + (size_t)channel];
 }
 
-static gonio_status add_reading(const task *t, const gonio_reading *reading, int channel,
-                                size_t components, gathered *e)
+static gonio_status add_reading(const task *t, size_t reading, int channel, size_t components,
+                                gathered *e)
 {
-    const double value = reading->value[channel];
-    if (isnan(value) && channel == reading->channel) {
+    const double value = gonio_readings_value(t->readings, reading, (size_t)channel);
+    if (isnan(value) && channel == t->readings->planned[reading]) {
         return gonio_i_fail(
             t->context, GONIO_ERROR_DATA,
             "%s:%zu: channel %c was planned here but not read; read it, or delete the "
             "line",
-            t->readings->path, reading->line, "RGB"[channel]);
+            t->readings->path, t->readings->line[reading], "RGB"[channel]);
     }
     if (isnan(value)) {
         return GONIO_OK;
     }
-    const gonio_half_difference at = gonio_half_difference_from_pair(reading->pair);
+    const gonio_half_difference at = gonio_half_difference_from_pair(t->readings->pair[reading]);
     double mean = 0.0;
     gonio_basis_row_at(t->basis, at, channel, components, &mean, e->x + e->count * components);
     e->b[e->count++] = gonio_mapped_from_brdf(t->mapping, value, channel, at) - mean;
@@ -259,7 +260,7 @@ static gonio_status collect(const task *t, size_t column, bool joint, size_t com
     for (size_t k = 0; k < t->readings->count; k++) {
         for (int channel = first; channel <= last && status == GONIO_OK; channel++) {
             if (is_used(t, k, channel)) {
-                status = add_reading(t, &t->readings->reading[k], channel, components, e);
+                status = add_reading(t, k, channel, components, e);
             }
         }
     }
@@ -301,7 +302,7 @@ static gonio_status choose_components(const task *t, size_t available, size_t *c
     if (k > available) {
         return gonio_i_fail(t->context, GONIO_ERROR_MISMATCH,
                             "%s: planned for %zu components, but the basis has %zu; give the basis "
-                            "of the plan, or use fewer components (--components %zu)",
+                            "of the plan, or use fewer components (--basis %zu)",
                             t->readings->path, k, available, available);
     }
     *components = k;
@@ -334,9 +335,10 @@ gonio_status gonio_reconstruct(gonio_context *context, const gonio_basis *basis,
     if (status == GONIO_OK && t.solver.method->solve == NULL) {
         return gonio_i_estimate_readings(context, basis, readings, t.options, reconstruction);
     }
-    if (status == GONIO_OK && readings->wavelengths > 0) {
-        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                            "%s: spectral readings are for --method posterior", readings->path);
+    if (status == GONIO_OK && !gonio_readings_are_colours(readings)) {
+        return gonio_i_fail(
+            context, GONIO_ERROR_ARGUMENT, "%s: %s are for --method posterior", readings->path,
+            readings->wavelength != NULL ? "spectral readings" : "readings other than of R, G, B");
     }
     if (status == GONIO_OK) {
         status = choose_components(&t, view.components, &components);

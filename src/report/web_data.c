@@ -101,14 +101,26 @@ static json_t *values_at(const gonio_table *table, gonio_pair pair)
                : json_null();
 }
 
-static json_t *reading_json(const gonio_reading *reading, const gonio_table *reference,
-                            const gonio_table *reconstruction)
+/* The values of R, G, B; NaN of other channels. */
+static void colours_of(const gonio_readings *readings, size_t reading, double value[GONIO_CHANNELS])
 {
-    return json_pack(
-        "{s:o, s:o, s:i, s:o, s:o, s:o}", "incident", direction(reading->pair.incident), "outgoing",
-        direction(reading->pair.outgoing), "channel", reading->channel, "value",
-        numbers(reading->value, GONIO_CHANNELS), "reference", values_at(reference, reading->pair),
-        "reconstruction", values_at(reconstruction, reading->pair));
+    const bool colours = gonio_readings_are_colours(readings);
+    for (size_t c = 0; c < GONIO_CHANNELS; c++) {
+        value[c] = colours ? gonio_readings_value(readings, reading, c) : NAN;
+    }
+}
+
+static json_t *reading_json(const gonio_readings *readings, size_t reading,
+                            const gonio_table *reference, const gonio_table *reconstruction)
+{
+    const gonio_readings_view view = gonio_readings_describe(readings);
+    const gonio_pair pair = view.pair[reading];
+    double value[GONIO_CHANNELS];
+    colours_of(readings, reading, value);
+    return json_pack("{s:o, s:o, s:i, s:o, s:o, s:o}", "incident", direction(pair.incident),
+                     "outgoing", direction(pair.outgoing), "channel", view.planned[reading],
+                     "value", numbers(value, GONIO_CHANNELS), "reference",
+                     values_at(reference, pair), "reconstruction", values_at(reconstruction, pair));
 }
 
 json_t *gonio_i_web_readings(const gonio_readings *readings, const gonio_table *reference,
@@ -117,7 +129,7 @@ json_t *gonio_i_web_readings(const gonio_readings *readings, const gonio_table *
     const gonio_readings_view view = gonio_readings_describe(readings);
     json_t *list = json_array();
     for (size_t k = 0; k < view.count && k < MOST_READINGS; k++) {
-        json_array_append_new(list, reading_json(&view.reading[k], reference, reconstruction));
+        json_array_append_new(list, reading_json(readings, k, reference, reconstruction));
     }
     char *name = gonio_i_base_name(view.path, true);
     json_t *json =

@@ -8,8 +8,8 @@
 #include <string.h>
 
 #include "../unit/made_basis.h"
+#include "../unit/made_readings.h"
 #include "core/random.h"
-#include "measurement/readings.h"
 #include "posterior/wrong_directions.h"
 #include "posterior/models.h"
 
@@ -669,7 +669,7 @@ static double strange_at(gonio_half_difference at)
     return 4.0 * exp(-0.5 * pow(at.theta_h / 0.2, 2.0));
 }
 
-/* Of such a material the readings in the lobe are right, and are used. */
+/* Of such a material the readings in the lobe are right, and are believed. */
 static void test_an_unusual_material(void **state)
 {
     (void)state;
@@ -701,52 +701,33 @@ static void test_an_unusual_material(void **state)
     }
 }
 
-/* ---- readings from a file ---- */
-
-static gonio_readings *read_lines(const char *folder, const char *const *lines, size_t count)
-{
-    char path[256];
-    snprintf(path, sizeof path, "%s/r.csv", folder);
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    fputs("theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,R_per_sr,G_per_sr,B_per_sr\n", file);
-    for (size_t k = 0; k < count; k++) {
-        fprintf(file, "%s\n", lines[k]);
-    }
-    fclose(file);
-    gonio_readings *readings = NULL;
-    assert_int_equal(gonio_readings_read(context, path, NULL, &readings), GONIO_OK);
-    return readings;
-}
-
 /* ---- the dark level ---- */
 
 enum { DIRECTIONS = 40 };
 
 /* A grey material of the prior, read by an instrument that subtracts dark / cos theta_i too much.
  */
-static gonio_readings *read_in_the_dark(const char *folder, const double *z, uint64_t seed,
-                                        double dark)
+static gonio_readings *read_in_the_dark(const double *z, uint64_t seed, double dark)
 {
-    char text[DIRECTIONS][160];
-    const char *line[DIRECTIONS];
+    gonio_pair pair[DIRECTIONS];
+    double read[DIRECTIONS][GONIO_CHANNELS];
     gonio_i_random random;
     gonio_i_random_seed(&random, seed, 1);
     for (size_t i = 0; i < DIRECTIONS; i++) {
         const double theta_i = 1.4 * gonio_i_random_uniform(&random);
         const double theta_o = 1.4 * gonio_i_random_uniform(&random);
         const double phi_o = M_PI * gonio_i_random_uniform(&random);
-        const gonio_pair pair = {{theta_i, 0.0}, {theta_o, phi_o}};
-        const double g = truth_at(z, gonio_half_difference_from_pair(pair));
-        double read[GONIO_CHANNELS];
+        pair[i] = (gonio_pair){{theta_i, 0.0}, {theta_o, phi_o}};
+        const double g = truth_at(z, gonio_half_difference_from_pair(pair[i]));
         for (int c = 0; c < GONIO_CHANNELS; c++) {
-            read[c] = fmax(gonio_log_scale(c) * expm1(fmax(g, 0.0)) - dark / cos(theta_i), 0.0);
+            read[i][c] = fmax(gonio_log_scale(c) * expm1(fmax(g, 0.0)) - dark / cos(theta_i), 0.0);
         }
-        snprintf(text[i], sizeof text[i], "%.9f,0,%.9f,%.9f,%.9g,%.9g,%.9g", theta_i * 180.0 / M_PI,
-                 theta_o * 180.0 / M_PI, phi_o * 180.0 / M_PI, read[0], read[1], read[2]);
-        line[i] = text[i];
     }
-    return read_lines(folder, line, DIRECTIONS);
+    const gonio_readings_arrays arrays = {
+        .count = DIRECTIONS, .channels = GONIO_CHANNELS, .pair = pair, .value = &read[0][0]};
+    gonio_readings *readings = NULL;
+    assert_int_equal(gonio_readings_create(context, &arrays, NULL, &readings), GONIO_OK);
+    return readings;
 }
 
 /* Root mean square of g - truth over the rows, first channel. */
@@ -762,13 +743,13 @@ static double error_of_field(const gonio_reconstruction *r, const double *z)
     return sqrt(sum / (double)gaussian->view.rows);
 }
 
-static gonio_reconstruction *reconstruct_in_the_dark(const gonio_readings *readings, bool no_checks)
+static gonio_reconstruction *reconstruct_in_the_dark(const gonio_readings *readings, bool believe)
 {
     gonio_reconstruct_options options;
     gonio_reconstruction *r = NULL;
     gonio_reconstruct_options_default(&options);
     options.method = "posterior";
-    options.no_checks = no_checks;
+    options.believe = believe;
     assert_int_equal(gonio_reconstruct(context, small, readings, &options, &r), GONIO_OK);
     return r;
 }
@@ -801,10 +782,10 @@ static bool tells_its_level(const gonio_readings *readings)
     return 2 * zeros <= DIRECTIONS;
 }
 
-static void check_level(const gonio_reconstruction *made, const gonio_reconstruction *unchecked,
+static void check_level(const gonio_reconstruction *made, const gonio_reconstruction *believed,
                         const double *z, double dark, gonio_readings *readings)
 {
-    const double before = error_of_field(unchecked, z);
+    const double before = error_of_field(believed, z);
     const double after = error_of_field(made, z);
     print_message("a level of %.2g is found; error %.2f, before %.2f\n", made->dark[0], after,
                   before);
@@ -822,49 +803,47 @@ static void test_the_dark_level(void **state)
     (void)state;
     const double dark = 0.002;
     int found_levels = 0;
-    char *folder = support_folder();
     for (uint64_t seed = 60; seed < 68; seed++) {
         const drawn d = draw(seed, 0.02);
-        gonio_readings *readings = read_in_the_dark(folder, d.z, seed, dark);
-        gonio_reconstruction *unchecked = reconstruct_in_the_dark(readings, true);
+        gonio_readings *readings = read_in_the_dark(d.z, seed, dark);
+        gonio_reconstruction *believed = reconstruct_in_the_dark(readings, true);
         gonio_reconstruction *made = reconstruct_in_the_dark(readings, false);
-        assert_null(unchecked->dark);
+        assert_null(believed->dark);
         assert_null(made->suspicion);
         if (made->dark != NULL) {
-            check_level(made, unchecked, d.z, dark, readings);
+            check_level(made, believed, d.z, dark, readings);
             found_levels++;
         }
-        gonio_reconstruction_free(&unchecked);
+        gonio_reconstruction_free(&believed);
         gonio_reconstruction_free(&made);
         gonio_readings_free(&readings);
         free(d.z);
     }
     assert_true(found_levels >= 6);
-    support_remove(folder);
 }
 
 /* Readings that lack nothing are as they are, and so are some that are zero for another reason. */
 static void test_no_dark_level(void **state)
 {
     (void)state;
-    char *folder = support_folder();
     for (uint64_t seed = 60; seed < 68; seed++) {
         const drawn d = draw(seed, 0.02);
-        gonio_readings *readings = read_in_the_dark(folder, d.z, seed, 0.0);
+        gonio_readings *readings = read_in_the_dark(d.z, seed, 0.0);
         for (size_t i = 0; i < DIRECTIONS; i += 10) {
-            memset(readings->reading[i].value, 0, sizeof readings->reading[i].value);
+            for (size_t c = 0; c < GONIO_CHANNELS; c++) {
+                assert_int_equal(gonio_readings_set_value(context, readings, i, c, 0.0), GONIO_OK);
+            }
         }
-        gonio_reconstruction *unchecked = reconstruct_in_the_dark(readings, true);
+        gonio_reconstruction *believed = reconstruct_in_the_dark(readings, true);
         gonio_reconstruction *made = reconstruct_in_the_dark(readings, false);
         assert_null(made->dark);
-        assert_memory_equal(made->field, unchecked->field,
+        assert_memory_equal(made->field, believed->field,
                             made->columns * gaussian->view.rows * sizeof *made->field);
-        gonio_reconstruction_free(&unchecked);
+        gonio_reconstruction_free(&believed);
         gonio_reconstruction_free(&made);
         gonio_readings_free(&readings);
         free(d.z);
     }
-    support_remove(folder);
 }
 
 /* ---- from readings to a material ---- */
@@ -893,11 +872,12 @@ static void assert_sane(const gonio_reconstruction *made)
 static void test_what_comes_out_is_sane(void **state)
 {
     (void)state;
-    static const char *const lines[] = {"30,0,30,180,0.2,0.1,0.05", "0,0,45,90,0.05,0.02,0",
-                                        "60,0,60,180,1e6,1e5,1e4", "10,0,70,20,0,0,0"};
-    char *folder = support_folder();
+    static const double rows[][7] = {{30, 0, 30, 180, 0.2, 0.1, 0.05},
+                                     {0, 0, 45, 90, 0.05, 0.02, 0},
+                                     {60, 0, 60, 180, 1e6, 1e5, 1e4},
+                                     {10, 0, 70, 20, 0, 0, 0}};
     for (size_t count = 1; count <= 4; count++) {
-        gonio_readings *readings = read_lines(folder, lines, count);
+        gonio_readings *readings = made_colours(rows, count);
         gonio_reconstruct_options options;
         gonio_reconstruct_options_default(&options);
         options.method = "posterior";
@@ -910,29 +890,27 @@ static void test_what_comes_out_is_sane(void **state)
         gonio_reconstruction_free(&made);
         gonio_readings_free(&readings);
     }
-    support_remove(folder);
 }
 
 /* Of a detector that saturates, peaks are at least what it says. */
 static void test_saturation(void **state)
 {
     (void)state;
-    static const char *const lines[] = {"0,0,30,180,0.05,0.05,0.05", "40,0,20,180,0.06,0.06,0.06",
-                                        "30,0,30,180,0.1,0.1,0.1"};
-    char *folder = support_folder();
-    gonio_readings *readings = read_lines(folder, lines, 3);
+    static const double rows[][7] = {{0, 0, 30, 180, 0.05, 0.05, 0.05},
+                                     {40, 0, 20, 180, 0.06, 0.06, 0.06},
+                                     {30, 0, 30, 180, 0.1, 0.1, 0.1}};
+    gonio_readings *readings = made_colours(rows, 3);
     double value[2][GONIO_CHANNELS];
     for (int k = 0; k < 2; k++) {
         gonio_reconstruct_options options;
         gonio_reconstruct_options_default(&options);
         options.method = "posterior";
-        options.no_checks = true;
+        options.believe = true;
         options.saturation = k == 0 ? 0.0 : 0.1;
         gonio_reconstruction *made = NULL;
         assert_int_equal(gonio_reconstruct(context, basis, readings, &options, &made), GONIO_OK);
         gonio_reconstruction_predict(
-            basis, made,
-            gonio_half_difference_from_pair(gonio_readings_describe(readings).reading[2].pair),
+            basis, made, gonio_half_difference_from_pair(gonio_readings_describe(readings).pair[2]),
             value[k], NULL);
         gonio_reconstruction_free(&made);
     }
@@ -941,7 +919,6 @@ static void test_saturation(void **state)
         assert_true(value[1][c] >= 0.08);
     }
     gonio_readings_free(&readings);
-    support_remove(folder);
 }
 
 static void test_what_is_refused(void **state)
@@ -951,9 +928,8 @@ static void test_what_is_refused(void **state)
         double noise, floor, saturation;
     } cases[] = {{-1.0, 0.0, 0.0},     {NAN, 0.0, 0.0},  {INFINITY, 0.0, 0.0}, {0.0, -1.0, 0.0},
                  {0.0, INFINITY, 0.0}, {0.0, 0.0, -1.0}, {0.0, 0.0, NAN}};
-    static const char *const lines[] = {"30,0,30,180,0.2,0.1,0.05"};
-    char *folder = support_folder();
-    gonio_readings *readings = read_lines(folder, lines, 1);
+    static const double rows[][7] = {{30, 0, 30, 180, 0.2, 0.1, 0.05}};
+    gonio_readings *readings = made_colours(rows, 1);
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         const gonio_reconstruct_options options = {.method = "posterior",
                                                    .noise = cases[k].noise,
@@ -966,7 +942,6 @@ static void test_what_is_refused(void **state)
         assert_non_null(strstr(support_message(), "noise, floor and saturation"));
     }
     gonio_readings_free(&readings);
-    support_remove(folder);
 }
 
 int main(void)

@@ -157,10 +157,10 @@ static double error_of_paint(const gonio_basis *basis, const char *paint, size_t
     gonio_readings *predicted = read_file(paint, true);
     const gonio_readings_view view = gonio_readings_describe(all);
     assert_int_equal(view.count, 1439);
-    assert_int_equal(view.wavelengths, 31);
+    assert_int_equal(view.channels, 31);
     gonio_pair *candidates = malloc(view.count * sizeof *candidates);
     for (size_t k = 0; k < view.count; k++) {
-        candidates[k] = view.reading[k].pair;
+        candidates[k] = view.pair[k];
     }
     gonio_plan_options options;
     gonio_plan_options_default(&options);

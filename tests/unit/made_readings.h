@@ -1,10 +1,61 @@
-/* Readings from text, for the tests. */
+/* Readings for the tests: from numbers, and, where files are tested, from text. */
 #ifndef MADE_READINGS_H
 #define MADE_READINGS_H
 
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #include <gonio/gonio.h>
+
+/* theta_i, phi_i, theta_o, phi_o in degrees. */
+static inline gonio_pair made_pair(const double degrees[4])
+{
+    const double radians = M_PI / 180.0;
+    return (gonio_pair){{degrees[0] * radians, degrees[1] * radians},
+                        {degrees[2] * radians, degrees[3] * radians}};
+}
+
+/* Readings of channels with the given wavelengths, or NULL. row[count][4 + channels]: four angles
+ * in degrees, then the values; values may be missing altogether (has_values false: row[count][4]).
+ */
+static inline gonio_readings *made_spectra(const double *row, size_t count, size_t channels,
+                                           const double *wavelength, bool has_values)
+{
+    const gonio_readings_options any = {.average_repeats = true, .negative_to_zero = true};
+    const size_t width = 4 + (has_values ? channels : 0);
+    gonio_pair *pair = calloc(count, sizeof *pair);
+    double *value = calloc(count * channels, sizeof *value);
+    assert_true(pair != NULL && value != NULL);
+    for (size_t k = 0; k < count; k++) {
+        pair[k] = made_pair(row + k * width);
+        for (size_t c = 0; c < channels && has_values; c++) {
+            value[k * channels + c] = row[k * width + 4 + c];
+        }
+    }
+    const gonio_readings_arrays arrays = {.count = count,
+                                          .channels = channels,
+                                          .pair = pair,
+                                          .wavelength = wavelength,
+                                          .value = has_values ? value : NULL};
+    gonio_readings *readings = NULL;
+    assert_int_equal(gonio_readings_create(NULL, &arrays, &any, &readings), GONIO_OK);
+    free(value);
+    free(pair);
+    return readings;
+}
+
+/* Readings of R, G, B. row[count][7] */
+static inline gonio_readings *made_colours(const double (*row)[7], size_t count)
+{
+    return made_spectra(&row[0][0], count, GONIO_CHANNELS, NULL, true);
+}
+
+/* Directions without values. row[count][4] */
+static inline gonio_readings *made_directions(const double (*row)[4], size_t count)
+{
+    return made_spectra(&row[0][0], count, GONIO_CHANNELS, NULL, false);
+}
 
 /* Writes the text to a file of the folder and reads it; *readings is NULL after an error. */
 static inline gonio_status made_readings(gonio_context *context, const char *folder,

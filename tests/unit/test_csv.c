@@ -73,7 +73,7 @@ static void test_what_is_written_is_read(void **state)
     gonio_i_csv *csv = gonio_i_csv_create(NULL);
     gonio_i_csv *again = NULL;
     assert_non_null(csv);
-    assert_true(gonio_i_csv_add_comment(csv, "key: %d", 5));
+    assert_true(gonio_i_comments_add(&csv->comment, "key: %d", 5));
     assert_true(gonio_i_csv_add_column(csv, "first"));
     for (size_t k = 0; k < CELLS; k++) {
         assert_true(gonio_i_csv_add_row(csv, 0));
@@ -88,7 +88,7 @@ static void test_what_is_written_is_read(void **state)
     assert_int_equal(gonio_i_csv_read(f->context, f->path, &again), GONIO_OK);
     assert_int_equal(again->rows, CELLS);
     assert_int_equal(again->columns, 2);
-    assert_string_equal(gonio_i_csv_note(again, "key"), "5");
+    assert_string_equal(gonio_i_comments_value(&again->comment, "key"), "5");
     assert_int_equal(gonio_i_csv_column(again, "SECOND, with a comma"), 1);
     for (size_t k = 0; k < CELLS; k++) {
         double number = -1.0;
@@ -139,13 +139,13 @@ static void test_what_is_no_number(void **state)
 static void test_notes(void **state)
 {
     gonio_i_csv *csv = read_text(*state, "# a: 1\n#b:2\n#   a: 3\n# ab: 4\nx\n");
-    assert_string_equal(gonio_i_csv_note(csv, "a"), "1");
-    assert_string_equal(gonio_i_csv_note(csv, "b"), "2");
-    assert_null(gonio_i_csv_note(csv, "c"));
-    gonio_i_csv_drop_note(csv, "a");
-    assert_null(gonio_i_csv_note(csv, "a"));
-    assert_string_equal(gonio_i_csv_note(csv, "ab"), "4");
-    assert_int_equal(csv->comments, 2);
+    assert_string_equal(gonio_i_comments_value(&csv->comment, "a"), "1");
+    assert_string_equal(gonio_i_comments_value(&csv->comment, "b"), "2");
+    assert_null(gonio_i_comments_value(&csv->comment, "c"));
+    gonio_i_comments_drop(&csv->comment, "a");
+    assert_null(gonio_i_comments_value(&csv->comment, "a"));
+    assert_string_equal(gonio_i_comments_value(&csv->comment, "ab"), "4");
+    assert_int_equal(csv->comment.count, 2);
     gonio_i_csv_free(&csv);
 }
 

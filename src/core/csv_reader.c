@@ -1,0 +1,293 @@
+/* Rows of a table as text: see csv_reader.h. */
+#include "csv_reader.h"
+
+#include <ctype.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <csv.h>
+
+/* ---- a line as cells ---- */
+
+typedef struct line_state {
+    gonio_i_csv_reader *reader;
+    char *next; /* where the next cell goes */
+    bool ended;
+    bool failed;
+} line_state;
+
+static bool has_room(gonio_i_csv_reader *r)
+{
+    if (r->cells < r->cell_room) {
+        return true;
+    }
+    const size_t more = r->cell_room > 0 ? 2 * r->cell_room : 16;
+    char **cell = reallocarray(r->cell, more, sizeof *cell);
+    r->cell = cell != NULL ? cell : r->cell;
+    r->cell_room = cell != NULL ? more : r->cell_room;
+    return cell != NULL;
+}
+
+static void on_cell(void *text, size_t length, void *data)
+{
+    line_state *state = data;
+    state->failed = state->failed || !has_room(state->reader);
+    if (state->failed) {
+        return;
+    }
+    if (length > 0) {
+        memcpy(state->next, text, length);
+    }
+    state->next[length] = '\0';
+    state->reader->cell[state->reader->cells++] = state->next;
+    state->next += length + 1;
+}
+
+static void on_end(int terminator, void *data)
+{
+    (void)terminator;
+    ((line_state *)data)->ended = true;
+}
+
+static gonio_status out_of_memory(const gonio_i_csv_reader *r)
+{
+    return gonio_i_fail(r->context, GONIO_ERROR_MEMORY, "%s: out of memory", r->path);
+}
+
+/* For the cells of a line of `length` bytes, each with a 0 behind it. */
+static bool make_room(gonio_i_csv_reader *r, size_t length)
+{
+    const size_t needed = 2 * length + 2;
+    if (needed <= r->room_size) {
+        return true;
+    }
+    char *room = realloc(r->room, 2 * needed);
+    r->room = room != NULL ? room : r->room;
+    r->room_size = room != NULL ? 2 * needed : r->room_size;
+    return room != NULL;
+}
+
+static gonio_status bad_line(const gonio_i_csv_reader *r, const char *problem)
+{
+    return gonio_i_fail(r->context, GONIO_ERROR_FORMAT, "%s:%zu: %s", r->path, r->line, problem);
+}
+
+static gonio_status split(gonio_i_csv_reader *r, const char *line, size_t length)
+{
+    if (!make_room(r, length)) {
+        return out_of_memory(r);
+    }
+    line_state state = {r, r->room, false, false};
+    r->cells = 0;
+    const bool parsed = csv_parse(r->parser, line, length, on_cell, on_end, &state) == length &&
+                        (state.ended || csv_fini(r->parser, on_cell, on_end, &state) == 0);
+    if (state.failed || (!parsed && csv_error(r->parser) == CSV_ENOMEM)) {
+        return out_of_memory(r);
+    }
+    return parsed ? GONIO_OK : bad_line(r, "quotes that do not close or stand inside a cell");
+}
+
+/* ---- lines ---- */
+
+static bool is_blank(const char *line, size_t length)
+{
+    size_t k = 0;
+    while (k < length && isspace((unsigned char)line[k])) {
+        k++;
+    }
+    return k == length;
+}
+
+static bool take_comment(gonio_i_csv_reader *r, const char *line, size_t length)
+{
+    while (length > 0 && isspace((unsigned char)line[length - 1])) {
+        length--;
+    }
+    size_t skip = 1;
+    while (skip < length && line[skip] == ' ') {
+        skip++;
+    }
+    return gonio_i_comments_add_text(&r->comment, line + skip, length > skip ? length - skip : 0);
+}
+
+/* The next line that is neither a comment nor empty; *length is 0 at the end of the text. */
+static gonio_status find_line(gonio_i_csv_reader *r, const char **line, size_t *length)
+{
+    while (r->at < r->size) {
+        const char *end = memchr(r->text + r->at, '\n', r->size - r->at);
+        *line = r->text + r->at;
+        *length = end != NULL ? (size_t)(end - *line) + 1 : r->size - r->at;
+        r->at += *length;
+        r->line++;
+        if (**line == '#') {
+            if (!take_comment(r, *line, *length)) {
+                return out_of_memory(r);
+            }
+        } else if (!is_blank(*line, *length)) {
+            return GONIO_OK;
+        }
+    }
+    *length = 0;
+    return GONIO_OK;
+}
+
+/* ---- the column names ---- */
+
+/* The separator that occurs most often in the header. */
+static char guess_delimiter(const char *line, size_t length)
+{
+    static const char candidates[] = {',', ';', '\t'};
+    size_t most = 0;
+    char best = ',';
+    for (size_t k = 0; k < sizeof candidates; k++) {
+        size_t count = 0;
+        for (size_t j = 0; j < length; j++) {
+            count += line[j] == candidates[k];
+        }
+        if (count > most) {
+            most = count;
+            best = candidates[k];
+        }
+    }
+    return best;
+}
+
+static gonio_status check_names(const gonio_i_csv_reader *r)
+{
+    for (size_t k = 1; k < r->columns; k++) {
+        for (size_t j = 0; j < k; j++) {
+            if (strcasecmp(r->name[j], r->name[k]) == 0) {
+                return gonio_i_fail(r->context, GONIO_ERROR_FORMAT,
+                                    "%s:%zu: column '%s' occurs twice; rename one", r->path,
+                                    r->line, r->name[k]);
+            }
+        }
+    }
+    return GONIO_OK;
+}
+
+static gonio_status read_names(gonio_i_csv_reader *r)
+{
+    const char *line = NULL;
+    size_t length = 0;
+    gonio_status status = find_line(r, &line, &length);
+    if (status == GONIO_OK && length == 0) {
+        return gonio_i_fail(r->context, GONIO_ERROR_FORMAT,
+                            r->size == 0 ? "%s: the file is empty" : "%s: no line of column names",
+                            r->path);
+    }
+    if (status == GONIO_OK) {
+        r->delimiter = guess_delimiter(line, length);
+        csv_set_delim(r->parser, (unsigned char)r->delimiter);
+        status = split(r, line, length);
+    }
+    r->name = r->cell;
+    r->name_room = r->room;
+    r->columns = r->cells;
+    r->cell = NULL;
+    r->cell_room = 0;
+    r->cells = 0;
+    r->room = NULL;
+    r->room_size = 0;
+    return status == GONIO_OK ? check_names(r) : status;
+}
+
+/* Refuses what no text holds, control characters other than blanks, before anything else is said of
+ * the file. */
+static gonio_status refuse_binary(const gonio_i_csv_reader *r)
+{
+    size_t line = 1;
+    for (size_t k = 0; k < r->size; k++) {
+        const unsigned char c = (unsigned char)r->text[k];
+        if (c >= ' ' && c != 0x7f) {
+            continue;
+        }
+        if (!isspace(c)) {
+            return gonio_i_fail(r->context, GONIO_ERROR_FORMAT,
+                                "%s:%zu: binary data; a text table (CSV) is expected", r->path,
+                                line);
+        }
+        line += c == '\n';
+    }
+    return GONIO_OK;
+}
+
+gonio_status gonio_i_csv_open(gonio_context *context, const char *path, const char *text,
+                              size_t size, gonio_i_csv_reader *reader)
+{
+    static const char mark[] = "\xef\xbb\xbf";
+    *reader = (gonio_i_csv_reader){.context = context, .path = path, .text = text, .size = size};
+    reader->at = size >= 3 && memcmp(text, mark, 3) == 0 ? 3 : 0;
+    reader->parser = gonio_i_allocate(context, 1, sizeof *reader->parser);
+    gonio_status status = GONIO_ERROR_MEMORY;
+    if (reader->parser != NULL &&
+        csv_init(reader->parser, CSV_STRICT | CSV_STRICT_FINI | CSV_APPEND_NULL) == 0) {
+        status = refuse_binary(reader);
+        status = status == GONIO_OK ? read_names(reader) : status;
+    }
+    if (status != GONIO_OK) {
+        gonio_i_csv_close(reader);
+    }
+    return status;
+}
+
+gonio_status gonio_i_csv_next(gonio_i_csv_reader *reader)
+{
+    const char *line = NULL;
+    size_t length = 0;
+    gonio_status status = find_line(reader, &line, &length);
+    reader->cells = 0;
+    if (status == GONIO_OK && length > 0) {
+        status = split(reader, line, length);
+        if (status == GONIO_OK && reader->cells != reader->columns) {
+            return gonio_i_fail(reader->context, GONIO_ERROR_FORMAT,
+                                "%s:%zu: %zu cells where the header names %zu columns",
+                                reader->path, reader->line, reader->cells, reader->columns);
+        }
+    }
+    return status;
+}
+
+void gonio_i_csv_close(gonio_i_csv_reader *reader)
+{
+    if (reader->parser != NULL) {
+        csv_free(reader->parser);
+    }
+    free(reader->parser);
+    free(reader->cell);
+    free(reader->room);
+    free(reader->name);
+    free(reader->name_room);
+    gonio_i_comments_free(&reader->comment);
+    *reader = (gonio_i_csv_reader){0};
+}
+
+/* ---- cells ---- */
+
+bool gonio_i_csv_is_number(const char *cell, char delimiter, double *value)
+{
+    char text[64];
+    const size_t length = strlen(cell);
+    if (length == 0 || length >= sizeof text) {
+        return false;
+    }
+    memcpy(text, cell, length + 1);
+    char *comma = delimiter != ',' ? strchr(text, ',') : NULL;
+    if (comma != NULL) {
+        *comma = '.';
+    }
+    char *end = text;
+    *value = strtod(text, &end);
+    return end != text && *end == '\0';
+}
+
+void gonio_i_csv_print_cell(FILE *stream, const char *cell, char delimiter)
+{
+    const bool plain = strchr(cell, delimiter) == NULL && strchr(cell, '"') == NULL &&
+                       cell[0] != ' ' && cell[0] != '#';
+    if (plain) {
+        fputs(cell, stream);
+    } else {
+        csv_fwrite(stream, cell, strlen(cell));
+    }
+}

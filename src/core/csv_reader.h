@@ -1,0 +1,52 @@
+/* A table as text (CSV), on libcsv, row by row: `#` comment lines, a line of column names, then
+ * rows. Commas, semicolons or tabs between cells, quotes, CRLF and a byte-order mark are
+ * understood; with semicolons or tabs a decimal comma is too. No cell is kept: numbers go straight
+ * to where they belong. */
+#ifndef GONIO_CSV_READER_H
+#define GONIO_CSV_READER_H
+
+#include <stdio.h>
+
+#include "comments.h"
+
+typedef struct gonio_i_csv_reader {
+    gonio_context *context;
+    const char *path; /* for messages */
+    const char *text; /* [size], the caller's */
+    size_t size;
+    size_t at;   /* where the next line begins */
+    size_t line; /* of the row read last, from 1 */
+    size_t columns;
+    char **name;              /* [columns] */
+    size_t cells;             /* of the row read last: as many as columns; 0 behind the last row */
+    char **cell;              /* until the next row is read */
+    gonio_i_comments comment; /* so far */
+    char delimiter;
+    struct csv_parser *parser;
+    char *room; /* what cells point into */
+    size_t room_size;
+    size_t cell_room;
+    char *name_room; /* what names point into */
+} gonio_i_csv_reader;
+
+/* Reads up to and with the line of column names. The text is the
+ * caller's, must last as long as the reader, and ends in a 0 beyond `size`. Errors: _FORMAT for an
+ * empty text, no column names, one that occurs twice, and those of _next; the reader is closed
+ * then. */
+gonio_status gonio_i_csv_open(gonio_context *context, const char *path, const char *text,
+                              size_t size, gonio_i_csv_reader *reader);
+
+/* Reads the next row; cells == 0 behind the last, when all comments are known. Errors: _FORMAT for
+ * binary data, bad quotes, rows of other lengths than the header; the message names the line. */
+gonio_status gonio_i_csv_next(gonio_i_csv_reader *reader);
+
+void gonio_i_csv_close(gonio_i_csv_reader *reader);
+
+/* Whether a cell is a number, all of it; with decimal points between
+ * gonio_i_plain_numbers_begin and _end, in the program's locale otherwise. */
+bool gonio_i_csv_is_number(const char *cell, char delimiter, double *value);
+
+/* A cell as a line has it, in quotes where it needs them. */
+void gonio_i_csv_print_cell(FILE *stream, const char *cell, char delimiter);
+
+#endif

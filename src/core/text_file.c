@@ -1,0 +1,76 @@
+/* A text file, read whole: see text_file.h. */
+#include "text_file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { MOST_BYTES = 1 << 30, LEAST_ROOM = 1 << 16 };
+
+/* What a regular file holds, and a byte more that tells its end; a guess for others. */
+static size_t first_room(int descriptor)
+{
+    struct stat info;
+    const bool known =
+        fstat(descriptor, &info) == 0 && S_ISREG(info.st_mode) && info.st_size < MOST_BYTES;
+    return known && info.st_size >= LEAST_ROOM ? (size_t)info.st_size + 1 : LEAST_ROOM;
+}
+
+static bool enlarge(char **text, size_t *room)
+{
+    *room *= 2;
+    char *more = realloc(*text, *room + 1);
+    *text = more != NULL ? more : *text;
+    return more != NULL;
+}
+
+/* Reads to the end; the text stays the caller's after an error too. */
+static gonio_status read_descriptor(gonio_context *context, const char *path, int descriptor,
+                                    char **text, size_t *size)
+{
+    size_t room = first_room(descriptor);
+    *text = malloc(room + 1);
+    while (*text != NULL) {
+        const ssize_t got = read(descriptor, *text + *size, room - *size);
+        if (got < 0 && errno == EINTR) {
+            continue;
+        }
+        if (got < 0) {
+            return gonio_i_fail(context, GONIO_ERROR_IO, "%s: cannot read: %s", path,
+                                strerror(errno));
+        }
+        if (got == 0) {
+            (*text)[*size] = '\0';
+            return GONIO_OK;
+        }
+        *size += (size_t)got;
+        if (*size >= MOST_BYTES) {
+            return gonio_i_fail(context, GONIO_ERROR_FORMAT,
+                                "%s: more than 1 GiB; this is not a table of readings", path);
+        }
+        if (*size == room && !enlarge(text, &room)) {
+            break;
+        }
+    }
+    return gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", path);
+}
+
+gonio_status gonio_i_text_read(gonio_context *context, const char *path, char **text, size_t *size)
+{
+    *text = NULL;
+    *size = 0;
+    const int descriptor = open(path, O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0) {
+        return gonio_i_fail(context, GONIO_ERROR_IO, "%s: cannot read: %s", path, strerror(errno));
+    }
+    const gonio_status status = read_descriptor(context, path, descriptor, text, size);
+    close(descriptor);
+    if (status != GONIO_OK) {
+        free(*text);
+        *text = NULL;
+    }
+    return status;
+}

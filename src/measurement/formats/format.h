@@ -1,0 +1,41 @@
+/* File formats of readings: one file and one row of the table in readings_file.c each.
+ *
+ * A file is read whole, once; its first format whose probe accepts it reads it. The reader says its
+ * channels (gonio_i_readings_begin), adds one reading after another (gonio_i_readings_add, which
+ * checks every number and names file and line), puts comments into readings->comment, what else it
+ * wants to write again into readings->attachment, and says with gonio_i_readings_note what it
+ * changed or left out. Numbers are read and printed with decimal points in any locale. */
+#ifndef GONIO_READINGS_FORMAT_H
+#define GONIO_READINGS_FORMAT_H
+
+#include <stdio.h>
+
+#include "../readings.h"
+
+/* A file that is read. */
+typedef struct gonio_i_readings_file {
+    gonio_context *context;
+    const char *path;
+    char *text; /* [size] and a 0 behind it; a reader that keeps it sets it to NULL */
+    size_t size;
+} gonio_i_readings_file;
+
+typedef struct gonio_i_readings_format {
+    const char *name; /* for people */
+
+    /* Whether a text is of this format, by its content; text[size] is 0. */
+    bool (*probe)(const char *text, size_t size);
+
+    /* Fills in readings that have path and options. */
+    gonio_status (*read)(gonio_i_readings_file *file, gonio_readings *readings);
+
+    /* Prints readings of any origin; NULL: the format is only read. Errors of the stream are looked
+     * for afterwards. */
+    gonio_status (*print)(gonio_context *context, const gonio_readings *readings,
+                          const char *command, FILE *stream);
+} gonio_i_readings_format;
+
+extern const gonio_i_readings_format gonio_i_readings_csv;
+extern const gonio_i_readings_format gonio_i_readings_scattered;
+
+#endif

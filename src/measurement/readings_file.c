@@ -1,0 +1,141 @@
+/* Files of readings: the table of formats, and what all formats share. */
+#include <ctype.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../core/number.h"
+#include "../core/output.h"
+#include "../core/text_file.h"
+#include "formats/format.h"
+
+/* In the order in which they are tried; CSV takes what nothing else does. */
+static const gonio_i_readings_format *const formats[] = {
+    &gonio_i_readings_scattered,
+    &gonio_i_readings_csv,
+};
+
+static const char grid_name[] = "half/difference 90 x 90 x 180";
+
+/* ---- reading ---- */
+
+static const gonio_i_readings_format *find_format(const char *text, size_t size)
+{
+    size_t k = 0;
+    while (k + 1 < sizeof formats / sizeof *formats && !formats[k]->probe(text, size)) {
+        k++;
+    }
+    return formats[k];
+}
+
+/* The number of a "key: number" comment; 0 if there is no such comment. */
+static gonio_status read_number(gonio_context *context, const gonio_readings *readings,
+                                const char *key, int base, uint64_t *number)
+{
+    const char *text = gonio_i_comments_value(&readings->comment, key);
+    if (text == NULL) {
+        *number = 0;
+        return GONIO_OK;
+    }
+    char *end = NULL;
+    errno = 0;
+    *number = strtoull(text, &end, base);
+    if (!isxdigit((unsigned char)*text) || *end != '\0' || errno != 0 || *number == 0) {
+        return gonio_i_fail(context, GONIO_ERROR_FORMAT,
+                            "%s: '# %s: %.60s' is not what gonio plan writes; restore it, or "
+                            "delete the line",
+                            readings->path, key, text);
+    }
+    return GONIO_OK;
+}
+
+/* What the comments say of the plan. */
+static gonio_status read_comments(gonio_context *context, gonio_readings *readings)
+{
+    const char *grid = gonio_i_comments_value(&readings->comment, "grid");
+    if (grid != NULL && strcmp(grid, grid_name) != 0) {
+        return gonio_i_fail(context, GONIO_ERROR_MISMATCH,
+                            "%s: made for the grid '%s'; this gonio works on '%s'", readings->path,
+                            grid, grid_name);
+    }
+    uint64_t components = 0;
+    gonio_status status = read_number(context, readings, "basis", 16, &readings->basis);
+    if (status == GONIO_OK) {
+        status = read_number(context, readings, "components", 10, &components);
+    }
+    readings->components = (size_t)components;
+    return status;
+}
+
+static gonio_status read_text(gonio_i_readings_file *file, gonio_readings *readings)
+{
+    gonio_i_plain_numbers plain;
+    if (!gonio_i_plain_numbers_begin(&plain)) {
+        return gonio_i_fail(file->context, GONIO_ERROR_MEMORY, "%s: out of memory", file->path);
+    }
+    gonio_status status = find_format(file->text, file->size)->read(file, readings);
+    gonio_i_plain_numbers_end(&plain);
+    if (status == GONIO_OK) {
+        status = read_comments(file->context, readings);
+    }
+    return status == GONIO_OK
+               ? gonio_i_readings_finish(file->context, readings, readings->options.values_needed)
+               : status;
+}
+
+gonio_status gonio_readings_read(gonio_context *context, const char *path,
+                                 const gonio_readings_options *options, gonio_readings **readings)
+{
+    gonio_i_readings_file file = {.context = context, .path = path};
+    gonio_readings *made = gonio_i_readings_new(context, path, options);
+    gonio_status status = made != NULL ? gonio_i_text_read(context, path, &file.text, &file.size)
+                                       : GONIO_ERROR_MEMORY;
+    if (status == GONIO_OK) {
+        status = read_text(&file, made);
+    }
+    free(file.text);
+    if (status != GONIO_OK) {
+        gonio_readings_free(&made);
+        return status;
+    }
+    *readings = made;
+    return GONIO_OK;
+}
+
+/* ---- writing ---- */
+
+static gonio_status print_text(gonio_context *context, const gonio_readings *readings,
+                               const char *command, const char *path, char **text, size_t *size)
+{
+    gonio_i_plain_numbers plain;
+    FILE *stream = open_memstream(text, size);
+    const bool ready = stream != NULL && gonio_i_plain_numbers_begin(&plain);
+    gonio_status status = GONIO_ERROR_MEMORY;
+    if (ready) {
+        status = gonio_i_readings_csv.print(context, readings, command, stream);
+        gonio_i_plain_numbers_end(&plain);
+    }
+    const bool whole = stream != NULL && fclose(stream) == 0;
+    return ready && whole ? status
+                          : gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", path);
+}
+
+gonio_status gonio_readings_write(gonio_context *context, const gonio_readings *readings,
+                                  const char *command, const char *path)
+{
+    char *text = NULL;
+    size_t size = 0;
+    gonio_i_output output;
+    gonio_status status = print_text(context, readings, command, path, &text, &size);
+    if (status == GONIO_OK) {
+        status = gonio_i_output_open(context, path, &output);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_output_write(context, &output, text, size);
+        status = gonio_i_output_close(context, &output, status);
+    }
+    free(text);
+    return status;
+}

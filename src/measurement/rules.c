@@ -1,0 +1,65 @@
+/* Which numbers a reading may have: see rules.h. */
+#include "rules.h"
+
+#include <math.h>
+#include <stddef.h>
+
+const char *const gonio_i_angle_names[4] = {"theta_i_deg", "phi_i_deg", "theta_o_deg", "phi_o_deg"};
+
+/* 1/sr: far above any peak, in any unit, and far below where squares overflow. */
+static const double MOST_VALUE = 1e30;
+
+const char *gonio_i_angle_problem(int which, double degrees, gonio_status *status)
+{
+    const bool polar = which % 2 == 0;
+    if (!isfinite(degrees)) {
+        *status = GONIO_ERROR_FORMAT;
+        return "is not a finite number";
+    }
+    *status = GONIO_ERROR_DATA;
+    if (polar && degrees < 0.0) {
+        return "is negative: give 0 to 90, and turn phi by 180";
+    }
+    if (polar && degrees >= 90.0) {
+        return "is at or below the horizon: theta is less than 90";
+    }
+    if (!polar && fabs(degrees) > 360.0) {
+        return "is outside -360 to 360 degrees";
+    }
+    *status = GONIO_OK;
+    return NULL;
+}
+
+const char *gonio_i_value_problem(double value, const gonio_readings_options *options,
+                                  gonio_status *status)
+{
+    if (!isfinite(value)) {
+        *status = GONIO_ERROR_FORMAT;
+        return "is not a finite number (leave the cell empty where nothing was read)";
+    }
+    *status = GONIO_ERROR_DATA;
+    if (value > MOST_VALUE) {
+        return "is larger than any BRDF (leave the cell empty where nothing was read)";
+    }
+    if (value < 0.0 && !options->negative_to_zero) {
+        return "is negative: a dark level too high? --negative-to-zero takes it as 0";
+    }
+    *status = GONIO_OK;
+    return NULL;
+}
+
+const char *gonio_i_deviation_problem(double deviation, gonio_status *status)
+{
+    *status = GONIO_ERROR_DATA;
+    if (!isfinite(deviation) || deviation < 0.0 || deviation > MOST_VALUE) {
+        return "is no standard deviation: a finite number from 0, in 1/sr";
+    }
+    *status = GONIO_OK;
+    return NULL;
+}
+
+gonio_angles gonio_i_angles_from_degrees(double theta, double phi)
+{
+    const double turned = fmod(phi < 0.0 ? phi + 360.0 : phi, 360.0);
+    return (gonio_angles){theta * M_PI / 180.0, turned * M_PI / 180.0};
+}

@@ -1,0 +1,24 @@
+/* Which numbers a reading may have. Each returns what is wrong with one, to go behind it in a
+ * message, and the status to fail with; NULL if nothing is. */
+#ifndef GONIO_RULES_H
+#define GONIO_RULES_H
+
+#include <gonio/measurement.h>
+
+/* theta_i, phi_i, theta_o, phi_o as columns are named. */
+extern const char *const gonio_i_angle_names[4];
+
+/* One of the four angles, in degrees. */
+const char *gonio_i_angle_problem(int which, double degrees, gonio_status *status);
+
+/* A value that was read (not NaN), 1/sr. */
+const char *gonio_i_value_problem(double value, const gonio_readings_options *options,
+                                  gonio_status *status);
+
+/* A standard deviation, 1/sr. */
+const char *gonio_i_deviation_problem(double deviation, gonio_status *status);
+
+/* theta and phi, in degrees and allowed, in radians, phi in [0, 2 pi). */
+gonio_angles gonio_i_angles_from_degrees(double theta, double phi);
+
+#endif
