@@ -8,19 +8,19 @@ _gonio_options()
     case $1 in
         info)        echo "--json $common" ;;
         convert)     echo "$common" ;;
-        learn)       echo "--output --basis --grid --channels --mixtures --seed --mapping --no-mean --without" \
+        learn)       echo "--output --components --grid --channels --mixtures --seed --mapping --no-mean --without" \
                           "--json -o -K $common" ;;
-        plan)        echo "--output --number --target-error --candidates --metric --basis --method --start" \
+        plan)        echo "--output --number --target-error --candidates --metric --components --method --start" \
                           "--restarts --seed --phi-d --history --json -o -n -K $common" ;;
-        next)        echo "--output --number --target-error --candidates --metric --noise --floor --saturation --believe" \
+        next)        echo "--output --number --target-error --candidates --metric --noise --floor --saturation --no-checks" \
                           "--json -o -n $common" ;;
         measure)     echo "--output --noise --floor --outliers --seed -o $common" ;;
-        reconstruct) echo "--output --basis --method --eta --noise --floor --saturation --deviation --at --believe" \
+        reconstruct) echo "--output --components --method --eta --noise --floor --saturation --deviation --predict-at --no-checks" \
                           "--all-channels --average-repeats --negative-to-zero --other-basis --json -o -K $common" ;;
         render)      echo "--output --mesh --environment --turn --show-environment --repair --light --light-at" \
                           "--view --fov --size --samples --seed --key --compare --columns --labels" \
                           "--differences -o -m -e $common" ;;
-        compare)     echo "--verbose --render --without --json -v $common" ;;
+        compare)     echo "--verbose --render --leave-out --json -v $common" ;;
         reproduce)   echo "--output --quick --only --splits --seed --skip-bad -o $common" ;;
         report)      echo "--output --readings --deviation -o $common" ;;
         demo)        echo "--output -o $common" ;;
@@ -41,10 +41,9 @@ _gonio_values()
         --environment|-e) echo "studio sky furnace" ;;
         --light)    echo "directional point" ;;
         --start)    echo "random qr volume" ;;
-        --without)  [[ $2 == learn ]] && echo "" || return 1 ;; # names, or a file
-        --basis|--number|--restarts|--seed|--phi-d|--eta|--noise|--floor|--threads|-K|-n|\
+        --components|--number|--restarts|--seed|--phi-d|--eta|--noise|--floor|--threads|-K|-n|\
         --mixtures|--target-error|--outliers|--saturation|\
-        --turn|--light-at|--view|--fov|--size|--samples|--key|--columns|--labels) echo "" ;;
+        --turn|--without|--light-at|--view|--fov|--size|--samples|--key|--columns|--labels) echo "" ;;
         *)          return 1 ;;
     esac
 }

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 
 typedef struct options {
-    const char *without;
+    const char *leave_out;
     int verbose;
     int json;
     int render;
@@ -130,15 +130,15 @@ static gonio_status compare_readings(tool *t, const char *reference_path,
 }
 
 /* Which of the reference's readings were used to make the others. */
-static gonio_status find_left_out(tool *t, const gonio_readings *reference, const char *without,
+static gonio_status find_left_out(tool *t, const gonio_readings *reference, const char *used_path,
                                   bool **left_out)
 {
     gonio_readings *used = NULL;
     const gonio_readings_options directions = {.average_repeats = true, .negative_to_zero = true};
     *left_out = calloc(gonio_readings_describe(reference).count, sizeof **left_out);
     gonio_status status = *left_out == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
-    if (status == GONIO_OK && without != NULL) {
-        status = gonio_readings_read(t->context, without, &directions, &used);
+    if (status == GONIO_OK && used_path != NULL) {
+        status = gonio_readings_read(t->context, used_path, &directions, &used);
     }
     if (status == GONIO_OK && used != NULL) {
         status = gonio_readings_find(t->context, reference, used, *left_out);
@@ -154,7 +154,7 @@ static gonio_status compare_all_readings(tool *t, const options *o, const char *
     bool *left_out = NULL;
     gonio_status status = gonio_readings_read(t->context, paths[0], &any_values, &reference);
     if (status == GONIO_OK) {
-        status = find_left_out(t, reference, o->without, &left_out);
+        status = find_left_out(t, reference, o->leave_out, &left_out);
     }
     for (size_t k = 1; k < count && status == GONIO_OK; k++) {
         status = compare_readings(t, paths[0], reference, paths[k], left_out, o, results);
@@ -191,8 +191,8 @@ static int run(tool *t, const options *o)
         return tool_usage_error(t, "REFERENCE and at least one OTHER are needed");
     }
     const bool readings = tool_is_readings(arguments[0]);
-    if (o->without != NULL && !readings) {
-        return tool_usage_error(t, "--without is for readings: %s is none", arguments[0]);
+    if (o->leave_out != NULL && !readings) {
+        return tool_usage_error(t, "--leave-out is for readings: %s is none", arguments[0]);
     }
     if (o->render && readings) {
         return tool_usage_error(t, "--render is for whole materials: %s is readings", arguments[0]);
@@ -220,7 +220,7 @@ int cmd_compare(int argc, const char **argv)
     options o = {0};
     const struct poptOption table[] = {
         {"verbose", 'v', POPT_ARG_NONE, &o.verbose, 0, "Each channel, and the bins compared", NULL},
-        {"without", '\0', POPT_ARG_STRING, &o.without, 0,
+        {"leave-out", '\0', POPT_ARG_STRING, &o.leave_out, 0,
          "Of readings: leave out the directions of this file (those that were used)", "FILE"},
         {"render", '\0', POPT_ARG_NONE, &o.render, 0, "Also render both and compare the renderings",
          NULL},

@@ -153,7 +153,7 @@ static int run(tool *t, const options *o)
     material_list list = {0};
     int code = count == 0 ? tool_usage_error(t, "no materials given") : 0;
     if (code == 0) {
-        code = tool_check_count(t, "--basis", o->components, o->components == 0 ? 0 : 1);
+        code = tool_check_count(t, "--components", o->components, o->components == 0 ? 0 : 1);
     }
     if (code == 0) {
         code = o->mixtures != UNSET ? tool_check_count(t, "--mixtures", o->mixtures, 0) : 0;
@@ -182,7 +182,7 @@ int cmd_learn(int argc, const char **argv)
     options o = {.representation = "sectored", .mapping = "log", .mixtures = UNSET};
     const struct poptOption table[] = {
         {"output", 'o', POPT_ARG_STRING, &o.output, 0, "The basis file to write", "BASIS"},
-        {"basis", 'K', POPT_ARG_INT, &o.components, 0,
+        {"components", 'K', POPT_ARG_INT, &o.components, 0,
          "How many components to keep (default: 300; 45 without mixtures; with --no-mean all; "
          "never "
          "more than there are)",

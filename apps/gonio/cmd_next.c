@@ -17,7 +17,7 @@ typedef struct options {
     double noise; /* per cent */
     double floor;
     double saturation;
-    int believe;
+    int no_checks;
     int json;
 } options;
 
@@ -61,7 +61,7 @@ static gonio_status find_next(tool *t, const options *o, const gonio_basis *basi
     how.noise = o->noise / 100.0;
     how.floor = o->floor;
     how.saturation = o->saturation;
-    how.believe = o->believe;
+    how.no_checks = o->no_checks;
     gonio_plan_options_default(&what);
     what.count = (size_t)o->count;
     what.metric = (gonio_metric)tool_metric(o->metric);
@@ -156,7 +156,7 @@ int cmd_next(int argc, const char **argv)
          "Standard deviation of a reading of darkness, 1/sr (default: 1e-5)", "VALUE"},
         {"saturation", '\0', POPT_ARG_DOUBLE, &o.saturation, 0,
          "Readings of this value or more mean at least it, 1/sr", "VALUE"},
-        {"believe", '\0', POPT_ARG_NONE, &o.believe, 0,
+        {"no-checks", '\0', POPT_ARG_NONE, &o.no_checks, 0,
          "Do not look for usual mistakes nor for a dark level", NULL},
         {"json", '\0', POPT_ARG_NONE, &o.json, 0, "Print the result as JSON", NULL},
         TOOL_OPTIONS};

@@ -112,7 +112,7 @@ static int check(const tool *t, const options *o, size_t count, const char **arg
     if (code == 0 && o->candidates != NULL) {
         code = tool_check_output(t, o->output, &o->candidates, 1);
     }
-    return code != 0 ? code : tool_check_count(t, "--basis", o->components, 0);
+    return code != 0 ? code : tool_check_count(t, "--components", o->components, 0);
 }
 
 static int run(tool *t, options *o)
@@ -152,7 +152,7 @@ int cmd_plan(int argc, const char **argv)
          "FILE"},
         {"metric", '\0', POPT_ARG_STRING, &o.metric, 0,
          "The error that is to be small: e6 (default), cube-root or log-relative", "METRIC"},
-        {"basis", 'K', POPT_ARG_INT, &o.components, 0,
+        {"components", 'K', POPT_ARG_INT, &o.components, 0,
          "Use the first K components (default: all of the basis; nielsen, frost: at most N)", "K"},
         {"method", '\0', POPT_ARG_STRING, &o.method, 0,
          "expected-error (the least to expect; the default), condition (lowest condition number, "

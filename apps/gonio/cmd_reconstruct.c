@@ -17,9 +17,9 @@ typedef struct options {
     double noise; /* per cent */
     double floor;
     double saturation;
-    const char *at;
+    const char *predict_at;
     const char *deviation;
-    int believe;
+    int no_checks;
     int components;
     int all_channels;
     int other_basis;
@@ -69,7 +69,7 @@ static void warn(const gonio_reconstruction *r, const char *output, const energy
         fprintf(
             stderr,
             "gonio reconstruct: note: %s: the instrument seems to subtract up to "
-            "%.2g/cos(theta_i) 1/sr too much, which is reckoned with (--believe: do not look)\n",
+            "%.2g/cos(theta_i) 1/sr too much, which is corrected for (--no-checks: do not look)\n",
             output, largest(r->dark, r->columns));
     }
     if (e->known && e->albedo > 1.0 && !tool_quiet) {
@@ -159,7 +159,7 @@ static gonio_reconstruct_options settings(const options *o)
                                        .floor = o->floor,
                                        .saturation = o->saturation,
                                        .deviation = o->deviation != NULL,
-                                       .believe = o->believe};
+                                       .no_checks = o->no_checks};
 }
 
 /* The deviations as a table, or the values at the directions of a file. */
@@ -173,8 +173,8 @@ static gonio_status write_more(tool *t, const options *o, const gonio_basis *bas
     if (o->deviation != NULL) {
         status = gonio_reconstruction_deviation_material(t->context, basis, made, &deviation);
     }
-    if (status == GONIO_OK && o->at != NULL) {
-        status = gonio_readings_read(t->context, o->at, &any, &at);
+    if (status == GONIO_OK && o->predict_at != NULL) {
+        status = gonio_readings_read(t->context, o->predict_at, &any, &at);
     }
     if (status == GONIO_OK && at != NULL) {
         status = gonio_reconstruction_predict_readings(t->context, basis, made, at);
@@ -202,7 +202,7 @@ static gonio_status reconstruct_one(tool *t, const options *o, const gonio_basis
     gonio_reconstruction *made = NULL;
     gonio_material *material = NULL;
     gonio_status status = gonio_reconstruct(t->context, basis, readings, &how, &made);
-    if (status == GONIO_OK && o->at == NULL) {
+    if (status == GONIO_OK && o->predict_at == NULL) {
         status =
             gonio_reconstruction_material(t->context, basis, made, "reconstruction", &material);
     }
@@ -216,7 +216,7 @@ static gonio_status reconstruct_one(tool *t, const options *o, const gonio_basis
         }
     }
     if (status == GONIO_OK) {
-        report(basis, made, output, o->at == NULL, results);
+        report(basis, made, output, o->predict_at == NULL, results);
     }
     gonio_material_free(&material);
     gonio_reconstruction_free(&made);
@@ -227,7 +227,7 @@ static gonio_status reconstruct(tool *t, const options *o, const gonio_basis *ba
                                 gonio_readings *const *readings, char *const *outputs, size_t count,
                                 json_t *results)
 {
-    if (o->at != NULL || o->deviation != NULL) {
+    if (o->predict_at != NULL || o->deviation != NULL) {
         return reconstruct_one(t, o, basis, readings[0], outputs[0], results);
     }
     const gonio_reconstruct_options how = settings(o);
@@ -322,13 +322,13 @@ static int choose_outputs(const tool *t, const options *o, const char *const *in
 static int check_more(const tool *t, const options *o, const char *const *inputs, size_t count,
                       size_t readings)
 {
-    if ((o->at != NULL || o->deviation != NULL) && readings > 1) {
-        return tool_usage_error(t, "--at and --deviation take one READINGS");
+    if ((o->predict_at != NULL || o->deviation != NULL) && readings > 1) {
+        return tool_usage_error(t, "--predict-at and --deviation take one READINGS");
     }
     if (!(o->noise >= 0.0) || !(o->floor >= 0.0) || !(o->saturation >= 0.0)) {
         return tool_usage_error(t, "--noise, --floor and --saturation cannot be negative");
     }
-    if (o->at != NULL && tool_check_output(t, o->output, &o->at, 1) != 0) {
+    if (o->predict_at != NULL && tool_check_output(t, o->output, &o->predict_at, 1) != 0) {
         return EXIT_USAGE;
     }
     if (o->deviation != NULL && strcmp(o->deviation, o->output) == 0) {
@@ -351,7 +351,7 @@ static int run(tool *t, const options *o)
     int code = outputs == NULL ? EXIT_DATA
                                : choose_outputs(t, o, arguments, count, paths, readings, outputs);
     if (code == 0) {
-        code = tool_check_count(t, "--basis", o->components, 0);
+        code = tool_check_count(t, "--components", o->components, 0);
     }
     if (code == 0) {
         code = check_more(t, o, arguments, count, readings);
@@ -381,7 +381,7 @@ int cmd_reconstruct(int argc, const char **argv)
     const struct poptOption table[] = {
         {"output", 'o', POPT_ARG_STRING, &o.output, 0,
          "The MERL .binary table to write, or a folder for NAME.binary", "OUT"},
-        {"basis", 'K', POPT_ARG_INT, &o.components, 0,
+        {"components", 'K', POPT_ARG_INT, &o.components, 0,
          "Use the first K components (default: as the plan says, or all)", "K"},
         {"method", '\0', POPT_ARG_STRING, &o.method, 0,
          "posterior, least-squares or ridge (default: what the plan was made for, or posterior for "
@@ -400,10 +400,10 @@ int cmd_reconstruct(int argc, const char **argv)
          "Readings of this value or more mean at least it, 1/sr (posterior)", "VALUE"},
         {"deviation", '\0', POPT_ARG_STRING, &o.deviation, 0,
          "Write the standard deviation of ln(1 + rho/s) too, as a table (posterior)", "FILE"},
-        {"at", '\0', POPT_ARG_STRING, &o.at, 0,
+        {"predict-at", '\0', POPT_ARG_STRING, &o.predict_at, 0,
          "Predict readings at the directions of this file, as CSV, in place of a table (posterior)",
          "FILE"},
-        {"believe", '\0', POPT_ARG_NONE, &o.believe, 0,
+        {"no-checks", '\0', POPT_ARG_NONE, &o.no_checks, 0,
          "Do not look for wrong units or angles, nor for a dark level", NULL},
         {"average-repeats", '\0', POPT_ARG_NONE, &o.average_repeats, 0,
          "Accept directions that were read more than once", NULL},

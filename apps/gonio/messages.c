@@ -106,7 +106,7 @@ void tool_note_suspicion(const char *command, const char *path, const char *susp
     if (suspicion != NULL && !tool_quiet) {
         fprintf(
             stderr,
-            "gonio %s: note: %s: the readings are far likelier if %s (--believe: do not look)\n",
+            "gonio %s: note: %s: the readings are far likelier if %s (--no-checks: do not look)\n",
             command, path, suspicion);
     }
 }

@@ -30,8 +30,8 @@ typedef struct gonio_reconstruct_options {
     double floor;      /* standard deviation of a reading of darkness, 1/sr; default 1e-5 */
     double saturation; /* readings of this value or more, 1/sr, mean at least it; 0: none */
     bool deviation;    /* find the standard deviation of every cell too */
-    bool believe; /* do not look for wrong units (gonio_reconstruction.suspicion) nor for a dark
-                   * level (gonio_reconstruction.dark) */
+    bool no_checks;    /* do not look for usual mistakes (gonio_reconstruction.suspicion) nor for a
+                        * dark level (gonio_reconstruction.dark) */
 } gonio_reconstruct_options;
 
 GONIO_API void gonio_reconstruct_options_default(gonio_reconstruct_options *options);
@@ -63,7 +63,7 @@ typedef struct gonio_reconstruction {
     double *dark; /* [columns], 1/sr: what the instrument seems to subtract too much; it reads
                    * max(0, rho - dark/cos theta_i) of rho. The field is the material's, without it.
                    * NULL where no reading is zero, where levels explain little, with a suspicion,
-                   * if asked to believe, with a joint basis and from rows */
+                   * with no_checks, with a joint basis and from rows */
 } gonio_reconstruction;
 
 /* What a reconstruction by posterior says of the material at any directions: value[channels] in

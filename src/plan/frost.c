@@ -233,7 +233,7 @@ static gonio_status check(const gonio_i_selection_problem *problem)
     if (problem->count > problem->components) {
         return gonio_i_fail(problem->context, GONIO_ERROR_ARGUMENT,
                             "frost plans a reading for each component: %zu readings need a basis "
-                            "with as many (gonio learn --basis %zu), this one has %zu",
+                            "with as many (gonio learn --components %zu), this one has %zu",
                             problem->count, problem->count, problem->components);
     }
     return GONIO_OK;

@@ -211,7 +211,7 @@ static gonio_status check_selection(gonio_context *context, size_t rows, size_t 
     if (methods[method].method->needs_full_rank && n < components) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
                             "%zu readings cannot determine %zu coefficients: plan at least %zu "
-                            "readings, or use fewer components (--basis %zu or less)",
+                            "readings, or use fewer components (--components %zu or less)",
                             n, components, components, n);
     }
     if (options->restarts < 1) {
@@ -398,7 +398,7 @@ gonio_status gonio_plan_create(gonio_context *context, const gonio_basis *basis,
     if (components > view.components) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
                             "%zu components asked for, but the basis has %zu; learn one with more "
-                            "(gonio learn --basis %zu)",
+                            "(gonio learn --components %zu)",
                             components, view.components, components);
     }
     if (!(options->phi_d >= 0.0 && options->phi_d < M_PI)) {

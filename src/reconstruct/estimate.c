@@ -117,7 +117,7 @@ static gonio_status estimate(gonio_context *context, const gonio_i_prior *prior,
 {
     const gonio_i_noise noise = gonio_i_estimate_noise(options);
     gonio_status status = keep_wavelengths(context, readings, r);
-    if (status == GONIO_OK && !options->believe) {
+    if (status == GONIO_OK && !options->no_checks) {
         status =
             gonio_i_interpret(context, prior, readings, &noise, columns, &r->dark, &r->suspicion);
     }

@@ -64,7 +64,7 @@ static gonio_status find_posterior(next *n, const gonio_reconstruct_options *opt
     if (status == GONIO_OK) {
         status = gonio_i_prior_create(n->context, n->basis, &n->prior);
     }
-    if (status == GONIO_OK && !options->believe) {
+    if (status == GONIO_OK && !options->no_checks) {
         status = gonio_i_interpret(n->context, n->prior, n->readings, &noise, &n->columns, &dark,
                                    &n->suspicion);
     }

@@ -83,7 +83,7 @@ static gonio_status undetermined(gonio_context *context, const gathered *e, size
         context, GONIO_ERROR_UNDETERMINED,
         "%s%zu readings%s of which %zu are independent cannot determine %zu "
         "coefficients: measure at least %zu more directions, or use fewer components "
-        "(--basis %zu)",
+        "(--components %zu)",
         e->origin, e->count, channel, rank, needed, needed - rank, rank);
 }
 
@@ -302,7 +302,7 @@ static gonio_status choose_components(const task *t, size_t available, size_t *c
     if (k > available) {
         return gonio_i_fail(t->context, GONIO_ERROR_MISMATCH,
                             "%s: planned for %zu components, but the basis has %zu; give the basis "
-                            "of the plan, or use fewer components (--basis %zu)",
+                            "of the plan, or use fewer components (--components %zu)",
                             t->readings->path, k, available, available);
     }
     *components = k;

@@ -148,7 +148,7 @@ expect_fail 1 "two materials are called 'oak-sawn'" \
     learn atlas:oak-sawn atlas:oak-sawn atlas:plaster-cast -o x.gonio
 cp good.binary copy.binary
 expect_fail 1 'span only 1 dimensions' \
-    learn --grid bivariate good.binary copy.binary atlas:oak-sawn --basis 2 -o x.gonio
+    learn --grid bivariate good.binary copy.binary atlas:oak-sawn --components 2 -o x.gonio
 rm copy.binary
 
 # ---- HDF5 of another kind, and neural BRDFs ----

@@ -77,7 +77,7 @@ rm 3*
 
 # ---- the built-in basis, learned on first use ----
 
-expect_ok plan --method condition --basis 3 -n 5 --restarts 1 -o builtin.csv
+expect_ok plan --method condition --components 3 -n 5 --restarts 1 -o builtin.csv
 expect_true 'the built-in basis is announced' \
     grep -q '^gonio plan: note: no BASIS given: learning' "$root/work/stderr"
 cached=$(find "$XDG_CACHE_HOME/gonio" -type f)
@@ -87,7 +87,7 @@ expect_ok reconstruct builtin-readings.csv -o builtin.binary
 expect_true 'the second use is silent' test ! -s "$root/work/stderr"
 head -c 5000 "$cached" >damaged
 mv damaged "$cached"
-expect_fail 1 "$cached: not a gonio basis" plan --method condition --basis 3 -n 5 -o x.csv
+expect_fail 1 "$cached: not a gonio basis" plan --method condition --components 3 -n 5 -o x.csv
 rm builtin*
 
 # ---- conversions ----

@@ -48,11 +48,11 @@ done
 # ---- at the directions of a file; deviations ----
 
 expect_ok measure p40.csv $new -o all.csv
-expect_ok reconstruct b.gonio r.csv --at all.csv -o at.csv
+expect_ok reconstruct b.gonio r.csv --predict-at all.csv -o at.csv
 expect_true 'as many directions as asked for' test "$(grep -vc '^[#t]' at.csv)" -eq 40
 expect_output '40 readings compared' compare all.csv at.csv
-expect_output '30 readings compared' compare all.csv at.csv --without p.csv
-expect_true 'predictions are within 15 per cent' test "$(error all.csv at.csv --without p.csv)" -lt 15
+expect_output '30 readings compared' compare all.csv at.csv --leave-out p.csv
+expect_true 'predictions are within 15 per cent' test "$(error all.csv at.csv --leave-out p.csv)" -lt 15
 expect_ok measure p.csv all.csv -o looked-up.csv
 expect_output '0.000     0.000    0.0000' compare r.csv looked-up.csv
 expect_ok reconstruct b.gonio r.csv --deviation deviation.binary -o again.binary
@@ -65,7 +65,7 @@ rm again.binary one.binary deviation.binary
 expect_output ', albedo at most 0.' reconstruct b.gonio r.csv -o out.binary
 expect_output '"largest_albedo": 0.' reconstruct b.gonio r.csv --json -o out.binary
 awk -F, -v OFS=, '/^[#t]/ { print; next } { $6 *= 30; $7 *= 30; $8 *= 30; print }' r.csv >bright.csv
-expect_ok reconstruct b.gonio bright.csv --believe -o bright.binary
+expect_ok reconstruct b.gonio bright.csv --no-checks -o bright.binary
 expect_true 'more light than there is is told' \
     grep -q 'note: bright.binary reflects .* times the light' "$root/work/stderr"
 
@@ -117,8 +117,8 @@ expect_output 'gonio readings, 40 directions, 40 measured' info paint.brdf
 expect_ok plan b.gonio --candidates paint.brdf -n 6 -o spectral.csv
 expect_ok measure spectral.csv paint.brdf -o spectral-readings.csv
 expect_output 'from 6 readings in 3 channels' \
-    reconstruct b.gonio spectral-readings.csv --at paint.brdf -o spectral-at.csv
-expect_output '34 readings compared' compare paint.brdf spectral-at.csv --without spectral.csv
+    reconstruct b.gonio spectral-readings.csv --predict-at paint.brdf -o spectral-at.csv
+expect_output '34 readings compared' compare paint.brdf spectral-at.csv --leave-out spectral.csv
 expect_output 'from 40 readings in 3 channels' reconstruct b.gonio paint.brdf -o paint.binary
 
 # ---- readings that are not what they say ----
@@ -138,13 +138,13 @@ suspect() { # FILE PART
     expect_ok reconstruct b.gonio "$1" -o suspect.binary
     expect_true "$1: '$2'" grep -q "note: .*$2" "$root/work/stderr"
     expect_output "\"suspicion\": \"" reconstruct b.gonio "$1" --json -o suspect.binary
-    expect_ok reconstruct b.gonio "$1" --believe -o suspect.binary
-    expect_not_said 'far likelier' "$1: --believe does not look"
+    expect_ok reconstruct b.gonio "$1" --no-checks -o suspect.binary
+    expect_not_said 'far likelier' "$1: --no-checks does not look"
     expect_ok next b.gonio "$1" -n 1 -o suspect.csv
     expect_true "next, $1: '$2'" grep -q "note: .*$2" "$root/work/stderr"
     expect_output "\"suspicion\": \"" next b.gonio "$1" -n 1 --json -q -o suspect.csv
-    expect_ok next b.gonio "$1" -n 1 --believe -o suspect.csv
-    expect_not_said 'far likelier' "next, $1: --believe does not look"
+    expect_ok next b.gonio "$1" -n 1 --no-checks -o suspect.csv
+    expect_not_said 'far likelier' "next, $1: --no-checks does not look"
 }
 suspect percent.csv 'the values are in per cent'
 suspect cosine.csv 'the values include the cosine'
@@ -159,13 +159,13 @@ expect_true 'good readings are not suspicious' test ! -s "$root/work/stderr"
 awk -F, -v OFS=, '/^#/ { next } /^t/ { print; next }
     { for (k = NF - 2; k <= NF; k++) { $k -= 0.01 / cos($1 * 3.14159265358979 / 180); if ($k < 0) $k = 0 }
       print }' all.csv >dark.csv
-expect_ok reconstruct b.gonio dark.csv --believe -o believed.binary
-expect_not_said 'seems to subtract' '--believe looks for no dark level'
+expect_ok reconstruct b.gonio dark.csv --no-checks -o unchecked.binary
+expect_not_said 'seems to subtract' '--no-checks looks for no dark level'
 expect_ok reconstruct b.gonio dark.csv -o dark.binary
 expect_true 'what is subtracted is told' \
     grep -q 'note: dark.binary: the instrument seems to subtract up to 0.*/cos(theta_i)' "$root/work/stderr"
 expect_true 'without it the paint is within 8 per cent' test "$(error $new dark.binary)" -lt 8
-expect_true 'with it it is not within 15' test "$(error $new believed.binary)" -ge 15
+expect_true 'with it it is not within 15' test "$(error $new unchecked.binary)" -ge 15
 expect_output '"dark_level_per_sr": [' reconstruct b.gonio dark.csv --json -o dark.binary
 expect_output '"dark_level_per_sr": null' reconstruct b.gonio all.csv --json -o dark.binary
 expect_ok next b.gonio dark.csv -n 2 -o dark-next.csv
@@ -192,7 +192,7 @@ planned='plan b.gonio -n 4 -o x.csv'
             $planned --target-error $target
     done
     expect_fail 2 'above the target of 0.01 %' $planned --target-error 0.01
-    expect_fail 2 'expected-error uses all 64 components' $planned --basis 10
+    expect_fail 2 'expected-error uses all 64 components' $planned --components 10
     expect_fail 1 'missing.csv: cannot read' $planned --candidates missing.csv
     expect_fail 1 'binary data' $planned --candidates out.binary
     expect_fail 2 'is an input' plan b.gonio -n 4 --candidates all.csv -o all.csv
@@ -213,21 +213,21 @@ made='reconstruct b.gonio r.csv -o x.binary'
         expect_fail 2 'invalid numeric value' $made $option much
     done
     expect_fail 2 'numbers from 0' $made --noise inf
-    expect_fail 1 'missing.csv: cannot read' $made --at missing.csv
-    expect_fail 2 'posterior uses all 64 components' $made --basis 10
+    expect_fail 1 'missing.csv: cannot read' $made --predict-at missing.csv
+    expect_fail 2 'posterior uses all 64 components' $made --components 10
     expect_fail 1 'nowhere/d.binary' $made --deviation nowhere/d.binary
-    expect_fail 1 'nowhere/x.csv' reconstruct b.gonio r.csv --at all.csv \
+    expect_fail 1 'nowhere/x.csv' reconstruct b.gonio r.csv --predict-at all.csv \
         --deviation d.binary -o nowhere/x.csv
     expect_fail 2 '--deviation and -o name the same file' $made --deviation x.binary
     expect_fail 2 'r.csv is an input' $made --deviation r.csv
 }
-expect_fail 2 'is an input' reconstruct b.gonio r.csv --at all.csv -o all.csv
+expect_fail 2 'is an input' reconstruct b.gonio r.csv --predict-at all.csv -o all.csv
 mkdir folder
-expect_fail 2 '--at and --deviation take one READINGS' \
-    reconstruct b.gonio r.csv all.csv --at p.csv -o folder
-expect_fail 2 '--without is for readings' compare out.binary out.binary --without p.csv
-expect_fail 1 'missing.csv: cannot read' compare all.csv at.csv --without missing.csv
-expect_fail 1 'nothing to compare' compare all.csv at.csv --without all.csv
+expect_fail 2 '--predict-at and --deviation take one READINGS' \
+    reconstruct b.gonio r.csv all.csv --predict-at p.csv -o folder
+expect_fail 2 '--leave-out is for readings' compare out.binary out.binary --leave-out p.csv
+expect_fail 1 'missing.csv: cannot read' compare all.csv at.csv --leave-out missing.csv
+expect_fail 1 'nothing to compare' compare all.csv at.csv --leave-out all.csv
 expect_fail 1 'has no reading at these directions' compare all.csv r.csv
 printf '2\n400 500\n0.1 0 0.2 0 1\n' >cut.brdf
 expect_fail 1 'ends within a reading' reconstruct b.gonio cut.brdf -o x.binary

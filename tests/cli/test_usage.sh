@@ -59,10 +59,10 @@ expect_fail 2 'no output' convert atlas:white-linen ''
 # ---- learn ----
 
 expect_fail 2 '4 components asked for, but 4 columns give at most 3' \
-    learn --grid bivariate atlas:gold-polished atlas:red-cotton atlas:oak-sawn atlas:plaster-cast --basis 4 \
+    learn --grid bivariate atlas:gold-polished atlas:red-cotton atlas:oak-sawn atlas:plaster-cast --components 4 \
     -o x.gonio
 expect_fail 2 'a basis needs at least 2 materials' learn --grid bivariate atlas:oak-sawn -o x.gonio
-expect_fail 2 '--basis: -3 is too small' learn atlas:oak-sawn atlas:red-cotton -K -3 -o x.gonio
+expect_fail 2 '--components: -3 is too small' learn atlas:oak-sawn atlas:red-cotton -K -3 -o x.gonio
 expect_fail 2 "--grid: 'trivariate' is none of bivariate, full, sectored" \
     learn atlas:oak-sawn atlas:red-cotton --grid trivariate -o x.gonio
 expect_fail 2 "--channels: 'both' is none of joint, separate" \
@@ -85,7 +85,7 @@ expect_fail 2 '-n: 0 is too small' plan b.gonio -n 0 -o x.csv
 expect_fail 2 '-n: -5 is too small' plan b.gonio -n -5 -o x.csv
 expect_fail 2 'number too large' plan b.gonio -n 99999999999 -o x.csv
 expect_fail 2 'invalid numeric value' plan b.gonio -n 5x -o x.csv
-expect_fail 2 '--basis: -1 is too small' plan b.gonio -K -1 -o x.csv
+expect_fail 2 '--components: -1 is too small' plan b.gonio -K -1 -o x.csv
 expect_fail 2 '--restarts: 0 is too small' plan b.gonio --restarts 0 -o x.csv
 expect_fail 2 "no selection method is called 'best'" plan b.gonio --method best -n 5 -o x.csv
 expect_fail 2 'phi_d of 180 degrees is outside' plan b.gonio --phi-d 180 -n 5 -o x.csv
@@ -101,7 +101,7 @@ expect_fail 2 'cannot be negative' measure p.csv atlas:white-linen --noise nan -
 expect_fail 2 'finite numbers from 0' measure p.csv atlas:white-linen --noise inf -o x.csv
 expect_fail 2 '4 components asked for, but the basis has 3' \
     reconstruct b.gonio r.csv -K 4 -o x.binary
-expect_fail 2 '--basis: -1 is too small' reconstruct b.gonio r.csv -K -1 -o x.binary
+expect_fail 2 '--components: -1 is too small' reconstruct b.gonio r.csv -K -1 -o x.binary
 
 # ---- more threads than any machine has are no error ----
 

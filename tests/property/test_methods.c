@@ -538,7 +538,7 @@ static void test_what_a_method_cannot_work_on(void **state)
         size_t count;
     } cases[] = {
         {"matusik", "gonio learn --no-mean --grid full", 20},
-        {"frost", "13 readings need a basis with as many (gonio learn --basis 13)", 13},
+        {"frost", "13 readings need a basis with as many (gonio learn --components 13)", 13},
     };
     gonio_plan_options options;
     gonio_plan_options_default(&options);

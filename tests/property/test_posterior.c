@@ -669,7 +669,7 @@ static double strange_at(gonio_half_difference at)
     return 4.0 * exp(-0.5 * pow(at.theta_h / 0.2, 2.0));
 }
 
-/* Of such a material the readings in the lobe are right, and are believed. */
+/* Of such a material the readings in the lobe are right, and are used. */
 static void test_an_unusual_material(void **state)
 {
     (void)state;
@@ -743,13 +743,13 @@ static double error_of_field(const gonio_reconstruction *r, const double *z)
     return sqrt(sum / (double)gaussian->view.rows);
 }
 
-static gonio_reconstruction *reconstruct_in_the_dark(const gonio_readings *readings, bool believe)
+static gonio_reconstruction *reconstruct_in_the_dark(const gonio_readings *readings, bool no_checks)
 {
     gonio_reconstruct_options options;
     gonio_reconstruction *r = NULL;
     gonio_reconstruct_options_default(&options);
     options.method = "posterior";
-    options.believe = believe;
+    options.no_checks = no_checks;
     assert_int_equal(gonio_reconstruct(context, small, readings, &options, &r), GONIO_OK);
     return r;
 }
@@ -782,10 +782,10 @@ static bool tells_its_level(const gonio_readings *readings)
     return 2 * zeros <= DIRECTIONS;
 }
 
-static void check_level(const gonio_reconstruction *made, const gonio_reconstruction *believed,
+static void check_level(const gonio_reconstruction *made, const gonio_reconstruction *unchecked,
                         const double *z, double dark, gonio_readings *readings)
 {
-    const double before = error_of_field(believed, z);
+    const double before = error_of_field(unchecked, z);
     const double after = error_of_field(made, z);
     print_message("a level of %.2g is found; error %.2f, before %.2f\n", made->dark[0], after,
                   before);
@@ -806,15 +806,15 @@ static void test_the_dark_level(void **state)
     for (uint64_t seed = 60; seed < 68; seed++) {
         const drawn d = draw(seed, 0.02);
         gonio_readings *readings = read_in_the_dark(d.z, seed, dark);
-        gonio_reconstruction *believed = reconstruct_in_the_dark(readings, true);
+        gonio_reconstruction *unchecked = reconstruct_in_the_dark(readings, true);
         gonio_reconstruction *made = reconstruct_in_the_dark(readings, false);
-        assert_null(believed->dark);
+        assert_null(unchecked->dark);
         assert_null(made->suspicion);
         if (made->dark != NULL) {
-            check_level(made, believed, d.z, dark, readings);
+            check_level(made, unchecked, d.z, dark, readings);
             found_levels++;
         }
-        gonio_reconstruction_free(&believed);
+        gonio_reconstruction_free(&unchecked);
         gonio_reconstruction_free(&made);
         gonio_readings_free(&readings);
         free(d.z);
@@ -834,12 +834,12 @@ static void test_no_dark_level(void **state)
                 assert_int_equal(gonio_readings_set_value(context, readings, i, c, 0.0), GONIO_OK);
             }
         }
-        gonio_reconstruction *believed = reconstruct_in_the_dark(readings, true);
+        gonio_reconstruction *unchecked = reconstruct_in_the_dark(readings, true);
         gonio_reconstruction *made = reconstruct_in_the_dark(readings, false);
         assert_null(made->dark);
-        assert_memory_equal(made->field, believed->field,
+        assert_memory_equal(made->field, unchecked->field,
                             made->columns * gaussian->view.rows * sizeof *made->field);
-        gonio_reconstruction_free(&believed);
+        gonio_reconstruction_free(&unchecked);
         gonio_reconstruction_free(&made);
         gonio_readings_free(&readings);
         free(d.z);
@@ -905,7 +905,7 @@ static void test_saturation(void **state)
         gonio_reconstruct_options options;
         gonio_reconstruct_options_default(&options);
         options.method = "posterior";
-        options.believe = true;
+        options.no_checks = true;
         options.saturation = k == 0 ? 0.0 : 0.1;
         gonio_reconstruction *made = NULL;
         assert_int_equal(gonio_reconstruct(context, basis, readings, &options, &made), GONIO_OK);

@@ -62,7 +62,7 @@ run plan-default plan default.gonio -n 20 -o plan-default.csv --json
 run plan-cube-root plan default.gonio -n 10 --metric cube-root -o plan-cube-root.csv --json
 run plan-log-relative plan default.gonio -n 10 --metric log-relative -o plan-log-relative.csv
 run plan-target plan default.gonio --target-error 4% -o plan-target.csv
-run plan-few plan default.gonio -n 8 $components 60 -o plan-few.csv
+run plan-few plan default.gonio -n 8 -o plan-few.csv
 run plan-builtin plan -n 8 -o plan-builtin.csv
 run plan-expected plan bivariate.gonio --method expected-error -n 12 -o plan-expected.csv
 run plan-condition plan bivariate.gonio $components 20 -n 30 --restarts 2 --history history.csv -o plan-condition.csv
@@ -85,7 +85,7 @@ run measure-noisy measure plan-default.csv "$other" --noise 2 --floor 1e-4 --out
 # Materials.
 run reconstruct-default reconstruct default.gonio readings-default.csv --deviation sd.binary -o default.binary --json
 run reconstruct-noisy reconstruct default.gonio readings-noisy.csv --noise 2 --floor 1e-4 -o noisy.binary --json
-run reconstruct-few reconstruct default.gonio readings-few.csv $components 60 -o few.binary --json
+run reconstruct-few reconstruct default.gonio readings-few.csv -o few.binary --json
 run reconstruct-builtin reconstruct readings-builtin.csv -o builtin.binary --json
 run reconstruct-predict reconstruct default.gonio readings-default.csv $predict plan-few.csv -o predicted.csv --json
 run reconstruct-unchecked reconstruct default.gonio readings-noisy.csv $unchecked $predict plan-few.csv -o unchecked.csv
