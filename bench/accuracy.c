@@ -217,9 +217,10 @@ static void run(gonio_context *context, const subject *it, const gonio_plan *pla
     }
     printf("%s%s,%d,%s,%zu,%g,%g,%g,%.4f,%.4f,%.5f,%.4f,%.4f,%g,%zu,%.3f,%.3f\n", s->method,
            s->adaptive ? " adaptive" : "", it->split, gonio_material_name(it->original), n,
-           s->noise, s->floor, s->outliers, comparison.all.e6, comparison.all.cube_root,
-           comparison.all.log_relative, made->predicted_e6, inside, made->smoothness,
-           made->outlying, plan->expected != NULL ? plan->expected[n - 1] : NAN, made->surprise);
+           s->noise, s->floor, s->outliers, comparison.all.value[GONIO_E6],
+           comparison.all.value[GONIO_CUBE_ROOT], comparison.all.value[GONIO_LOG_RELATIVE_ERROR],
+           made->predicted_e6, inside, made->smoothness, made->outlying,
+           plan->expected != NULL ? plan->expected[n - 1] : NAN, made->surprise);
     fflush(stdout);
     gonio_material_free(&deviation);
     gonio_material_free(&material);

@@ -16,7 +16,8 @@ typedef struct options {
 /* `rendered` is NULL where there is none. */
 static void print_row(const char *name, const gonio_error *error, const gonio_image_error *rendered)
 {
-    printf("%-28s %9.3f %9.3f %9.4f", name, error->e6, error->cube_root, error->log_relative);
+    printf("%-28s %9.3f %9.3f %9.4f", name, error->value[GONIO_E6], error->value[GONIO_CUBE_ROOT],
+           error->value[GONIO_LOG_RELATIVE_ERROR]);
     if (rendered != NULL) {
         printf(" %9.2f %9.3f", rendered->psnr, rendered->delta_e_itp);
     }
@@ -25,9 +26,9 @@ static void print_row(const char *name, const gonio_error *error, const gonio_im
 
 static json_t *error_json(const gonio_error *error)
 {
-    return json_pack("{s:o, s:o, s:o}", "e6_percent", tool_json_number(error->e6),
-                     "cube_root_percent", tool_json_number(error->cube_root), "log_relative",
-                     tool_json_number(error->log_relative));
+    return json_pack("{s:o, s:o, s:o}", "e6_percent", tool_json_number(error->value[GONIO_E6]),
+                     "cube_root_percent", tool_json_number(error->value[GONIO_CUBE_ROOT]),
+                     "log_relative", tool_json_number(error->value[GONIO_LOG_RELATIVE_ERROR]));
 }
 
 static json_t *comparison_json(const char *path, const gonio_comparison *c,

@@ -275,7 +275,7 @@ static gonio_status compare_cell(const tool *t, const gonio_reference *reference
         status = gonio_compare(t->context, original, material, &comparison);
     }
     if (status == GONIO_OK) {
-        p->cells[at] = (gonio_sheet_cell){p->image[at], comparison.all.e6};
+        p->cells[at] = (gonio_sheet_cell){p->image[at], comparison.all.value[GONIO_E6]};
         if (p->column_name[at % p->columns] == NULL) {
             p->column_name[at % p->columns] = strdup(gonio_material_name(material));
         }

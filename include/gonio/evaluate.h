@@ -1,24 +1,14 @@
-/* Evaluation: how far one BRDF is from another.
- *
- * Over the bins where both have data; c_i, c_o the cosines at the bin's centre:
- *   E6             100 sqrt(sum (g - g')^2 / sum g^2), g in log space; Ali et al., eq. (6)
- *   cube root      100 sqrt(sum (r - r')^2 / sum r^2), r = cbrt(rho c_i c_o); Fores et al. 2012
- *   log-relative   sqrt(mean ln^2((rho w + e)/(rho' w + e))), e = 0.001, w = clip(c_i c_o, 0.01,
- * 1); Nielsen et al. 2015 */
+/* Evaluation: how far one BRDF is from another, by every metric of metric.h, over the bins where
+ * both have data. */
 #ifndef GONIO_EVALUATE_H
 #define GONIO_EVALUATE_H
 
+#include <gonio/metric.h>
 #include <gonio/reconstruct.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-typedef struct gonio_error {
-    double e6;           /* per cent */
-    double cube_root;    /* per cent */
-    double log_relative; /* natural log units */
-} gonio_error;
 
 typedef struct gonio_comparison {
     gonio_error all;                     /* over all channels */

@@ -5,6 +5,7 @@
 #include <gonio/status.h>
 #include <gonio/context.h>
 #include <gonio/direction.h>
+#include <gonio/metric.h>
 #include <gonio/atlas.h>
 #include <gonio/material.h>
 #include <gonio/database.h>

@@ -10,6 +10,7 @@
 #define GONIO_PLAN_H
 
 #include <gonio/basis.h>
+#include <gonio/metric.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -47,13 +48,6 @@ typedef struct gonio_plan {
     double *expected;         /* [count] by expected-error: the E6 to expect of a material after
                                * each reading, per cent; NULL by other methods */
 } gonio_plan;
-
-/* Errors that a plan can be made for: evaluate.h. */
-typedef enum gonio_metric {
-    GONIO_E6 = 0,
-    GONIO_CUBE_ROOT = 1,
-    GONIO_LOG_RELATIVE_ERROR = 2
-} gonio_metric;
 
 typedef struct gonio_plan_options {
     const char *method; /* NULL: what suits the basis, expected-error for one with mixtures and

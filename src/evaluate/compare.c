@@ -2,12 +2,10 @@
 #include <gonio/evaluate.h>
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "../core/core.h"
-#include "../core/vector_math.h"
 #include "../direction/grid.h"
-#include "metrics.h"
+#include "../metric/metric.h"
 
 typedef struct slab_sums {
     gonio_i_error_sums channel[GONIO_CHANNELS];
@@ -19,8 +17,7 @@ typedef struct slab_sums {
 typedef struct scratch {
     double *reference; /* slabs, 1/sr */
     double *other;
-    double *a; /* one channel each */
-    double *b;
+    double *terms;   /* [2][bins] */
     double *cosines; /* c_i c_o of each bin */
     bool *data;
     bool *data_other;
@@ -30,67 +27,34 @@ static bool make_scratch(gonio_context *context, scratch *s)
 {
     s->reference = gonio_i_allocate(context, GONIO_SLAB_VALUES, sizeof(double));
     s->other = gonio_i_allocate(context, GONIO_SLAB_VALUES, sizeof(double));
-    s->a = gonio_i_allocate(context, GONIO_SLAB_BINS, sizeof(double));
-    s->b = gonio_i_allocate(context, GONIO_SLAB_BINS, sizeof(double));
+    s->terms = gonio_i_allocate(context, (size_t)2 * GONIO_SLAB_BINS, sizeof(double));
     s->cosines = gonio_i_allocate(context, GONIO_SLAB_BINS, sizeof(double));
     s->data = gonio_i_allocate(context, GONIO_SLAB_BINS, sizeof(bool));
     s->data_other = gonio_i_allocate(context, GONIO_SLAB_BINS, sizeof(bool));
-    return s->reference != NULL && s->other != NULL && s->a != NULL && s->b != NULL &&
-           s->cosines != NULL && s->data != NULL && s->data_other != NULL;
+    return s->reference != NULL && s->other != NULL && s->terms != NULL && s->cosines != NULL &&
+           s->data != NULL && s->data_other != NULL;
 }
 
 static void free_scratch(scratch *s)
 {
     free(s->reference);
     free(s->other);
-    free(s->a);
-    free(s->b);
+    free(s->terms);
     free(s->cosines);
     free(s->data);
     free(s->data_other);
 }
 
-GONIO_I_VECTORISED static void add_squares(const double *a, const double *b, double *difference,
-                                           double *reference)
-{
-    double d = 0.0;
-    double r = 0.0;
-#pragma omp simd reduction(+ : d, r)
-    for (size_t k = 0; k < GONIO_SLAB_BINS; k++) {
-        d += (a[k] - b[k]) * (a[k] - b[k]);
-        r += a[k] * a[k];
-    }
-    *difference = d;
-    *reference = r;
-}
-
 /* Bins without data are 0 in both, and so add nothing to any sum. */
-static void sum_channel(const double *x, const double *y, const scratch *s, int channel,
-                        gonio_i_error_sums *sums)
+static void sum_channel(const scratch *s, int channel, gonio_i_error_sums *sums)
 {
-    const double scale = 1.0 / gonio_log_scale(channel);
-    for (size_t k = 0; k < GONIO_SLAB_BINS; k++) {
-        s->a[k] = x[k] * scale;
-        s->b[k] = y[k] * scale;
-    }
-    gonio_i_log1p(GONIO_SLAB_BINS, s->a, s->a);
-    gonio_i_log1p(GONIO_SLAB_BINS, s->b, s->b);
-    add_squares(s->a, s->b, &sums->log_difference, &sums->log_reference);
-    for (size_t k = 0; k < GONIO_SLAB_BINS; k++) {
-        s->a[k] = x[k] * s->cosines[k];
-        s->b[k] = y[k] * s->cosines[k];
-    }
-    gonio_i_cbrt(GONIO_SLAB_BINS, s->a, s->a);
-    gonio_i_cbrt(GONIO_SLAB_BINS, s->b, s->b);
-    add_squares(s->a, s->b, &sums->cube_difference, &sums->cube_reference);
-    for (size_t k = 0; k < GONIO_SLAB_BINS; k++) {
-        const double w = gonio_i_ratio_weight(s->cosines[k]);
-        s->a[k] = (x[k] * w + GONIO_I_RATIO_OFFSET) / (y[k] * w + GONIO_I_RATIO_OFFSET);
-    }
-    gonio_i_log(GONIO_SLAB_BINS, s->a, s->a);
-    memset(s->b, 0, GONIO_SLAB_BINS * sizeof *s->b);
-    double unused = 0.0;
-    add_squares(s->a, s->b, &sums->ratio, &unused);
+    const size_t plane = (size_t)channel * GONIO_SLAB_BINS;
+    const gonio_i_compared values = {.count = GONIO_SLAB_BINS,
+                                     .reference = s->reference + plane,
+                                     .other = s->other + plane,
+                                     .cosines = s->cosines,
+                                     .scale = gonio_log_scale(channel)};
+    gonio_i_error_add_values(&values, s->terms, sums);
 }
 
 static gonio_status sum_slab(gonio_context *context, const gonio_material *reference,
@@ -117,8 +81,7 @@ static gonio_status sum_slab(gonio_context *context, const gonio_material *refer
         }
     }
     for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
-        const size_t plane = (size_t)channel * GONIO_SLAB_BINS;
-        sum_channel(s->reference + plane, s->other + plane, s, channel, &sums->channel[channel]);
+        sum_channel(s, channel, &sums->channel[channel]);
     }
     return GONIO_OK;
 }
@@ -168,7 +131,7 @@ gonio_status gonio_compare(gonio_context *context, const gonio_material *referen
     if (status != GONIO_OK) {
         return status;
     }
-    if (sums.bins == 0 || all.log_reference == 0.0) {
+    if (sums.bins == 0 || all.metric[GONIO_E6].reference == 0.0) {
         return gonio_i_fail(context, GONIO_ERROR_DATA,
                             sums.bins == 0 ? "%s and %s have data in no common bin"
                                            : "%s is black: no error relative to it (%s)",

@@ -1,27 +1,43 @@
 /* Errors between readings at the same directions: see evaluate.h. */
+#include <gonio/evaluate.h>
+
 #include <math.h>
 #include <stdlib.h>
 
 #include "../core/core.h"
-#include "metrics.h"
+#include "../metric/metric.h"
 
-/* One value of one reading. */
-static void add_value(gonio_half_difference at, double s, double rho, double other,
-                      gonio_i_error_sums *sums)
+/* Values that both files have, of the readings that count; room for all of one channel. */
+typedef struct pairs {
+    size_t count;
+    double *reference; /* [readings] each, 1/sr */
+    double *other;
+    double *cosines;
+    double *terms; /* [2][readings] */
+} pairs;
+
+static gonio_status allocate_pairs(gonio_context *context, size_t readings, pairs *p)
+{
+    double *all = gonio_i_allocate(context, 5 * readings, sizeof *all);
+    *p = (pairs){0, all, NULL, NULL, NULL};
+    if (all == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    p->other = all + readings;
+    p->cosines = all + 2 * readings;
+    p->terms = all + 3 * readings;
+    return GONIO_OK;
+}
+
+static void add_pair(gonio_pair pair, double rho, double other, pairs *p)
 {
     double incident = 0.0;
     double outgoing = 0.0;
-    gonio_cosines(at, &incident, &outgoing);
-    const double cosines = fmax(incident * outgoing, 0.0);
-    const double w = gonio_i_ratio_weight(cosines);
-    const double g = log1p(rho / s);
-    const double difference = g - log1p(other / s);
-    const double cube = cbrt(rho * cosines);
-    const double cubes = cube - cbrt(other * cosines);
-    const double ratio = log((rho * w + GONIO_I_RATIO_OFFSET) / (other * w + GONIO_I_RATIO_OFFSET));
-    const gonio_i_error_sums part = {difference * difference, g * g, cubes * cubes, cube * cube,
-                                     ratio * ratio};
-    gonio_i_error_add(sums, &part);
+    gonio_cosines(gonio_half_difference_from_pair(pair), &incident, &outgoing);
+    p->reference[p->count] = rho;
+    p->other[p->count] = other;
+    p->cosines[p->count] = fmax(incident * outgoing, 0.0);
+    p->count++;
 }
 
 static gonio_status check(gonio_context *context, const gonio_readings *reference,
@@ -38,6 +54,35 @@ static gonio_status check(gonio_context *context, const gonio_readings *referenc
     return GONIO_OK;
 }
 
+/* One channel; returns how many values were compared. */
+static size_t add_channel(const gonio_readings *reference, const gonio_readings *other,
+                          const bool *left_out, size_t channel, pairs *p, gonio_i_error_sums *sums)
+{
+    const gonio_readings_view view = gonio_readings_describe(reference);
+    p->count = 0;
+    for (size_t k = 0; k < view.count; k++) {
+        const double a = gonio_readings_value(reference, k, channel);
+        const double b = gonio_readings_value(other, k, channel);
+        if ((left_out == NULL || !left_out[k]) && !isnan(a) && !isnan(b)) {
+            add_pair(view.pair[k], a, b, p);
+        }
+    }
+    const gonio_i_compared values = {p->count, p->reference, p->other, p->cosines,
+                                     gonio_readings_scale(reference, channel)};
+    gonio_i_error_add_values(&values, p->terms, sums);
+    return p->count;
+}
+
+/* How many are not left out. */
+static size_t count_readings(size_t readings, const bool *left_out)
+{
+    size_t count = 0;
+    for (size_t k = 0; k < readings; k++) {
+        count += left_out == NULL || !left_out[k];
+    }
+    return count;
+}
+
 gonio_status gonio_compare_readings(gonio_context *context, const gonio_readings *reference,
                                     const gonio_readings *other, const bool *left_out,
                                     gonio_error *error, size_t *compared)
@@ -45,27 +90,23 @@ gonio_status gonio_compare_readings(gonio_context *context, const gonio_readings
     const gonio_readings_view view = gonio_readings_describe(reference);
     gonio_i_error_sums sums = {0};
     size_t values = 0;
-    const gonio_status status = check(context, reference, other);
-    *compared = 0;
-    for (size_t k = 0; k < view.count && status == GONIO_OK; k++) {
-        if (left_out != NULL && left_out[k]) {
-            continue;
-        }
-        const gonio_half_difference at = gonio_half_difference_from_pair(view.pair[k]);
-        for (size_t c = 0; c < view.channels; c++) {
-            const double a = gonio_readings_value(reference, k, c);
-            const double b = gonio_readings_value(other, k, c);
-            if (!isnan(a) && !isnan(b)) {
-                add_value(at, gonio_readings_scale(reference, c), a, b, &sums);
-                values++;
-            }
-        }
-        ++*compared;
+    pairs p = {0};
+    gonio_status status = check(context, reference, other);
+    if (status == GONIO_OK) {
+        status = allocate_pairs(context, view.count, &p);
     }
-    if (status == GONIO_OK && !(sums.log_reference > 0.0)) {
+    for (size_t c = 0; c < view.channels && status == GONIO_OK; c++) {
+        values += add_channel(reference, other, left_out, c, &p, &sums);
+    }
+    free(p.reference);
+    if (status != GONIO_OK) {
+        return status;
+    }
+    if (!(sums.metric[GONIO_E6].reference > 0.0)) {
         return gonio_i_fail(context, GONIO_ERROR_DATA, "%s: nothing to compare, or only darkness",
                             view.path);
     }
+    *compared = count_readings(view.count, left_out);
     *error = gonio_i_error_of(&sums, (double)values);
-    return status;
+    return GONIO_OK;
 }

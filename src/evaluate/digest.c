@@ -1,6 +1,7 @@
 /* Materials digested for the errors of bivariate estimates: see digest.h. */
 #include "digest.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -52,14 +53,14 @@ static void interpolate(const nodes *n, double t, double *share)
 
 /* ---- reading a material ---- */
 
-/* A slab, and what its bins are worth. */
+/* A slab, and what its bins are worth by one metric. */
 typedef struct slab {
-    double *rho;
+    double *rho;        /* 0 where there is no data */
     double *g;          /* log space */
-    double *root;       /* cbrt(rho) */
-    double *ratio;      /* d_b */
-    double *cosines;    /* c_i c_o; the others likewise for one channel */
-    double *area;       /* (c_i c_o)^(2/3) */
+    double *own;        /* x_0 of each bin's cell; 0 where there is no data */
+    double *difference; /* d_b, by the metric at hand */
+    double *reference;  /* what its error is relative to; one channel, as the next two */
+    double *cosines;    /* c_i c_o */
     double *log_weight; /* ln w */
     bool *data;
     gonio_slab_statistics statistics;
@@ -69,48 +70,40 @@ static bool make_slab(gonio_context *context, slab *s)
 {
     s->rho = gonio_i_allocate(context, GONIO_SLAB_VALUES, sizeof(double));
     s->g = gonio_i_allocate(context, GONIO_SLAB_VALUES, sizeof(double));
-    s->root = gonio_i_allocate(context, GONIO_SLAB_VALUES, sizeof(double));
-    s->ratio = gonio_i_allocate(context, GONIO_SLAB_VALUES, sizeof(double));
+    s->own = gonio_i_allocate(context, GONIO_SLAB_VALUES, sizeof(double));
+    s->difference = gonio_i_allocate(context, GONIO_SLAB_VALUES, sizeof(double));
+    s->reference = gonio_i_allocate(context, GONIO_SLAB_BINS, sizeof(double));
     s->cosines = gonio_i_allocate(context, GONIO_SLAB_BINS, sizeof(double));
-    s->area = gonio_i_allocate(context, GONIO_SLAB_BINS, sizeof(double));
     s->log_weight = gonio_i_allocate(context, GONIO_SLAB_BINS, sizeof(double));
     s->data = gonio_i_allocate(context, GONIO_SLAB_BINS, sizeof(bool));
-    return s->rho != NULL && s->g != NULL && s->root != NULL && s->ratio != NULL &&
-           s->cosines != NULL && s->area != NULL && s->log_weight != NULL && s->data != NULL;
+    return s->rho != NULL && s->g != NULL && s->own != NULL && s->difference != NULL &&
+           s->reference != NULL && s->cosines != NULL && s->log_weight != NULL && s->data != NULL;
 }
 
 static void free_slab(slab *s)
 {
     free(s->rho);
     free(s->g);
-    free(s->root);
-    free(s->ratio);
+    free(s->own);
+    free(s->difference);
+    free(s->reference);
     free(s->cosines);
-    free(s->area);
     free(s->log_weight);
     free(s->data);
 }
 
-/* d_b of all bins. */
-static void fill_ratios(slab *s)
+/* x_0 at all bins with data. */
+static void fill_own(slab *s)
 {
     for (size_t k = 0; k < GONIO_SLAB_VALUES; k++) {
         const size_t bin = k % GONIO_SLAB_BINS;
-        const int channel = (int)(k / GONIO_SLAB_BINS);
-        const double g = s->statistics.mean[bin / GONIO_PHI_D_BINS][channel];
-        const double w = gonio_i_ratio_weight(s->cosines[bin]);
-        s->ratio[k] = s->data[bin] ? g : 0.0;
-        s->log_weight[bin] = w;
+        const double mean = s->statistics.mean[bin / GONIO_PHI_D_BINS][k / GONIO_SLAB_BINS];
+        s->own[k] = s->data[bin] ? mean : 0.0;
     }
-    gonio_i_expm1(GONIO_SLAB_VALUES, s->ratio, s->ratio);
+    gonio_i_expm1(GONIO_SLAB_VALUES, s->own, s->own);
     for (size_t k = 0; k < GONIO_SLAB_VALUES; k++) {
-        const size_t bin = k % GONIO_SLAB_BINS;
-        const double w = s->log_weight[bin];
-        const double mean = gonio_log_scale((int)(k / GONIO_SLAB_BINS)) * s->ratio[k];
-        s->ratio[k] = (s->rho[k] * w + GONIO_I_RATIO_OFFSET) / (mean * w + GONIO_I_RATIO_OFFSET);
+        s->own[k] *= gonio_log_scale((int)(k / GONIO_SLAB_BINS));
     }
-    gonio_i_log(GONIO_SLAB_VALUES, s->ratio, s->ratio);
-    gonio_i_log(GONIO_SLAB_BINS, s->log_weight, s->log_weight);
 }
 
 static gonio_status read_slab(gonio_context *context, const gonio_material *material, int theta_h,
@@ -127,36 +120,55 @@ static gonio_status read_slab(gonio_context *context, const gonio_material *mate
     }
     gonio_slab_to_log(s->rho, s->g);
     gonio_slab_reduce(s->g, s->data, &s->statistics);
-    gonio_i_cbrt(GONIO_SLAB_VALUES, s->rho, s->root);
+    fill_own(s);
     gonio_i_slab_cosines(theta_h, s->cosines);
     for (size_t k = 0; k < GONIO_SLAB_BINS; k++) {
-        s->area[k] = cbrt(s->cosines[k] * s->cosines[k]);
+        s->log_weight[k] = gonio_i_clip_cosines(s->cosines[k]);
     }
-    fill_ratios(s);
+    gonio_i_log(GONIO_SLAB_BINS, s->log_weight, s->log_weight);
     return GONIO_OK;
+}
+
+/* d_b of all bins, and the sums over them. */
+static void fill_terms(int metric, slab *s, gonio_i_digest *d)
+{
+    for (int c = 0; c < GONIO_CHANNELS; c++) {
+        const size_t plane = (size_t)c * GONIO_SLAB_BINS;
+        const gonio_i_compared values = {.count = GONIO_SLAB_BINS,
+                                         .reference = s->rho + plane,
+                                         .other = s->own + plane,
+                                         .cosines = s->cosines,
+                                         .scale = gonio_log_scale(c)};
+        gonio_i_metric_at(metric)->terms(&values, s->difference + plane, s->reference);
+        gonio_i_metric_add_terms(GONIO_SLAB_BINS, s->difference + plane, s->reference,
+                                 &d->constant.metric[metric]);
+    }
 }
 
 /* ---- digesting a cell ---- */
 
-/* The weighted mean of the roots, their squares and their scatter. */
-static void add_roots(const slab *s, size_t row, int channel, gonio_i_digest *d)
+/* Adds a bin to the moments of node j. */
+static void add_moment(const slab *s, size_t bin, double share, size_t j, gonio_i_digest_metric *m)
 {
-    const double *root = s->root + (size_t)channel * GONIO_SLAB_BINS + row;
-    double area = 0.0;
-    double sum = 0.0;
-    for (size_t p = 0; p < GONIO_PHI_D_BINS; p++) {
-        const double share = s->data[row + p] ? s->area[row + p] : 0.0;
-        area += share;
-        sum += share * root[p];
+    m->linear[j] += share;
+    for (size_t c = 0; c < GONIO_CHANNELS; c++) {
+        m->moment[c][j] += share * s->difference[c * GONIO_SLAB_BINS + bin];
     }
-    const double mean = sum / area;
-    for (size_t p = 0; p < GONIO_PHI_D_BINS; p++) {
-        const double share = s->data[row + p] ? s->area[row + p] : 0.0;
-        d->constant.cube_difference += share * (root[p] - mean) * (root[p] - mean);
-        d->constant.cube_reference += share * root[p] * root[p];
+}
+
+/* The one node of terms that are in proportion; returns how many that is. */
+static size_t add_proportional(const slab *s, size_t row, double (*proportion)(double),
+                               size_t first, gonio_i_digest_metric *m)
+{
+    m->node[first] = 1.0;
+    for (size_t p = row; p < row + GONIO_PHI_D_BINS; p++) {
+        if (s->data[p]) {
+            const double share = proportion(s->cosines[p]);
+            add_moment(s, p, share, first, m);
+            m->square[first] += share * share;
+        }
     }
-    d->area[d->cells] = area;
-    d->root[channel][d->cells] = mean;
+    return 1;
 }
 
 /* The nodes of a cell: over all of its valid bins, whether they have data or not. */
@@ -173,54 +185,66 @@ static void choose_nodes(const slab *s, size_t row, nodes *n)
     place_nodes(low, high, n);
 }
 
-static void add_ratios(const slab *s, size_t row, gonio_i_digest *d)
+/* The nodes of any other terms; returns how many. */
+static size_t add_interpolated(const slab *s, size_t row, size_t first, gonio_i_digest_metric *m)
 {
     nodes n;
     double share[MOST_NODES];
-    const size_t first = d->first[d->cells];
     choose_nodes(s, row, &n);
     for (size_t j = 0; j < n.count; j++) {
-        d->node[first + j] = exp(n.t[j]);
+        m->node[first + j] = exp(n.t[j]);
     }
     for (size_t p = row; p < row + GONIO_PHI_D_BINS; p++) {
-        if (!s->data[p]) {
-            continue;
+        if (s->data[p]) {
+            interpolate(&n, s->log_weight[p], share);
         }
-        interpolate(&n, s->log_weight[p], share);
-        for (size_t j = 0; j < n.count; j++) {
-            d->weight[first + j] += share[j];
-        }
-        for (size_t c = 0; c < GONIO_CHANNELS; c++) {
-            const double ratio = s->ratio[c * GONIO_SLAB_BINS + p];
-            d->constant.ratio += ratio * ratio;
-            for (size_t j = 0; j < n.count; j++) {
-                d->moment[c][first + j] += share[j] * ratio;
-            }
+        for (size_t j = 0; j < n.count && s->data[p]; j++) {
+            add_moment(s, p, share[j], first + j, m);
+            m->square[first + j] += share[j];
         }
     }
-    d->first[d->cells + 1] = first + n.count;
+    return n.count;
 }
 
-static void add_cell(const slab *s, int theta_h, int theta_d, gonio_i_digest *d)
+/* Cell i of the digest, by one metric. */
+static void add_cell(const slab *s, int metric, size_t i, gonio_i_digest *d)
 {
-    const size_t row = (size_t)theta_d * GONIO_PHI_D_BINS;
-    const double count = s->statistics.count[theta_d];
-    if (count == 0.0) {
-        return;
+    gonio_i_digest_metric *m = &d->metric[metric];
+    const size_t row = (size_t)(d->cell[i] % GONIO_THETA_D_BINS) * GONIO_PHI_D_BINS;
+    double (*const proportion)(double) = gonio_i_metric_at(metric)->proportion;
+    const size_t first = m->first[i];
+    const size_t count = proportion != NULL ? add_proportional(s, row, proportion, first, m)
+                                            : add_interpolated(s, row, first, m);
+    m->first[i + 1] = first + count;
+}
+
+/* The cells of a slab with data. */
+static void list_cells(const slab *s, int theta_h, gonio_i_digest *d)
+{
+    for (int theta_d = 0; theta_d < GONIO_THETA_D_BINS; theta_d++) {
+        if (s->statistics.count[theta_d] == 0) {
+            continue;
+        }
+        d->cell[d->cells] = theta_d + GONIO_THETA_D_BINS * theta_h;
+        d->bins += s->statistics.count[theta_d];
+        for (int c = 0; c < GONIO_CHANNELS; c++) {
+            d->mean[c][d->cells] = s->statistics.mean[theta_d][c];
+            d->own[c][d->cells] = gonio_brdf_from_log(d->mean[c][d->cells], c);
+        }
+        d->cells++;
     }
-    d->cell[d->cells] = theta_d + GONIO_THETA_D_BINS * theta_h;
-    d->count[d->cells] = count;
-    d->bins += s->statistics.count[theta_d];
-    for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
-        const double mean = s->statistics.mean[theta_d][channel];
-        const double scatter = s->statistics.scatter[theta_d][channel];
-        d->mean[channel][d->cells] = mean;
-        d->constant.log_difference += scatter;
-        d->constant.log_reference += scatter + count * mean * mean;
-        add_roots(s, row, channel, d);
+}
+
+static void add_slab(slab *s, int theta_h, gonio_i_digest *d)
+{
+    const size_t before = d->cells;
+    list_cells(s, theta_h, d);
+    for (int metric = 0; metric < gonio_i_metric_count(); metric++) {
+        fill_terms(metric, s, d);
+        for (size_t i = before; i < d->cells; i++) {
+            add_cell(s, metric, i, d);
+        }
     }
-    add_ratios(s, row, d);
-    d->cells++;
 }
 
 /* ---- the whole ---- */
@@ -233,26 +257,35 @@ static bool allocate_channels(gonio_context *context, double **channel, size_t c
     return channel[0] != NULL && channel[1] != NULL && channel[2] != NULL;
 }
 
+static bool allocate_metric(gonio_context *context, int metric, gonio_i_digest_metric *m)
+{
+    const bool one = gonio_i_metric_at(metric)->proportion != NULL;
+    const size_t most = (size_t)GONIO_CELLS * (one ? 1 : MOST_NODES);
+    m->first = gonio_i_allocate(context, GONIO_CELLS + 1, sizeof *m->first);
+    m->node = gonio_i_allocate(context, most, sizeof *m->node);
+    m->linear = gonio_i_allocate(context, most, sizeof *m->linear);
+    m->square = gonio_i_allocate(context, most, sizeof *m->square);
+    return allocate_channels(context, m->moment, most) && m->first != NULL && m->node != NULL &&
+           m->linear != NULL && m->square != NULL;
+}
+
 static bool allocate(gonio_context *context, gonio_i_digest *d)
 {
-    const size_t most = (size_t)GONIO_CELLS * MOST_NODES;
     d->cell = gonio_i_allocate(context, GONIO_CELLS, sizeof *d->cell);
-    d->count = gonio_i_allocate(context, GONIO_CELLS, sizeof *d->count);
-    d->area = gonio_i_allocate(context, GONIO_CELLS, sizeof *d->area);
-    d->first = gonio_i_allocate(context, GONIO_CELLS + 1, sizeof *d->first);
-    d->node = gonio_i_allocate(context, most, sizeof *d->node);
-    d->weight = gonio_i_allocate(context, most, sizeof *d->weight);
-    return allocate_channels(context, d->mean, GONIO_CELLS) &&
-           allocate_channels(context, d->root, GONIO_CELLS) &&
-           allocate_channels(context, d->moment, most) && d->cell != NULL && d->count != NULL &&
-           d->area != NULL && d->first != NULL && d->node != NULL && d->weight != NULL;
+    bool done = allocate_channels(context, d->mean, GONIO_CELLS) &&
+                allocate_channels(context, d->own, GONIO_CELLS) && d->cell != NULL;
+    for (int metric = 0; metric < gonio_i_metric_count() && done; metric++) {
+        done = allocate_metric(context, metric, &d->metric[metric]);
+    }
+    return done;
 }
 
 /* Gives back what the nodes did not need. */
-static void shrink(gonio_i_digest *d)
+static void shrink(const gonio_i_digest *d, gonio_i_digest_metric *m)
 {
-    double **const arrays[] = {&d->node, &d->weight, &d->moment[0], &d->moment[1], &d->moment[2]};
-    const size_t count = d->first[d->cells] > 0 ? d->first[d->cells] : 1;
+    double **const arrays[] = {&m->node,      &m->linear,    &m->square,
+                               &m->moment[0], &m->moment[1], &m->moment[2]};
+    const size_t count = m->first[d->cells] > 0 ? m->first[d->cells] : 1;
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) {
         double *less = reallocarray(*arrays[k], count, sizeof *less);
         *arrays[k] = less != NULL ? less : *arrays[k];
@@ -265,8 +298,8 @@ static gonio_status read_slabs(gonio_context *context, const gonio_material *mat
     gonio_status status = GONIO_OK;
     for (int theta_h = 0; theta_h < GONIO_THETA_H_BINS && status == GONIO_OK; theta_h++) {
         status = read_slab(context, material, theta_h, fingerprint, s);
-        for (int theta_d = 0; theta_d < GONIO_THETA_D_BINS && status == GONIO_OK; theta_d++) {
-            add_cell(s, theta_h, theta_d, d);
+        if (status == GONIO_OK) {
+            add_slab(s, theta_h, d);
         }
     }
     d->fingerprint = gonio_fingerprint_value(fingerprint);
@@ -286,7 +319,7 @@ static gonio_status digest_material(gonio_context *context, const gonio_material
     if (status == GONIO_OK) {
         status = read_slabs(context, material, &s, fingerprint, d);
     }
-    if (status == GONIO_OK && d->constant.log_reference == 0.0) {
+    if (status == GONIO_OK && d->constant.metric[GONIO_E6].reference == 0.0) {
         status = gonio_i_fail(context, GONIO_ERROR_DATA,
                               d->bins == 0 ? "%s has no data at all"
                                            : "%s is black: no error relative to it",
@@ -309,9 +342,22 @@ gonio_status gonio_i_digest_create(gonio_context *context, const gonio_material 
         gonio_i_digest_free(&made);
         return status;
     }
-    shrink(made);
+    for (int metric = 0; metric < gonio_i_metric_count(); metric++) {
+        shrink(made, &made->metric[metric]);
+    }
     *digest = made;
     return GONIO_OK;
+}
+
+static void free_metric(gonio_i_digest_metric *m)
+{
+    for (int c = 0; c < GONIO_CHANNELS; c++) {
+        free(m->moment[c]);
+    }
+    free(m->first);
+    free(m->node);
+    free(m->linear);
+    free(m->square);
 }
 
 void gonio_i_digest_free(gonio_i_digest **digest)
@@ -322,16 +368,13 @@ void gonio_i_digest_free(gonio_i_digest **digest)
     gonio_i_digest *d = *digest;
     for (int c = 0; c < GONIO_CHANNELS; c++) {
         free(d->mean[c]);
-        free(d->root[c]);
-        free(d->moment[c]);
+        free(d->own[c]);
+    }
+    for (int metric = 0; metric < GONIO_MOST_METRICS; metric++) {
+        free_metric(&d->metric[metric]);
     }
     free(d->name);
     free(d->cell);
-    free(d->count);
-    free(d->area);
-    free(d->first);
-    free(d->node);
-    free(d->weight);
     free(d);
     *digest = NULL;
 }
@@ -350,24 +393,35 @@ void gonio_i_digest_mean(const gonio_i_digest *digest, double *g)
 
 /* ---- comparing ---- */
 
-/* One channel's estimate, [cells] each. */
+/* One channel's estimate. */
 typedef struct estimate {
-    double *g;    /* clamped */
-    double *rho;  /* 1/sr */
-    double *root; /* cbrt(rho) */
-    double *own;  /* rho of the material's own mean */
-    double *log;  /* [nodes]: D */
+    double *rho;       /* [cells], 1/sr */
+    double *x;         /* [nodes] each: the estimate, */
+    double *own;       /* x_0, */
+    double *change;    /* D, */
+    double *reference; /* and what terms are relative to: unused */
 } estimate;
+
+static size_t most_nodes(const gonio_i_digest *d)
+{
+    size_t most = 0;
+    for (int metric = 0; metric < gonio_i_metric_count(); metric++) {
+        const size_t count = d->metric[metric].first[d->cells];
+        most = count > most ? count : most;
+    }
+    return most;
+}
 
 static bool make_estimate(gonio_context *context, const gonio_i_digest *d, estimate *e)
 {
-    double *all = gonio_i_allocate(context, 4 * d->cells + d->first[d->cells], sizeof *all);
-    *e = (estimate){.g = all};
+    const size_t n = most_nodes(d);
+    double *all = gonio_i_allocate(context, d->cells + 4 * n, sizeof *all);
+    *e = (estimate){.rho = all};
     if (all != NULL) {
-        e->rho = all + d->cells;
-        e->root = e->rho + d->cells;
-        e->own = e->root + d->cells;
-        e->log = e->own + d->cells;
+        e->x = all + d->cells;
+        e->own = e->x + n;
+        e->change = e->own + n;
+        e->reference = e->change + n;
     }
     return all != NULL;
 }
@@ -380,63 +434,76 @@ static void fill_estimate(const gonio_i_digest *d, const double *g, int channel,
     for (size_t i = 0; i < d->cells; i++) {
         const double value = g[(size_t)d->cell[i] * GONIO_CHANNELS + (size_t)channel];
         const double positive = value > 0.0 ? value : 0.0;
-        e->g[i] = positive < largest ? positive : largest;
+        e->rho[i] = positive < largest ? positive : largest;
     }
-    gonio_i_expm1(d->cells, e->g, e->rho);
-    gonio_i_expm1(d->cells, d->mean[channel], e->own);
+    gonio_i_expm1(d->cells, e->rho, e->rho);
     for (size_t i = 0; i < d->cells; i++) {
         e->rho[i] *= scale;
-        e->own[i] *= scale;
     }
-    gonio_i_cbrt(d->cells, e->rho, e->root);
+}
+
+/* D at the nodes. */
+static void fill_changes(const gonio_i_digest *d, int metric, int channel, estimate *e)
+{
+    const gonio_i_digest_metric *m = &d->metric[metric];
     for (size_t i = 0; i < d->cells; i++) {
-        for (size_t j = d->first[i]; j < d->first[i + 1]; j++) {
-            e->log[j] = (e->rho[i] * d->node[j] + GONIO_I_RATIO_OFFSET) /
-                        (e->own[i] * d->node[j] + GONIO_I_RATIO_OFFSET);
+        for (size_t j = m->first[i]; j < m->first[i + 1]; j++) {
+            e->x[j] = e->rho[i];
+            e->own[j] = d->own[channel][i];
         }
     }
-    gonio_i_log(d->first[d->cells], e->log, e->log);
+    const gonio_i_compared values = {.count = m->first[d->cells],
+                                     .reference = e->x,
+                                     .other = e->own,
+                                     .cosines = m->node,
+                                     .scale = gonio_log_scale(channel)};
+    gonio_i_metric_at(metric)->terms(&values, e->change, e->reference);
 }
 
-GONIO_I_VECTORISED static double weighted_squares(size_t n, const double *weight, const double *a,
-                                                  const double *b)
+/* Adds what D changes of the sums of d_b - D(c_b) and of their squares. */
+GONIO_I_VECTORISED static void add_changes(size_t n, const gonio_i_digest_metric *m,
+                                           const double *moment, const double *change,
+                                           gonio_i_metric_sums *sums)
 {
-    double sum = 0.0;
-#pragma omp simd reduction(+ : sum)
-    for (size_t i = 0; i < n; i++) {
-        sum += weight[i] * (a[i] - b[i]) * (a[i] - b[i]);
-    }
-    return sum;
-}
-
-GONIO_I_VECTORISED static double ratio_squares(size_t n, const double *weight, const double *moment,
-                                               const double *log)
-{
-    double sum = 0.0;
-#pragma omp simd reduction(+ : sum)
+    const double *linear = m->linear;
+    const double *squares = m->square;
+    double difference = 0.0;
+    double square = 0.0;
+#pragma omp simd reduction(+ : difference, square)
     for (size_t j = 0; j < n; j++) {
-        sum += (weight[j] * log[j] - 2.0 * moment[j]) * log[j];
+        difference += linear[j] * change[j];
+        square += (squares[j] * change[j] - 2.0 * moment[j]) * change[j];
     }
-    return sum;
+    sums->difference -= difference;
+    sums->square += square;
+}
+
+static void add_channel(const gonio_i_digest *d, const double *g, int channel, estimate *e,
+                        gonio_i_error_sums *sums)
+{
+    fill_estimate(d, g, channel, e);
+    for (int metric = 0; metric < gonio_i_metric_count(); metric++) {
+        const gonio_i_digest_metric *m = &d->metric[metric];
+        fill_changes(d, metric, channel, e);
+        add_changes(m->first[d->cells], m, m->moment[channel], e->change, &sums->metric[metric]);
+    }
 }
 
 gonio_status gonio_i_digest_compare(gonio_context *context, const gonio_i_digest *digest,
                                     const double *g, gonio_error *error)
 {
-    const gonio_i_digest *d = digest;
     estimate e;
-    gonio_i_error_sums sums = d->constant;
-    if (!make_estimate(context, d, &e)) {
+    gonio_i_error_sums sums = digest->constant;
+    if (!make_estimate(context, digest, &e)) {
         return GONIO_ERROR_MEMORY;
     }
     for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
-        fill_estimate(d, g, channel, &e);
-        sums.log_difference += weighted_squares(d->cells, d->count, e.g, d->mean[channel]);
-        sums.cube_difference += weighted_squares(d->cells, d->area, e.root, d->root[channel]);
-        sums.ratio += ratio_squares(d->first[d->cells], d->weight, d->moment[channel], e.log);
+        add_channel(digest, g, channel, &e, &sums);
     }
-    free(e.g);
-    sums.ratio = fmax(sums.ratio, 0.0);
-    *error = gonio_i_error_of(&sums, (double)d->bins * GONIO_CHANNELS);
+    free(e.rho);
+    for (int metric = 0; metric < gonio_i_metric_count(); metric++) {
+        sums.metric[metric].square = fmax(sums.metric[metric].square, 0.0);
+    }
+    *error = gonio_i_error_of(&sums, (double)digest->bins * GONIO_CHANNELS);
     return GONIO_OK;
 }

@@ -6,29 +6,33 @@
 
 #include <gonio/evaluate.h>
 
-#include "metrics.h"
+#include "../metric/metric.h"
 
-/* Of the cells with data. E6 and the cube-root error are squares of the distance from a cell's
- * mean plus a scatter. The log-relative error is not, as its w differs from bin to bin: with d_b
- * the log ratio of bin b to the cell's mean x_0, and D(w) = ln((x w + e)/(x_0 w + e)) that of an
- * estimate x, the sum of (d_b - D(w_b))^2 is the sum of d_b^2 - 2 moment_j D(w_j) + weight_j
- * D(w_j)^2 over the cell's nodes w_j, at which Chebyshev interpolation in ln w stands for the bins.
- */
+/* What one metric needs. With x_0 = s (e^m - 1), m a cell's mean of g, let d_b = T(rho_b, c_b) -
+ * T(x_0, c_b) be the terms of its bins and D(c) = T(x, c) - T(x_0, c) that of an estimate x. The
+ * terms of the estimate are d_b - D(c_b). D is known at all bins from its values at the cell's
+ * nodes: D(c_b) = sum of share_bj D(node_j). There is one node, c = 1, where terms are a(c) times
+ * their value there (metric.h); otherwise Chebyshev interpolation in ln w stands for the bins, of D
+ * and of D^2. */
+typedef struct gonio_i_digest_metric {
+    size_t *first;  /* [cells + 1]: a cell's nodes are first[i] .. first[i + 1] - 1 */
+    double *node;   /* [first[cells]]: c */
+    double *linear; /* sum over bins of what makes D(c_b) of D(node) */
+    double *square; /* and of what makes D(c_b)^2 of D(node)^2 */
+    double *moment[GONIO_CHANNELS]; /* sum of share_bj d_b */
+} gonio_i_digest_metric;
+
+/* Of the cells with data. */
 typedef struct gonio_i_digest {
     char *name;
     uint64_t fingerprint; /* material.h */
     int64_t bins;
     size_t cells;
     int32_t *cell;                /* [cells], database.h */
-    double *count;                /* [cells]: bins with data */
     double *mean[GONIO_CHANNELS]; /* [cells] of g */
-    double *area;                 /* [cells]: sum of (c_i c_o)^(2/3) */
-    double *root[GONIO_CHANNELS]; /* [cells]: mean of cbrt(rho) weighted by that */
-    size_t *first;                /* [cells + 1]: a cell's nodes are first[i] .. first[i + 1] - 1 */
-    double *node;                 /* [first[cells]] */
-    double *weight;
-    double *moment[GONIO_CHANNELS];
-    gonio_i_error_sums constant; /* the scatters, and the references */
+    double *own[GONIO_CHANNELS];  /* [cells]: x_0, 1/sr */
+    gonio_i_digest_metric metric[GONIO_MOST_METRICS];
+    gonio_i_error_sums constant; /* of d_b */
 } gonio_i_digest;
 
 /* Errors: those of the material's source; _DATA if it has no data or is black; _MEMORY. */

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "../linalg/linalg.h"
+#include "../metric/metric.h"
 #include "expected_error_search.h"
 
 /* Deviation of a reading, log units: noise, and what the model leaves open around it; by errors of
@@ -90,18 +91,9 @@ static double metric_weight(gonio_metric metric, gonio_half_difference at, doubl
     double incident = 0.0;
     double outgoing = 0.0;
     gonio_cosines(at, &incident, &outgoing);
-    const double cosines = fmax(incident * outgoing, 0.0);
     const double s = gonio_log_scale(channel);
     const double rho = s * expm1(fmax(mean, 0.0));
-    if (metric == GONIO_CUBE_ROOT) { /* d cbrt(rho c)/dg = cbrt(c) (rho + s) rho^(-2/3) / 3 */
-        return pow(cosines, 2.0 / 3.0) * pow(rho + s, 2.0 / 3.0);
-    }
-    if (metric == GONIO_LOG_RELATIVE_ERROR) { /* d ln(rho w + e)/dg = w (rho + s)/(rho w + e) */
-        const double w = fmin(fmax(cosines, 0.01), 1.0);
-        const double slope = w * (rho + s) / (rho * w + 0.001);
-        return slope * slope;
-    }
-    return 1.0;
+    return gonio_i_metric_at((int)metric)->loss(rho, s, fmax(incident * outgoing, 0.0));
 }
 
 /* f: scratch, [components] */
@@ -381,6 +373,11 @@ static gonio_status check_options(gonio_context *context, const gonio_basis *bas
                                   const gonio_plan_options *options)
 {
     const size_t all = gonio_basis_describe(basis).components;
+    const gonio_metric_view *metric = gonio_metric_describe((int)options->metric);
+    if (metric == NULL || !metric->plannable) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "no plan can be made for the metric %s",
+                            metric != NULL ? metric->name : "asked for");
+    }
     if (options->count == 0) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "a plan needs at least 1 reading");
     }

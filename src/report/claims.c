@@ -211,7 +211,8 @@ static double best_of_grid(const tester *t)
     const gonio_i_study *s = t->study;
     double best = NAN;
     for (size_t k = 0; k < s->grid_components * s->grid_samples; k++) {
-        best = fmin(best, t->findings->grid[k].e6); /* those without a number do not count */
+        best = fmin(best,
+                    t->findings->grid[k].value[GONIO_E6]); /* those without a number do not count */
     }
     return best;
 }
@@ -248,7 +249,8 @@ static size_t count_wins(const tester *t, size_t method, size_t other)
     const gonio_error *by_split = t->findings->method_split;
     size_t wins = 0;
     for (size_t s = 0; s < splits; s++) {
-        wins += by_split[method * splits + s].e6 < by_split[other * splits + s].e6;
+        wins += by_split[method * splits + s].value[GONIO_E6] <
+                by_split[other * splits + s].value[GONIO_E6];
     }
     return wins;
 }
@@ -259,8 +261,8 @@ static void test_method(const tester *t, size_t method, size_t other, char *what
                         const char *rule)
 {
     const gonio_i_findings *f = t->findings;
-    const double mine = f->method[method].e6;
-    const double theirs = f->method[other].e6;
+    const double mine = f->method[method].value[GONIO_E6];
+    const double theirs = f->method[other].value[GONIO_E6];
     const size_t wins = count_wins(t, method, other);
     add(t, GONIO_I_METHODS, what,
         strdup(factor > 1.0 ? "\xe2\x80\x9c"
@@ -360,15 +362,19 @@ static void test_directions(const tester *t)
 static void test_order(const tester *t)
 {
     const gonio_error *mean = t->findings->left_out_mean;
-    const bool order = mean[GONIO_I_BIVARIATE_ITSELF].e6 < mean[GONIO_I_ALL_SAMPLES].e6 &&
-                       mean[GONIO_I_ALL_SAMPLES].e6 < mean[2].e6 && mean[2].e6 < mean[1].e6 &&
-                       mean[1].e6 < mean[0].e6;
+    const bool order = mean[GONIO_I_BIVARIATE_ITSELF].value[GONIO_E6] <
+                           mean[GONIO_I_ALL_SAMPLES].value[GONIO_E6] &&
+                       mean[GONIO_I_ALL_SAMPLES].value[GONIO_E6] < mean[2].value[GONIO_E6] &&
+                       mean[2].value[GONIO_E6] < mean[1].value[GONIO_E6] &&
+                       mean[1].value[GONIO_E6] < mean[0].value[GONIO_E6];
     add(t, GONIO_I_LEFT_OUT, strdup("order of the mean errors"),
         gonio_i_format("bivariate < all samples < %zu < %zu < %zu", t->study->chosen[2].samples,
                        t->study->chosen[1].samples, t->study->chosen[0].samples),
-        gonio_i_format("%.2f, %.2f, %.2f, %.2f, %.2f %%", mean[GONIO_I_BIVARIATE_ITSELF].e6,
-                       mean[GONIO_I_ALL_SAMPLES].e6, mean[2].e6, mean[1].e6, mean[0].e6),
-        mean[2].e6, "this order", order);
+        gonio_i_format("%.2f, %.2f, %.2f, %.2f, %.2f %%",
+                       mean[GONIO_I_BIVARIATE_ITSELF].value[GONIO_E6],
+                       mean[GONIO_I_ALL_SAMPLES].value[GONIO_E6], mean[2].value[GONIO_E6],
+                       mean[1].value[GONIO_E6], mean[0].value[GONIO_E6]),
+        mean[2].value[GONIO_E6], "this order", order);
 }
 
 /* The largest plan against all samples: in the mean, and in how many materials. */
@@ -380,9 +386,11 @@ static void test_closeness(const tester *t)
     const gonio_error *mean = t->findings->left_out_mean;
     for (size_t k = 0; k < count; k++) {
         const gonio_error *error = t->findings->left_out + k * GONIO_I_LEFT_OUT_SERIES;
-        close += error[GONIO_I_CHOSEN - 1].e6 <= error[GONIO_I_ALL_SAMPLES].e6 + 0.5;
+        close += error[GONIO_I_CHOSEN - 1].value[GONIO_E6] <=
+                 error[GONIO_I_ALL_SAMPLES].value[GONIO_E6] + 0.5;
     }
-    const double ratio = mean[GONIO_I_CHOSEN - 1].e6 / mean[GONIO_I_ALL_SAMPLES].e6;
+    const double ratio =
+        mean[GONIO_I_CHOSEN - 1].value[GONIO_E6] / mean[GONIO_I_ALL_SAMPLES].value[GONIO_E6];
     add(t, GONIO_I_LEFT_OUT, gonio_i_format("%zu samples come close to all, in the mean", samples),
         strdup("closely (curves)"), gonio_i_format("%.2f times the error of all samples", ratio),
         ratio, "at most 1.1 times their error", ratio <= 1.1);
@@ -401,8 +409,8 @@ static void test_quoted(const tester *t)
         const gonio_i_quoted *quoted = &gonio_i_quoted_materials[t->study->quoted[q].quote];
         const size_t k = t->study->quoted[q].left_out;
         const double mine =
-            t->findings->left_out[k * GONIO_I_LEFT_OUT_SERIES + GONIO_I_CHOSEN - 1].e6;
-        const double theirs = t->findings->quoted[q].e6;
+            t->findings->left_out[k * GONIO_I_LEFT_OUT_SERIES + GONIO_I_CHOSEN - 1].value[GONIO_E6];
+        const double theirs = t->findings->quoted[q].value[GONIO_E6];
         add(t, GONIO_I_LEFT_OUT,
             gonio_i_format("%s, 170 samples against 800 of %s", quoted->material,
                            gonio_i_quoted_method()->label),
@@ -414,7 +422,7 @@ static void test_quoted(const tester *t)
 
 static void test_left_out(const tester *t)
 {
-    const double bivariate = t->findings->bivariate_mean.e6;
+    const double bivariate = t->findings->bivariate_mean.value[GONIO_E6];
     add(t, GONIO_I_LEFT_OUT, strdup("error of the bivariate average itself, mean of all materials"),
         strdup("3.36 % (on MERL's measurements)"), percent(bivariate), bivariate,
         "within 0.2 points of the paper's", fabs(bivariate - 3.36) <= 0.2);

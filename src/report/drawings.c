@@ -261,7 +261,7 @@ static gonio_status draw_map(drawer *d)
         for (size_t k = 0; k < study->grid_components; k++) {
             y[k] = (double)study->grid_component[k];
             values[l * study->grid_components + k] =
-                d->findings->grid[k * study->grid_samples + l].e6;
+                d->findings->grid[k * study->grid_samples + l].value[GONIO_E6];
         }
     }
     return draw_map_of(d, x, y, values);
@@ -285,7 +285,7 @@ static gonio_status draw_lines(drawer *d)
             }
             for (size_t l = 0; l < study->grid_samples; l++) {
                 const size_t at = k * study->grid_samples + l;
-                all[at] = d->findings->grid[at].e6;
+                all[at] = d->findings->grid[at].value[GONIO_E6];
                 if (study->grid_sample[l] >= components) {
                     add_point(&set, k, (double)study->grid_sample[l], all[at]);
                 }
@@ -294,7 +294,7 @@ static gonio_status draw_lines(drawer *d)
             if (chosen) {
                 name_curve(&set, k,
                            gonio_i_format("%zu components (all rows: %.2f %%)", components,
-                                          d->findings->limit[k].e6));
+                                          d->findings->limit[k].value[GONIO_E6]));
             }
         }
         const double least = least_of(all, count * study->grid_samples);
@@ -337,9 +337,9 @@ static double deviation(const drawer *d, size_t method)
     const size_t splits = d->study->splits.count;
     double squares = 0.0;
     for (size_t s = 0; s < splits; s++) {
-        squares +=
-            pow(d->findings->method_split[method * splits + s].e6 - d->findings->method[method].e6,
-                2.0);
+        squares += pow(d->findings->method_split[method * splits + s].value[GONIO_E6] -
+                           d->findings->method[method].value[GONIO_E6],
+                       2.0);
     }
     return splits > 1 ? sqrt(squares / (double)(splits - 1)) : 0.0;
 }
@@ -356,7 +356,7 @@ static gonio_status draw_methods(drawer *d)
         for (size_t m = 0; m < count; m++) {
             const gonio_i_method_entry *method = gonio_i_method_at(m);
             const gonio_i_size size = gonio_i_method_size(d->study, method);
-            const double e6 = d->findings->method[m].e6;
+            const double e6 = d->findings->method[m].value[GONIO_E6];
             const size_t curve = curve_of(&set, &used, method->label);
             least = fmin(least, (double)size.samples);
             most = fmax(most, (double)size.samples);
@@ -438,7 +438,8 @@ static gonio_status draw_left_out_of(drawer *d, const char **material, double *v
     }
     for (size_t s = 0; s < GONIO_I_LEFT_OUT_SERIES; s++) {
         for (size_t k = 0; k < count; k++) {
-            const double e6 = d->findings->left_out[k * GONIO_I_LEFT_OUT_SERIES + s].e6;
+            const double e6 =
+                d->findings->left_out[k * GONIO_I_LEFT_OUT_SERIES + s].value[GONIO_E6];
             values[s * count + k] = e6;
             least = fmin(least, e6);
             most = fmax(most, e6);

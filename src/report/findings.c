@@ -8,15 +8,17 @@
 
 static void add(gonio_error *sum, gonio_error error)
 {
-    sum->e6 += error.e6;
-    sum->cube_root += error.cube_root;
-    sum->log_relative += error.log_relative;
+    for (int m = 0; m < GONIO_MOST_METRICS; m++) {
+        sum->value[m] += error.value[m];
+    }
 }
 
 static gonio_error divided(gonio_error sum, size_t count)
 {
-    return (gonio_error){sum.e6 / (double)count, sum.cube_root / (double)count,
-                         sum.log_relative / (double)count};
+    for (int m = 0; m < GONIO_MOST_METRICS; m++) {
+        sum.value[m] /= (double)count;
+    }
+    return sum;
 }
 
 /* Over an array of errors; NaN if there are none. */
@@ -197,7 +199,7 @@ double gonio_i_grid_e6(const gonio_i_study *study, const gonio_i_findings *findi
     for (size_t k = 0; findings->grid != NULL && k < study->grid_components; k++) {
         for (size_t l = 0; l < study->grid_samples; l++) {
             if (study->grid_component[k] == components && study->grid_sample[l] == samples) {
-                return findings->grid[k * study->grid_samples + l].e6;
+                return findings->grid[k * study->grid_samples + l].value[GONIO_E6];
             }
         }
     }

@@ -27,9 +27,9 @@ static void put_number(FILE *f, double value, int digits)
 
 static void put_error(FILE *f, gonio_error error)
 {
-    put_number(f, error.e6, 2);
-    put_number(f, error.cube_root, 2);
-    put_number(f, error.log_relative, 4);
+    put_number(f, error.value[GONIO_E6], 2);
+    put_number(f, error.value[GONIO_CUBE_ROOT], 2);
+    put_number(f, error.value[GONIO_LOG_RELATIVE_ERROR], 4);
     fputc('\n', f);
 }
 
@@ -190,9 +190,9 @@ static void put_quoted(const page *p)
         const gonio_i_quoted *quoted = &gonio_i_quoted_materials[s->quoted[q].quote];
         const size_t at = s->quoted[q].left_out * GONIO_I_LEFT_OUT_SERIES + GONIO_I_CHOSEN - 1;
         fprintf(p->f, "| %s | %.1f |", quoted->material, quoted->paper);
-        put_number(p->f, p->findings->left_out[at].e6, 2);
+        put_number(p->f, p->findings->left_out[at].value[GONIO_E6], 2);
         fprintf(p->f, " %.1f |", quoted->matusik);
-        put_number(p->f, p->findings->quoted[q].e6, 2);
+        put_number(p->f, p->findings->quoted[q].value[GONIO_E6], 2);
         fputc('\n', p->f);
     }
     fputc('\n', p->f);
@@ -298,8 +298,9 @@ static json_t *number(double value)
 
 static json_t *error_json(gonio_error error)
 {
-    return json_pack("{s:o, s:o, s:o}", "e6_percent", number(error.e6), "cube_root_percent",
-                     number(error.cube_root), "log_relative", number(error.log_relative));
+    return json_pack("{s:o, s:o, s:o}", "e6_percent", number(error.value[GONIO_E6]),
+                     "cube_root_percent", number(error.value[GONIO_CUBE_ROOT]), "log_relative",
+                     number(error.value[GONIO_LOG_RELATIVE_ERROR]));
 }
 
 static json_t *sized(gonio_error error, size_t components, size_t samples, double condition)

@@ -21,17 +21,19 @@ double gonio_i_json_number(const json_t *value)
 static json_t *error_json(const gonio_error *error)
 {
     json_t *list = json_array();
-    json_array_append_new(list, number(error->e6));
-    json_array_append_new(list, number(error->cube_root));
-    json_array_append_new(list, number(error->log_relative));
+    for (int m = 0; gonio_metric_describe(m) != NULL; m++) {
+        json_array_append_new(list, number(error->value[m]));
+    }
     return list;
 }
 
 gonio_error gonio_i_json_error(const json_t *value)
 {
-    return (gonio_error){gonio_i_json_number(json_array_get(value, 0)),
-                         gonio_i_json_number(json_array_get(value, 1)),
-                         gonio_i_json_number(json_array_get(value, 2))};
+    gonio_error error = {{0.0}};
+    for (int m = 0; gonio_metric_describe(m) != NULL; m++) {
+        error.value[m] = gonio_i_json_number(json_array_get(value, (size_t)m));
+    }
+    return error;
 }
 
 static json_t *errors_json(const gonio_error *errors, size_t count)

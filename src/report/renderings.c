@@ -243,7 +243,8 @@ gonio_status gonio_i_compute_rendering(const gonio_i_study *study, gonio_context
         json_object_set_new(result, "condition",
                             isfinite(condition) ? json_real(condition) : json_null());
         json_object_set_new(result, "e6_percent",
-                            isfinite(error.e6) ? json_real(error.e6) : json_null());
+                            isfinite(error.value[GONIO_E6]) ? json_real(error.value[GONIO_E6])
+                                                            : json_null());
     }
     free(split.basis);
     return status;

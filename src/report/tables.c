@@ -33,11 +33,11 @@ const char *gonio_i_series_name(const gonio_i_study *study, size_t series, char 
 
 static void put_error(FILE *f, gonio_error error)
 {
-    gonio_i_put_number(f, error.e6);
+    gonio_i_put_number(f, error.value[GONIO_E6]);
     fputc(',', f);
-    gonio_i_put_number(f, error.cube_root);
+    gonio_i_put_number(f, error.value[GONIO_CUBE_ROOT]);
     fputc(',', f);
-    gonio_i_put_number(f, error.log_relative);
+    gonio_i_put_number(f, error.value[GONIO_LOG_RELATIVE_ERROR]);
     fputc('\n', f);
 }
 

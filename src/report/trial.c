@@ -131,7 +131,9 @@ gonio_status gonio_i_trial_rows(gonio_context *context, const gonio_i_trial *tri
         status = errors_of(context, trial, c, errors);
     }
     for (size_t k = 0; k < trial->tests && rank < components; k++) {
-        errors[k] = (gonio_error){NAN, NAN, NAN};
+        for (int m = 0; m < GONIO_MOST_METRICS; m++) {
+            errors[k].value[m] = NAN;
+        }
     }
     free(x);
     free(b);

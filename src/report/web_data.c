@@ -72,8 +72,9 @@ json_t *gonio_i_web_material(const gonio_material *material, const gonio_table *
 
 static json_t *error_json(const gonio_error *error)
 {
-    return json_pack("{s:o, s:o, s:o}", "e6", number(error->e6), "cubeRoot",
-                     number(error->cube_root), "logRelative", number(error->log_relative));
+    return json_pack("{s:o, s:o, s:o}", "e6", number(error->value[GONIO_E6]), "cubeRoot",
+                     number(error->value[GONIO_CUBE_ROOT]), "logRelative",
+                     number(error->value[GONIO_LOG_RELATIVE_ERROR]));
 }
 
 json_t *gonio_i_web_comparison(const gonio_comparison *c)

@@ -463,8 +463,9 @@ static double judge(const char *path, const char *name)
     assert_int_equal(gonio_reconstruct(context, basis, readings, &options, &r), GONIO_OK);
     assert_int_equal(gonio_reconstruction_material(context, basis, r, "made", &made), GONIO_OK);
     assert_int_equal(gonio_compare(context, original, made, &comparison), GONIO_OK);
-    print_message("%s: E6 %.2f %%, expected %.2f %%\n", name, comparison.all.e6, r->predicted_e6);
-    const double off = log(r->predicted_e6 / comparison.all.e6);
+    print_message("%s: E6 %.2f %%, expected %.2f %%\n", name, comparison.all.value[GONIO_E6],
+                  r->predicted_e6);
+    const double off = log(r->predicted_e6 / comparison.all.value[GONIO_E6]);
     gonio_material_free(&made);
     gonio_reconstruction_free(&r);
     gonio_readings_free(&readings);

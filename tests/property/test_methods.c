@@ -313,7 +313,7 @@ static void test_matusik_gives_its_materials_back(void **state)
             gonio_reconstruct_material(f->context, f->plain, original, rows, 20, NULL, &found),
             GONIO_OK);
         assert_int_equal(gonio_compare(NULL, average, found, &comparison), GONIO_OK);
-        assert_true(comparison.all.e6 < 1e-3);
+        assert_true(comparison.all.value[GONIO_E6] < 1e-3);
         gonio_material_free(&found);
         gonio_material_free(&average);
         gonio_material_free(&original);
@@ -702,7 +702,7 @@ static void test_all_channels_of_a_known_material(void **state)
     assert_int_equal(gonio_reconstruct_material(f->context, f->plain, original, all, 9, NULL, &b),
                      GONIO_OK);
     assert_int_equal(gonio_compare(NULL, a, b, &comparison), GONIO_OK);
-    assert_true(comparison.all.e6 < 1e-9);
+    assert_true(comparison.all.value[GONIO_E6] < 1e-9);
     gonio_material_free(&a);
     gonio_material_free(&b);
     gonio_material_free(&original);

@@ -101,7 +101,7 @@ static double error_of(const char *method, size_t count)
                                                     &options, &made),
                          GONIO_OK);
         assert_int_equal(gonio_compare(data.context, original, made, &comparison), GONIO_OK);
-        sum += comparison.all.e6;
+        sum += comparison.all.value[GONIO_E6];
         gonio_material_free(&made);
         gonio_material_free(&original);
         free(path);

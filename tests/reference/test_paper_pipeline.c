@@ -205,7 +205,7 @@ static void test_bivariate_error_of_tables(void **state)
     assert_int_equal(gonio_material_open(data.context, path, &material), GONIO_OK);
     assert_int_equal(gonio_bivariate_material(data.context, material, &average), GONIO_OK);
     assert_int_equal(gonio_compare(data.context, material, average, &comparison), GONIO_OK);
-    assert_close(comparison.all.e6,
+    assert_close(comparison.all.value[GONIO_E6],
                  100.0 * sqrt(data.summaries[k].scatter / data.summaries[k].squares), 1e-9);
     assert_int_equal(comparison.bins, number(data.reference, "valid_bins"));
     gonio_material_free(&average);

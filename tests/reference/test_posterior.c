@@ -102,7 +102,8 @@ static double error_of(const gonio_basis *basis, const char *plan, const char *n
     assert_int_equal(gonio_reconstruct(context, basis, readings, &options, &r), GONIO_OK);
     assert_int_equal(gonio_reconstruction_material(context, basis, r, "made", &made), GONIO_OK);
     assert_int_equal(gonio_compare(context, original, made, &comparison), GONIO_OK);
-    print_message("%s: E6 %.2f %%, expected %.2f %%\n", name, comparison.all.e6, r->predicted_e6);
+    print_message("%s: E6 %.2f %%, expected %.2f %%\n", name, comparison.all.value[GONIO_E6],
+                  r->predicted_e6);
     assert_null(r->suspicion);
     gonio_material_free(&made);
     gonio_reconstruction_free(&r);
@@ -110,7 +111,7 @@ static double error_of(const gonio_basis *basis, const char *plan, const char *n
     gonio_table_free(&table);
     gonio_material_free(&original);
     free(path);
-    return comparison.all.e6;
+    return comparison.all.value[GONIO_E6];
 }
 
 static void test_new_materials_with_20_readings(void **state)
@@ -181,7 +182,8 @@ static double error_of_paint(const gonio_basis *basis, const char *paint, size_t
     assert_int_equal(gonio_reconstruction_predict_readings(context, basis, r, predicted), GONIO_OK);
     assert_int_equal(gonio_compare_readings(context, all, predicted, used, &error, &compared),
                      GONIO_OK);
-    print_message("cayman, %zu of 1439: E6 %.2f %% of %zu others\n", count, error.e6, compared);
+    print_message("cayman, %zu of 1439: E6 %.2f %% of %zu others\n", count, error.value[GONIO_E6],
+                  compared);
     assert_in_range(compared, 1300, 1439 - count);
     gonio_reconstruction_free(&r);
     gonio_readings_free(&plan);
@@ -190,7 +192,7 @@ static double error_of_paint(const gonio_basis *basis, const char *paint, size_t
     free(used);
     free(candidates);
     support_remove(folder);
-    return error.e6;
+    return error.value[GONIO_E6];
 }
 
 /* A mean over four sizes: with each of them the error moves by some 0.5 with the rounding of the

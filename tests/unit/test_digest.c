@@ -82,9 +82,10 @@ static void check(const gonio_material *material, double c[COMPONENTS])
     assert_int_equal(gonio_i_digest_create(NULL, material, &digest), GONIO_OK);
     assert_int_equal(gonio_i_digest_compare(NULL, digest, g, &error), GONIO_OK);
     assert_int_equal(digest->bins, expected.bins);
-    assert_close(error.e6, expected.all.e6, 1e-8);
-    assert_close(error.cube_root, expected.all.cube_root, 1e-8);
-    assert_close(error.log_relative, expected.all.log_relative, 1e-8);
+    assert_close(error.value[GONIO_E6], expected.all.value[GONIO_E6], 1e-8);
+    assert_close(error.value[GONIO_CUBE_ROOT], expected.all.value[GONIO_CUBE_ROOT], 1e-8);
+    assert_close(error.value[GONIO_LOG_RELATIVE_ERROR],
+                 expected.all.value[GONIO_LOG_RELATIVE_ERROR], 1e-8);
     gonio_i_digest_free(&digest);
     gonio_material_free(&other);
     free(g);
@@ -140,9 +141,10 @@ static void test_own_mean(void **state)
     assert_int_equal(gonio_i_digest_create(NULL, material, &digest), GONIO_OK);
     gonio_i_digest_mean(digest, g);
     assert_int_equal(gonio_i_digest_compare(NULL, digest, g, &error), GONIO_OK);
-    assert_close(error.e6, expected.all.e6, 1e-8);
-    assert_close(error.cube_root, expected.all.cube_root, 1e-8);
-    assert_close(error.log_relative, expected.all.log_relative, 1e-8);
+    assert_close(error.value[GONIO_E6], expected.all.value[GONIO_E6], 1e-8);
+    assert_close(error.value[GONIO_CUBE_ROOT], expected.all.value[GONIO_CUBE_ROOT], 1e-8);
+    assert_close(error.value[GONIO_LOG_RELATIVE_ERROR],
+                 expected.all.value[GONIO_LOG_RELATIVE_ERROR], 1e-8);
     assert_string_equal(digest->name, "red-cotton");
     gonio_i_digest_free(&digest);
     gonio_material_free(&average);

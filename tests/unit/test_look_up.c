@@ -136,12 +136,13 @@ static void test_errors_between_readings(void **state)
     size_t compared = 0;
     assert_int_equal(gonio_compare_readings(NULL, a, b, left_out, &error, &compared), GONIO_OK);
     assert_int_equal(compared, 2);
-    assert_close(error.e6, 100.0 * sqrt(sums[0] / sums[1]), 1e-9);
-    assert_close(error.cube_root, 100.0 * sqrt(sums[2] / sums[3]), 1e-9);
-    assert_close(error.log_relative, sqrt(sums[4] / 5.0), 1e-12);
+    assert_close(error.value[GONIO_E6], 100.0 * sqrt(sums[0] / sums[1]), 1e-9);
+    assert_close(error.value[GONIO_CUBE_ROOT], 100.0 * sqrt(sums[2] / sums[3]), 1e-9);
+    assert_close(error.value[GONIO_LOG_RELATIVE_ERROR], sqrt(sums[4] / 5.0), 1e-12);
     assert_int_equal(gonio_compare_readings(NULL, a, a, NULL, &error, &compared), GONIO_OK);
     assert_int_equal(compared, 3);
-    assert_true(error.e6 == 0.0 && error.cube_root == 0.0 && error.log_relative == 0.0);
+    assert_true(error.value[GONIO_E6] == 0.0 && error.value[GONIO_CUBE_ROOT] == 0.0 &&
+                error.value[GONIO_LOG_RELATIVE_ERROR] == 0.0);
     gonio_readings_free(&a);
     gonio_readings_free(&b);
 }

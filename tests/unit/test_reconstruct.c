@@ -96,7 +96,7 @@ static double error_of(const gonio_basis *basis, const gonio_reconstruction *r)
     assert_int_equal(comparison.bins, 1096216);
     gonio_material_free(&expected);
     gonio_material_free(&found);
-    return comparison.all.e6;
+    return comparison.all.value[GONIO_E6];
 }
 
 /* ---- from rows ---- */
