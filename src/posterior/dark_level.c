@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "crew.h"
 #include "leave_one_out.h"
 
 /* Levels in units of s, and none: from what makes no difference to what makes an instrument
@@ -63,38 +64,26 @@ static gonio_status score_readings(gonio_i_fit *e, const gonio_i_model *model,
     return status;
 }
 
-static gonio_status score_model(gonio_context *context, const gonio_i_prior *plain,
-                                const gonio_i_model *model, const gonio_i_column *column,
-                                double *score)
+static gonio_status score_model(gonio_i_fit *e, const gonio_i_model *model,
+                                const gonio_i_column *column, double *score)
 {
-    gonio_i_fit e = {0};
     size_t outlying = 0;
-    gonio_status status = gonio_i_fit_begin(context, plain, column, &e);
+    gonio_i_fit_read(e, column);
+    gonio_status status = gonio_i_fit_solve(e, model);
     if (status == GONIO_OK) {
-        status = gonio_i_fit_solve(&e, model);
+        status = gonio_i_fit_settle(e, true, &outlying);
     }
-    if (status == GONIO_OK) {
-        status = gonio_i_fit_settle(&e, true, &outlying);
-    }
-    if (status == GONIO_OK) {
-        status = score_readings(&e, model, column, score);
-    }
-    gonio_i_fit_end(&e);
-    return status;
+    return status == GONIO_OK ? score_readings(e, model, column, score) : status;
 }
 
 /* By the likeliest model. */
-static gonio_status score_column(gonio_context *context, const gonio_i_prior *prior,
-                                 gonio_i_column *column, double *score)
+static gonio_status score_values(gonio_i_fit *e, const gonio_i_column *column, double *score)
 {
-    gonio_i_prior plain = *prior;
     gonio_status status = GONIO_OK;
-    plain.samples = 0;
     *score = -INFINITY;
-    column->count = gonio_i_thin(column, GONIO_I_SUBSET_READINGS, column->observation);
     for (int k = 0; k < MODELS_COUNT && status == GONIO_OK; k++) {
         double mine = 0.0;
-        status = score_model(context, &plain, &MODELS[k], column, &mine);
+        status = score_model(e, &MODELS[k], column, &mine);
         *score = fmax(*score, mine);
     }
     return status;
@@ -107,8 +96,12 @@ typedef struct search {
     const gonio_readings *readings;
     const gonio_i_noise *noise;
     size_t columns;
-    double *dark;  /* [columns] */
-    double *score; /* [columns][LEVELS] */
+    gonio_i_column *thinned; /* [columns] */
+    size_t *group;           /* [columns]: columns of the same sites */
+    gonio_i_sites *sites;    /* of the group that is at work, */
+    size_t *member;          /* whose columns these are: [columns] */
+    double *score;           /* [columns][LEVELS] */
+    double *dark;            /* [columns] */
 } search;
 
 static double scale_of(const search *s, size_t column)
@@ -116,25 +109,71 @@ static double scale_of(const search *s, size_t column)
     return gonio_readings_scale(s->readings, column);
 }
 
-/* Scores all columns with one level. Beforehand, a level is the likelier the lower it is: readings
- * that are all zero fit any that is high enough. */
-static gonio_status try_level(search *s, int k)
+/* Beforehand, a level is the likelier the lower it is: readings that are all zero fit any that is
+ * high enough. dark: scratch of [columns]. */
+static gonio_status try_levels(const search *s, size_t c, gonio_i_fit *e, double *dark)
 {
-    gonio_i_columns columns = {0};
-    for (size_t c = 0; c < s->columns; c++) {
-        s->dark[c] = level(k) * scale_of(s, c);
-    }
-    gonio_status status = gonio_i_dark_level_apply(s->context, &s->prior->view, s->readings,
-                                                   s->noise, s->dark, &columns);
-    for (size_t c = 0; c < s->columns && status == GONIO_OK; c++) {
+    gonio_status status = GONIO_OK;
+    for (int k = 0; k < LEVELS && status == GONIO_OK; k++) {
+        const gonio_i_transform transform = {.factor = 1.0, .dark = dark};
         double *score = &s->score[c * LEVELS + (size_t)k];
-        status = score_column(s->context, s->prior, &columns.column[c], score);
+        dark[c] = level(k) * scale_of(s, c);
+        gonio_i_column_transform(s->readings, s->noise, &transform, &s->thinned[c]);
+        status = score_values(e, &s->thinned[c], score);
         *score -= level(k);
     }
-    gonio_i_columns_free(&columns);
-    return status == GONIO_OK
-               ? gonio_i_progress(s->context, "looking for a dark level", (k + 1.0) / LEVELS)
-               : status;
+    return status;
+}
+
+static gonio_status score_column(void *data, gonio_context *context, size_t k)
+{
+    const search *s = data;
+    const size_t c = s->member[k];
+    gonio_i_fit e = {0};
+    double *dark = gonio_i_allocate(context, s->columns, sizeof *dark);
+    gonio_status status = dark == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    if (status == GONIO_OK) {
+        status = gonio_i_fit_begin(context, s->sites, true, &s->thinned[c], &e);
+    }
+    if (status == GONIO_OK) {
+        status = try_levels(s, c, &e, dark);
+    }
+    gonio_i_fit_end(&e);
+    free(dark);
+    return status;
+}
+
+/* Columns that were read at the same directions, over the same sites. */
+static gonio_status score_group(search *s, size_t number, gonio_i_steps *steps)
+{
+    size_t count = 0;
+    for (size_t c = 0; c < s->columns; c++) {
+        s->member[count] = c;
+        count += s->group[c] == number;
+    }
+    gonio_status status =
+        gonio_i_sites_create(s->context, s->prior, &s->thinned[s->member[0]], &s->sites);
+    if (status == GONIO_OK) {
+        status = gonio_i_crew_work(s->context, steps, count, score_column, s);
+    }
+    gonio_i_sites_free(&s->sites);
+    return status;
+}
+
+static gonio_status score_columns(search *s, const gonio_i_columns *columns)
+{
+    gonio_i_steps steps = {.task = "looking for a dark level", .all = s->columns};
+    gonio_status status = GONIO_OK;
+    for (size_t c = 0; c < s->columns && status == GONIO_OK; c++) {
+        status = gonio_i_thin_copy(s->context, &columns->column[c], GONIO_I_SUBSET_READINGS,
+                                   &s->thinned[c]);
+    }
+    const size_t groups =
+        status == GONIO_OK ? gonio_i_sites_group(s->prior, s->thinned, s->columns, s->group) : 0;
+    for (size_t k = 0; k < groups && status == GONIO_OK; k++) {
+        status = score_group(s, k, &steps);
+    }
+    return status;
 }
 
 /* The mean over the levels by their likelihood; adds to `gain` how much likelier the best one is
@@ -157,18 +196,38 @@ static double mean_level(const double score[LEVELS], double *gain)
 }
 
 /* Sets s->dark. */
-static gonio_status find(search *s, bool *found)
+static gonio_status find(search *s, const gonio_i_columns *columns, bool *found)
 {
     double gain = 0.0;
-    gonio_status status = GONIO_OK;
-    for (int k = 0; k < LEVELS && status == GONIO_OK; k++) {
-        status = try_level(s, k);
-    }
+    const gonio_status status = score_columns(s, columns);
     for (size_t c = 0; c < s->columns && status == GONIO_OK; c++) {
         s->dark[c] = mean_level(&s->score[c * LEVELS], &gain) * scale_of(s, c);
     }
     *found = status == GONIO_OK && gain > CONVINCING * sqrt((double)s->columns / GONIO_CHANNELS);
     return status;
+}
+
+static bool allocate(search *s)
+{
+    s->thinned = gonio_i_allocate(s->context, s->columns, sizeof *s->thinned);
+    s->group = gonio_i_allocate(s->context, s->columns, sizeof *s->group);
+    /* One more, which is written and not read. */
+    s->member = gonio_i_allocate(s->context, s->columns + 1, sizeof *s->member);
+    s->score = gonio_i_allocate(s->context, s->columns * LEVELS, sizeof *s->score);
+    s->dark = gonio_i_allocate(s->context, s->columns, sizeof *s->dark);
+    return s->thinned && s->group && s->member && s->score && s->dark;
+}
+
+/* All but the level. */
+static void release(search *s)
+{
+    for (size_t c = 0; s->thinned != NULL && c < s->columns; c++) {
+        free(s->thinned[c].observation);
+    }
+    free(s->thinned);
+    free(s->group);
+    free(s->member);
+    free(s->score);
 }
 
 static bool has_zeros(const gonio_i_columns *columns)
@@ -197,27 +256,12 @@ gonio_status gonio_i_dark_level_find(gonio_context *context, const gonio_i_prior
     if (prior->view.channels == GONIO_JOINT || !has_zeros(columns)) {
         return GONIO_OK;
     }
-    s.dark = gonio_i_allocate(context, s.columns, sizeof *s.dark);
-    s.score = gonio_i_allocate(context, s.columns * LEVELS, sizeof *s.score);
-    const gonio_status status =
-        s.dark == NULL || s.score == NULL ? GONIO_ERROR_MEMORY : find(&s, &found);
+    const gonio_status status = allocate(&s) ? find(&s, columns, &found) : GONIO_ERROR_MEMORY;
     if (found) {
         *dark = s.dark;
     } else {
         free(s.dark);
     }
-    free(s.score);
+    release(&s);
     return status;
-}
-
-gonio_status gonio_i_dark_level_apply(gonio_context *context, const gonio_basis_view *view,
-                                      const gonio_readings *readings, const gonio_i_noise *noise,
-                                      const double *dark, gonio_i_columns *columns)
-{
-    const gonio_i_transform transform = {.factor = 1.0, .dark = dark};
-    if (dark == NULL) {
-        return GONIO_OK;
-    }
-    gonio_i_columns_free(columns);
-    return gonio_i_columns_create(context, view, readings, noise, &transform, columns);
 }

@@ -21,10 +21,4 @@ gonio_status gonio_i_dark_level_find(gonio_context *context, const gonio_i_prior
                                      const gonio_readings *readings, const gonio_i_noise *noise,
                                      const gonio_i_columns *columns, double **dark);
 
-/* Makes the columns again, of what the material reflects; nothing for a level of NULL.
- * Errors: _MEMORY. */
-gonio_status gonio_i_dark_level_apply(gonio_context *context, const gonio_basis_view *view,
-                                      const gonio_readings *readings, const gonio_i_noise *noise,
-                                      const double *dark, gonio_i_columns *columns);
-
 #endif

@@ -28,6 +28,9 @@ enum { MOST_ROUNDS = 20 };
 /* Readings that speak for the prior in the misfit. */
 static const double PRIOR_READINGS = 5.0;
 
+/* Of a reading that is set aside, in ln of the density: one in a hundred is wrong. */
+static const double FOR_OUTLYING = 4.6;
+
 /* A variance that leaves a reading no say. */
 static const double NO_SAY = 1e6;
 
@@ -48,42 +51,27 @@ static gonio_status allocate(gonio_i_fit *e)
 {
     gonio_context *c = e->context;
     const size_t n = e->n;
-    e->f = gonio_i_allocate(c, n * e->components, sizeof *e->f);
-    e->place = gonio_i_allocate(c, n, sizeof *e->place);
-    e->mean = gonio_i_allocate(c, n, sizeof *e->mean);
     e->y = gonio_i_allocate(c, n, sizeof *e->y);
     e->variance = gonio_i_allocate(c, n, sizeof *e->variance);
     e->bound = gonio_i_allocate(c, n, sizeof *e->bound);
     e->left_out = gonio_i_allocate(c, n, sizeof *e->left_out);
-    e->seen = gonio_i_allocate(c, e->prior->samples * n, sizeof *e->seen);
-    e->gram = gonio_i_allocate(c, n * n, sizeof *e->gram);
-    e->smooth = gonio_i_allocate(c, n * n, sizeof *e->smooth);
-    e->peaked = gonio_i_allocate(c, n * n, sizeof *e->peaked);
     e->lower = gonio_i_allocate(c, n * n, sizeof *e->lower);
-    e->white = gonio_i_allocate(c, e->prior->samples * n, sizeof *e->white);
-    e->weight = gonio_i_allocate(c, e->prior->samples, sizeof *e->weight);
+    e->white = gonio_i_allocate(c, e->samples * n, sizeof *e->white);
+    e->weight = gonio_i_allocate(c, e->samples, sizeof *e->weight);
     e->centre = gonio_i_allocate(c, e->components, sizeof *e->centre);
     e->rest = gonio_i_allocate(c, n, sizeof *e->rest);
     e->solved = gonio_i_allocate(c, n, sizeof *e->solved);
-    const bool done = e->f && e->place && e->mean && e->y && e->variance && e->bound &&
-                      e->left_out && e->seen && e->gram && e->smooth && e->peaked && e->lower &&
-                      e->white && e->weight && e->centre && e->rest && e->solved;
+    const bool done = e->y && e->variance && e->bound && e->left_out && e->lower && e->white &&
+                      e->weight && e->centre && e->rest && e->solved;
     return done ? GONIO_OK : GONIO_ERROR_MEMORY;
 }
 
 void gonio_i_fit_end(gonio_i_fit *e)
 {
-    free(e->f);
-    free(e->place);
-    free(e->mean);
     free(e->y);
     free(e->variance);
     free(e->bound);
     free(e->left_out);
-    free(e->seen);
-    free(e->gram);
-    free(e->smooth);
-    free(e->peaked);
     free(e->lower);
     free(e->white);
     free(e->weight);
@@ -93,48 +81,32 @@ void gonio_i_fit_end(gonio_i_fit *e)
     *e = (gonio_i_fit){0};
 }
 
-/* F F' and F z_j. */
-static gonio_status see_samples(gonio_i_fit *e)
+void gonio_i_fit_read(gonio_i_fit *e, const gonio_i_column *column)
 {
-    const size_t values = e->prior->samples * e->n;
-    gonio_status status = gonio_i_product_transposed(e->context, e->f, e->n, e->components, e->f,
-                                                     e->n, e->gram, e->n);
-    if (status == GONIO_OK && values > 0) {
-        status = gonio_i_product_transposed(e->context, e->prior->sample, e->prior->samples,
-                                            e->components, e->f, e->n, e->seen, e->n);
+    for (size_t i = 0; i < e->n; i++) {
+        const gonio_i_observation *o = &column->observation[i];
+        e->y[i] = o->g - e->sites->mean[i];
+        e->variance[i] = o->variance;
+        e->bound[i] = o->bound;
+        e->left_out[i] = false;
     }
-    return status;
+    e->misfit = 1.0;
 }
 
-gonio_status gonio_i_fit_begin(gonio_context *context, const gonio_i_prior *prior,
+gonio_status gonio_i_fit_begin(gonio_context *context, const gonio_i_sites *sites, bool plain,
                                const gonio_i_column *column, gonio_i_fit *e)
 {
     *e = (gonio_i_fit){.context = context,
-                       .prior = prior,
-                       .n = column->count,
-                       .components = prior->components,
-                       .misfit = 1.0};
+                       .sites = sites,
+                       .prior = sites->prior,
+                       .n = sites->n,
+                       .components = sites->components,
+                       .samples = plain ? 0 : sites->prior->samples};
     const gonio_status status = allocate(e);
-    if (status != GONIO_OK) {
-        return status;
+    if (status == GONIO_OK) {
+        gonio_i_fit_read(e, column);
     }
-    for (size_t i = 0; i < e->n; i++) {
-        const gonio_i_observation *o = &column->observation[i];
-        gonio_i_prior_at(prior, o->at, o->channel, &e->mean[i], e->f + i * e->components);
-        e->place[i] = gonio_i_place_of(o->at);
-        e->y[i] = o->g - e->mean[i];
-        e->variance[i] = o->variance;
-        e->bound[i] = o->bound;
-        for (size_t j = 0; j <= i; j++) {
-            const double smooth = gonio_i_smooth(&e->place[i], &e->place[j]);
-            const double peaked = gonio_i_peaked(&e->place[i], &e->place[j]);
-            e->smooth[i * e->n + j] = smooth;
-            e->smooth[j * e->n + i] = smooth;
-            e->peaked[i * e->n + j] = peaked;
-            e->peaked[j * e->n + i] = peaked;
-        }
-    }
-    return see_samples(e);
+    return status;
 }
 
 /* L of S; the sum of the logarithms of its diagonal goes to `logarithm`. */
@@ -143,8 +115,8 @@ static gonio_status factorise(gonio_i_fit *e, double *logarithm)
     const size_t n = e->n;
     const gonio_i_model m = e->model;
     for (size_t i = 0; i < n * n; i++) {
-        const double k = e->smooth[i] + m.peak * m.peak * e->peaked[i];
-        e->lower[i] = m.h * m.h * e->gram[i] + m.alpha * m.alpha * k;
+        const double k = e->sites->smooth[i] + m.peak * m.peak * e->sites->peaked[i];
+        e->lower[i] = m.h * m.h * e->sites->gram[i] + m.alpha * m.alpha * k;
     }
     for (size_t i = 0; i < n; i++) {
         e->lower[i * n + i] += gonio_i_fit_noise(e, i);
@@ -199,11 +171,11 @@ static double log_weight(const gonio_i_fit *e, size_t j)
 static void weigh_samples(gonio_i_fit *e)
 {
     const size_t n = e->n;
-    const size_t samples = e->prior->samples;
+    const size_t samples = e->samples;
     const double a = shrink(&e->model);
     for (size_t j = 0; j < samples; j++) {
         for (size_t i = 0; i < n; i++) {
-            e->white[j * n + i] = e->y[i] - a * e->seen[j * n + i];
+            e->white[j * n + i] = e->y[i] - a * e->sites->seen[j * n + i];
         }
     }
     gonio_i_divide_triangle(e->white, samples, n, e->lower);
@@ -222,28 +194,29 @@ gonio_status gonio_i_fit_solve(gonio_i_fit *e, const gonio_i_model *model)
 {
     double logarithm = 0.0;
     e->model = *model;
-    if (e->prior->samples == 0) {
+    if (e->samples == 0) {
         e->model.h = 1.0;
     }
+    const bool mixture = e->model.h < 1.0; /* otherwise all samples say the same */
     const gonio_status status = factorise(e, &logarithm);
     if (status != GONIO_OK) {
         return status;
     }
     memset(e->centre, 0, e->components * sizeof *e->centre);
-    if (e->prior->samples > 0) {
+    if (mixture) {
         weigh_samples(e);
     }
     for (size_t i = 0; i < e->n; i++) {
         e->rest[i] = e->y[i];
         for (size_t k = 0; k < e->components; k++) {
-            e->rest[i] -= e->f[i * e->components + k] * e->centre[k];
+            e->rest[i] -= e->sites->f[i * e->components + k] * e->centre[k];
         }
         e->solved[i] = e->rest[i];
     }
     gonio_i_divide_triangle(e->solved, 1, e->n, e->lower);
     const double square = square_sum(e->solved, e->n);
     gonio_i_divide_lower(e->solved, 1, e->n, e->lower);
-    const double mixed = e->prior->samples > 0 ? e->evidence : -0.5 * square;
+    const double mixed = mixture ? e->evidence : -0.5 * square;
     e->evidence = mixed - logarithm - 0.5 * (double)e->n * log(2.0 * M_PI);
     for (size_t i = 0; i < e->n; i++) {
         /* That a bound holds is a probability: 1 if it is left out, and never more than 1. */
@@ -257,7 +230,7 @@ gonio_status gonio_i_fit_solve(gonio_i_fit *e, const gonio_i_model *model)
 static gonio_status mix_differences(const gonio_i_fit *e, double *difference, double *variance)
 {
     const size_t n = e->n;
-    const size_t samples = e->prior->samples;
+    const size_t samples = e->samples;
     double *solved = gonio_i_allocate(e->context, samples * n, sizeof *solved);
     double *whole = gonio_i_allocate(e->context, samples, sizeof *whole);
     double *weight = gonio_i_allocate(e->context, samples, sizeof *weight);
@@ -413,5 +386,24 @@ gonio_status gonio_i_fit_surprise(gonio_i_fit *e, double *sum)
     }
     e->misfit = (*sum + PRIOR_READINGS) / ((double)e->n + PRIOR_READINGS);
     free(difference);
+    return status;
+}
+
+gonio_status gonio_i_fit_evidence(gonio_context *context, const gonio_i_sites *sites,
+                                  const gonio_i_column *column, double alpha, double peak,
+                                  double *evidence)
+{
+    const gonio_i_model model = {GONIO_I_KERNEL_WIDTH, alpha, peak};
+    size_t outlying = 0;
+    gonio_i_fit e;
+    gonio_status status = gonio_i_fit_begin(context, sites, false, column, &e);
+    if (status == GONIO_OK) {
+        status = gonio_i_fit_solve(&e, &model);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_fit_settle(&e, true, &outlying);
+    }
+    *evidence = e.evidence - (double)outlying * FOR_OUTLYING;
+    gonio_i_fit_end(&e);
     return status;
 }

@@ -1,8 +1,9 @@
-/* The readings of one column as a Gaussian problem: see posterior.h for the symbols. */
+/* The values of one column as a Gaussian problem over its sites: see posterior.h for the symbols.
+ */
 #ifndef GONIO_FIT_H
 #define GONIO_FIT_H
 
-#include "posterior.h"
+#include "sites.h"
 
 /* What the readings choose of the model; see posterior.h. */
 typedef struct gonio_i_model {
@@ -16,24 +17,19 @@ static const double GONIO_I_KERNEL_WIDTH = 0.7;
 
 typedef struct gonio_i_fit {
     gonio_context *context;
+    const gonio_i_sites *sites; /* where was read: shared with other fits */
     const gonio_i_prior *prior;
     size_t n;
     size_t components;
-    double *f;            /* [n][K] */
-    gonio_i_place *place; /* [n] */
-    double *mean;         /* [n]: m */
-    double *y;            /* [n]: g - m */
-    double *variance;     /* [n]: D */
-    int *bound;           /* [n] */
-    bool *left_out;       /* [n]: a bound that is kept anyway, which says nothing */
-    double *seen;         /* [samples][n]: F z_j */
-    double *gram;         /* [n][n]: F F' */
-    double *smooth;       /* [n][n]: the parts of k */
-    double *peaked;       /* [n][n] */
+    size_t samples;   /* of the prior; 0: a plain Gaussian */
+    double *y;        /* [n]: g - m */
+    double *variance; /* [n]: D */
+    int *bound;       /* [n] */
+    bool *left_out;   /* [n]: a bound that is kept anyway, which says nothing */
     gonio_i_model model;
     double *lower;   /* [n][n]: L of S */
-    double *white;   /* [samples][n]: L^-1 (y - a F z_j) */
-    double *weight;  /* [samples]: q */
+    double *white;   /* [samples][n]: L^-1 (y - a F z_j); not made where h is 1 */
+    double *weight;  /* [samples]: q; the same */
     double *centre;  /* [K]: z */
     double *rest;    /* [n]: y - F z */
     double *solved;  /* [n]: S^-1 rest */
@@ -46,29 +42,39 @@ typedef struct gonio_i_fit {
  * readings of the neural MERL materials and better by 3 % at forty. */
 double gonio_i_kernel_width(size_t n);
 
-/* Fills in everything up to `peaked`. To be freed in any case. Errors: _MEMORY. */
-gonio_status gonio_i_fit_begin(gonio_context *context, const gonio_i_prior *prior,
-                               const gonio_i_column *column, gonio_i_fit *gaussian);
-void gonio_i_fit_end(gonio_i_fit *gaussian);
+/* A fit of a column's values that stands on its sites, which must outlive it. plain: as a Gaussian,
+ * without the samples of the prior. To be ended in any case. Errors: _MEMORY. */
+gonio_status gonio_i_fit_begin(gonio_context *context, const gonio_i_sites *sites, bool plain,
+                               const gonio_i_column *column, gonio_i_fit *fit);
+
+/* Other values at the same sites: as if just begun with them. */
+void gonio_i_fit_read(gonio_i_fit *fit, const gonio_i_column *column);
+void gonio_i_fit_end(gonio_i_fit *fit);
 
 /* The rest, for a model. Errors: _NUMERICAL, _MEMORY. */
-gonio_status gonio_i_fit_solve(gonio_i_fit *gaussian, const gonio_i_model *model);
+gonio_status gonio_i_fit_solve(gonio_i_fit *fit, const gonio_i_model *model);
 
 /* The variance that a reading counts with: so large that it has no say if it is left out. */
-double gonio_i_fit_noise(const gonio_i_fit *gaussian, size_t reading);
+double gonio_i_fit_noise(const gonio_i_fit *fit, size_t reading);
 
 /* What the other readings say of each one: the difference to it, and its variance (noise
  * included), difference[n], variance[n]. Exactly, samples weighted by the other readings only. */
-gonio_status gonio_i_fit_leave_one_out(const gonio_i_fit *gaussian, double *difference,
+gonio_status gonio_i_fit_leave_one_out(const gonio_i_fit *fit, double *difference,
                                        double *variance);
 
 /* Takes out bounds that hold anyway and, if there is doubt, gives readings that the others
  * contradict a variance to match, until nothing changes. outlying: how many of the latter. */
-gonio_status gonio_i_fit_settle(gonio_i_fit *gaussian, bool doubt, size_t *outlying);
+gonio_status gonio_i_fit_settle(gonio_i_fit *fit, bool doubt, size_t *outlying);
 
 /* Sum over the readings of (reading - what the others say)^2 / its variance; and sets misfit to its
  * mean, held towards 1 by `PRIOR_READINGS` readings that are as expected: a material that surprises
  * where it was read will elsewhere. */
-gonio_status gonio_i_fit_surprise(gonio_i_fit *gaussian, double *sum);
+gonio_status gonio_i_fit_surprise(gonio_i_fit *fit, double *sum);
+
+/* ln of the density of a column's values under the prior with a remainder of a given alpha and
+ * peak, readings that the others contradict set aside. Errors: _MEMORY, _NUMERICAL. */
+gonio_status gonio_i_fit_evidence(gonio_context *context, const gonio_i_sites *sites,
+                                  const gonio_i_column *column, double alpha, double peak,
+                                  double *evidence);
 
 #endif

@@ -13,13 +13,15 @@ gonio_status gonio_i_interpret(gonio_context *context, const gonio_i_prior *prio
     *mistake = NULL;
     gonio_status status = gonio_i_dark_level_find(context, prior, readings, noise, columns, dark);
     if (status == GONIO_OK) {
-        status = gonio_i_mistake_find(context, prior, readings, noise, *dark, mistake);
+        status = gonio_i_mistake_find(context, prior, readings, noise, columns, *dark, mistake);
     }
     if (*mistake != NULL) {
         free(*dark); /* of readings that are not what they say */
         *dark = NULL;
     }
-    return status == GONIO_OK
-               ? gonio_i_dark_level_apply(context, &prior->view, readings, noise, *dark, columns)
-               : status;
+    const gonio_i_transform transform = {.factor = 1.0, .dark = *dark};
+    for (size_t k = 0; k < columns->count && status == GONIO_OK && *dark != NULL; k++) {
+        gonio_i_column_transform(readings, noise, &transform, &columns->column[k]);
+    }
+    return status;
 }

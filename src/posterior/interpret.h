@@ -5,7 +5,8 @@
 #include "observations.h"
 
 /* Looks for a dark level (*dark, which the caller frees, or NULL) and a usual mistake (*mistake,
- * static, or NULL), and makes the columns again if there is a level.
+ * static, or NULL), and sets the columns to what the material
+ * reflects if there is a level.
  * Errors: _MEMORY, _NUMERICAL, _CANCELLED. */
 gonio_status gonio_i_interpret(gonio_context *context, const gonio_i_prior *prior,
                                const gonio_readings *readings, const gonio_i_noise *noise,

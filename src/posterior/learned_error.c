@@ -1,4 +1,4 @@
-/* The error to expect: see learned_error.h. */
+/* The error to expect, learned from the database: see learned_error.h. */
 #include "learned_error.h"
 
 #include <math.h>
@@ -33,15 +33,18 @@ typedef struct fold {
 } fold;
 
 struct gonio_i_learned_error {
-    gonio_context *context;
     const gonio_i_prior *prior;
     size_t components;
-    size_t measured;      /* columns of materials */
-    size_t each;          /* columns of a material */
-    double *metric;       /* [K][K]: mean over the bins of f' f */
-    size_t n;             /* of the readings that `folds` are for */
-    double *f;            /* [n][K]: what these readings see */
+    size_t measured; /* columns of materials */
+    size_t each;     /* columns of a material */
+    double *metric;  /* [K][K]: mean over the bins of f' f */
+};
+
+struct gonio_i_folds {
+    const gonio_i_learned_error *of;
+    const gonio_i_sites *sites;
     fold fold[FOLDS + 1]; /* the last one leaves out nothing */
+    double *noise;        /* [measured][n]: of variance 1, the same every time */
 };
 
 /* A column of the database that was left out: what its readings look like, and what was found. */
@@ -58,13 +61,13 @@ static bool can_tell(const gonio_i_prior *prior)
 }
 
 /* Mean of f' f over the bins, from a sample of rows. */
-static gonio_status find_metric(gonio_i_learned_error *x)
+static gonio_status find_metric(gonio_context *context, gonio_i_learned_error *x)
 {
     const gonio_basis_view *view = &x->prior->view;
     const size_t channels = view->channels == GONIO_JOINT ? GONIO_CHANNELS : 1;
     const size_t step = gonio_i_sample_step(view->rows);
     const size_t count = (view->rows + step - 1) / step;
-    double *rows = gonio_i_allocate(x->context, count * x->components, sizeof *rows);
+    double *rows = gonio_i_allocate(context, count * x->components, sizeof *rows);
     if (rows == NULL) {
         return GONIO_ERROR_MEMORY;
     }
@@ -80,7 +83,7 @@ static gonio_status find_metric(gonio_i_learned_error *x)
         all += bins;
     }
     const gonio_status status =
-        gonio_i_gram_rows(x->context, rows, count, x->components, x->components, x->metric);
+        gonio_i_gram_rows(context, rows, count, x->components, x->components, x->metric);
     for (size_t k = 0; k < x->components * x->components && status == GONIO_OK; k++) {
         x->metric[k] /= all;
     }
@@ -89,9 +92,9 @@ static gonio_status find_metric(gonio_i_learned_error *x)
 }
 
 gonio_status gonio_i_learned_error_create(gonio_context *context, const gonio_i_prior *prior,
-                                          gonio_i_learned_error **expectation)
+                                          gonio_i_learned_error **learned)
 {
-    *expectation = NULL;
+    *learned = NULL;
     if (!can_tell(prior)) {
         return GONIO_OK;
     }
@@ -99,43 +102,27 @@ gonio_status gonio_i_learned_error_create(gonio_context *context, const gonio_i_
     if (x == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    x->context = context;
     x->prior = prior;
     x->components = prior->components;
     x->measured = prior->samples - prior->view.mixtures;
     x->each = x->measured / prior->view.materials;
     x->metric = gonio_i_allocate(context, x->components * x->components, sizeof *x->metric);
-    const gonio_status status = x->metric == NULL ? GONIO_ERROR_MEMORY : find_metric(x);
+    const gonio_status status = x->metric == NULL ? GONIO_ERROR_MEMORY : find_metric(context, x);
     if (status != GONIO_OK) {
         gonio_i_learned_error_free(&x);
     }
-    *expectation = x;
+    *learned = x;
     return status;
 }
 
-static void forget_folds(gonio_i_learned_error *x)
+void gonio_i_learned_error_free(gonio_i_learned_error **learned)
 {
-    for (size_t k = 0; k <= FOLDS; k++) {
-        free(x->fold[k].mean_seen);
-        free(x->fold[k].mean);
-        free(x->fold[k].covariance);
-        free(x->fold[k].cross);
-        x->fold[k] = (fold){0};
-    }
-    free(x->f);
-    x->f = NULL;
-    x->n = 0;
-}
-
-void gonio_i_learned_error_free(gonio_i_learned_error **expectation)
-{
-    if (expectation == NULL || *expectation == NULL) {
+    if (learned == NULL || *learned == NULL) {
         return;
     }
-    forget_folds(*expectation);
-    free((*expectation)->metric);
-    free(*expectation);
-    *expectation = NULL;
+    free((*learned)->metric);
+    free(*learned);
+    *learned = NULL;
 }
 
 /* ---- leaving out ---- */
@@ -192,58 +179,98 @@ typedef struct fold_scratch {
     double *z;     /* [samples][K] */
 } fold_scratch;
 
-static gonio_status fill_fold(gonio_i_learned_error *x, const gonio_i_fit *e, size_t k,
+static gonio_status fill_fold(gonio_context *context, gonio_i_folds *folds, size_t k,
                               const fold_scratch *s)
 {
-    fold *f = &x->fold[k];
+    fold *f = &folds->fold[k];
+    const gonio_i_learned_error *x = folds->of;
+    const gonio_i_sites *sites = folds->sites;
+    const size_t n = sites->n;
     const size_t samples = x->prior->samples;
-    f->mean_seen = gonio_i_allocate(x->context, e->n, sizeof *f->mean_seen);
-    f->mean = gonio_i_allocate(x->context, x->components, sizeof *f->mean);
-    f->covariance = gonio_i_allocate(x->context, e->n * e->n, sizeof *f->covariance);
-    f->cross = gonio_i_allocate(x->context, e->n * x->components, sizeof *f->cross);
+    f->mean_seen = gonio_i_allocate(context, n, sizeof *f->mean_seen);
+    f->mean = gonio_i_allocate(context, x->components, sizeof *f->mean);
+    f->covariance = gonio_i_allocate(context, n * n, sizeof *f->covariance);
+    f->cross = gonio_i_allocate(context, n * x->components, sizeof *f->cross);
     if (f->mean_seen == NULL || f->mean == NULL || f->covariance == NULL || f->cross == NULL) {
         return GONIO_ERROR_MEMORY;
     }
     share_out(x, k, s->share);
-    centre(e->seen, s->share, samples, e->n, f->mean_seen, s->seen);
+    centre(sites->seen, s->share, samples, n, f->mean_seen, s->seen);
     centre(x->prior->sample, s->share, samples, x->components, f->mean, s->z);
-    const gonio_status status =
-        gonio_i_gram_rows(x->context, s->seen, samples, e->n, e->n, f->covariance);
-    return status == GONIO_OK ? gonio_i_product_columns(x->context, s->seen, e->n, samples, s->z,
+    const gonio_status status = gonio_i_gram_rows(context, s->seen, samples, n, n, f->covariance);
+    return status == GONIO_OK ? gonio_i_product_columns(context, s->seen, n, samples, s->z,
                                                         x->components, f->cross)
                               : status;
 }
 
-/* Makes all folds, unless they are of the same readings already. */
-static gonio_status visit(gonio_i_learned_error *x, const gonio_i_fit *e)
+static gonio_status draw_noise(gonio_context *context, gonio_i_folds *folds)
 {
-    const size_t values = e->n * x->components;
-    if (x->f != NULL && x->n == e->n && memcmp(x->f, e->f, values * sizeof *x->f) == 0) {
-        return GONIO_OK;
+    const size_t n = folds->sites->n;
+    folds->noise = gonio_i_allocate(context, folds->of->measured * n, sizeof *folds->noise);
+    if (folds->noise == NULL) {
+        return GONIO_ERROR_MEMORY;
     }
-    forget_folds(x);
+    for (size_t j = 0; j < folds->of->measured; j++) {
+        gonio_i_random random;
+        gonio_i_random_seed(&random, 0, j);
+        for (size_t i = 0; i < n; i++) {
+            folds->noise[j * n + i] = gonio_i_random_normal(&random);
+        }
+    }
+    return GONIO_OK;
+}
+
+static gonio_status fill_folds(gonio_context *context, gonio_i_folds *folds)
+{
+    const gonio_i_learned_error *x = folds->of;
     const size_t samples = x->prior->samples;
-    fold_scratch s = {gonio_i_allocate(x->context, samples, sizeof *s.share),
-                      gonio_i_allocate(x->context, samples * e->n, sizeof *s.seen),
-                      gonio_i_allocate(x->context, samples * x->components, sizeof *s.z)};
-    double *copy = gonio_i_allocate(x->context, values, sizeof *copy);
-    gonio_status status = s.share == NULL || s.seen == NULL || s.z == NULL || copy == NULL
+    fold_scratch s = {gonio_i_allocate(context, samples, sizeof *s.share),
+                      gonio_i_allocate(context, samples * folds->sites->n, sizeof *s.seen),
+                      gonio_i_allocate(context, samples * x->components, sizeof *s.z)};
+    gonio_status status = s.share == NULL || s.seen == NULL || s.z == NULL
                               ? GONIO_ERROR_MEMORY
-                              : GONIO_OK;
+                              : draw_noise(context, folds);
     for (size_t k = 0; k <= FOLDS && status == GONIO_OK; k++) {
-        status = fill_fold(x, e, k, &s);
-    }
-    if (status == GONIO_OK) {
-        memcpy(copy, e->f, values * sizeof *copy);
-        x->f = copy;
-        x->n = e->n;
-    } else {
-        free(copy);
+        status = fill_fold(context, folds, k, &s);
     }
     free(s.share);
     free(s.seen);
     free(s.z);
     return status;
+}
+
+gonio_status gonio_i_folds_create(gonio_context *context, const gonio_i_learned_error *learned,
+                                  const gonio_i_sites *sites, gonio_i_folds **folds)
+{
+    *folds = NULL;
+    gonio_i_folds *made = gonio_i_allocate(context, 1, sizeof *made);
+    if (made == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    made->of = learned;
+    made->sites = sites;
+    const gonio_status status = fill_folds(context, made);
+    if (status != GONIO_OK) {
+        gonio_i_folds_free(&made);
+    }
+    *folds = made;
+    return status;
+}
+
+void gonio_i_folds_free(gonio_i_folds **folds)
+{
+    if (folds == NULL || *folds == NULL) {
+        return;
+    }
+    for (size_t k = 0; k <= FOLDS; k++) {
+        free((*folds)->fold[k].mean_seen);
+        free((*folds)->fold[k].mean);
+        free((*folds)->fold[k].covariance);
+        free((*folds)->fold[k].cross);
+    }
+    free((*folds)->noise);
+    free(*folds);
+    *folds = NULL;
 }
 
 /* ---- lessons ---- */
@@ -258,7 +285,7 @@ static double say_of(const gonio_i_fit *e, const fold *f, size_t i)
 /* g of a reading: the mean of the database is put back. */
 static double value_of(const gonio_i_fit *e, const fold *f, const double *y, size_t i)
 {
-    return e->mean[i] + f->mean_seen[i] + y[i];
+    return e->sites->mean[i] + f->mean_seen[i] + y[i];
 }
 
 /* y: readings less the fold's mean; solved: S^-1 y; diagonal: of S^-1. */
@@ -294,12 +321,11 @@ typedef struct solver {
     double *diagonal;
 } solver;
 
-static gonio_status begin_solver(const gonio_i_learned_error *x, const gonio_i_fit *e,
-                                 const fold *f, solver *s)
+static gonio_status begin_solver(const gonio_i_fit *e, const fold *f, solver *s)
 {
     const size_t n = e->n;
-    s->lower = gonio_i_allocate(x->context, n * n, sizeof *s->lower);
-    s->diagonal = gonio_i_allocate(x->context, n, sizeof *s->diagonal);
+    s->lower = gonio_i_allocate(e->context, n * n, sizeof *s->lower);
+    s->diagonal = gonio_i_allocate(e->context, n, sizeof *s->diagonal);
     if (s->lower == NULL || s->diagonal == NULL) {
         return GONIO_ERROR_MEMORY;
     }
@@ -307,8 +333,8 @@ static gonio_status begin_solver(const gonio_i_learned_error *x, const gonio_i_f
     for (size_t i = 0; i < n; i++) {
         s->lower[i * n + i] += gonio_i_fit_noise(e, i);
     }
-    const gonio_status status = gonio_i_cholesky(x->context, s->lower, n);
-    return status == GONIO_OK ? gonio_i_inverse_diagonal(x->context, s->lower, n, s->diagonal)
+    const gonio_status status = gonio_i_cholesky(e->context, s->lower, n);
+    return status == GONIO_OK ? gonio_i_inverse_diagonal(e->context, s->lower, n, s->diagonal)
                               : status;
 }
 
@@ -326,13 +352,14 @@ static void solve(const solver *s, size_t count, size_t n, double *y)
 
 /* What is read of a measured column, less the fold's mean: with noise, the same every time, but of
  * readings that have no say; saturated where the material is. */
-static void read_column(const gonio_i_fit *e, const fold *f, size_t column, double *y)
+static void read_column(const gonio_i_fit *e, const gonio_i_folds *folds, const fold *f,
+                        size_t column, double *y)
 {
-    gonio_i_random random;
-    gonio_i_random_seed(&random, 0, column);
+    const double *noise = folds->noise + column * e->n;
+    const double *values = e->sites->seen + column * e->n;
     for (size_t i = 0; i < e->n; i++) {
-        const double noise = sqrt(gonio_i_fit_noise(e, i)) * gonio_i_random_normal(&random);
-        const double seen = e->seen[column * e->n + i] + say_of(e, f, i) * noise;
+        const double off = sqrt(gonio_i_fit_noise(e, i)) * noise[i];
+        const double seen = values[i] + say_of(e, f, i) * off;
         const bool saturated = e->bound[i] > 0 && !e->left_out[i];
         y[i] = (saturated ? fmin(seen, e->y[i]) : seen) - f->mean_seen[i];
     }
@@ -353,7 +380,7 @@ static gonio_status find_errors(const gonio_i_learned_error *x, const gonio_i_fi
 {
     const size_t k = x->components;
     gonio_status status =
-        gonio_i_product(x->context, s->solved, count, e->n, f->cross, k, s->error);
+        gonio_i_product(e->context, s->solved, count, e->n, f->cross, k, s->error);
     for (size_t j = 0; j < count && status == GONIO_OK; j++) {
         const double *z = x->prior->sample + s->column[j] * k;
         for (size_t i = 0; i < k; i++) {
@@ -361,25 +388,26 @@ static gonio_status find_errors(const gonio_i_learned_error *x, const gonio_i_fi
         }
     }
     return status == GONIO_OK
-               ? gonio_i_product(x->context, s->error, count, k, x->metric, k, s->turned)
+               ? gonio_i_product(e->context, s->error, count, k, x->metric, k, s->turned)
                : status;
 }
 
 /* Lessons from the columns that fold k leaves out, added to what is there. */
-static gonio_status learn_fold(const gonio_i_learned_error *x, const gonio_i_fit *e, size_t k,
+static gonio_status learn_fold(const gonio_i_folds *folds, const gonio_i_fit *e, size_t k,
                                const column_scratch *s, lesson *lessons, size_t *count)
 {
-    const fold *f = &x->fold[k];
+    const gonio_i_learned_error *x = folds->of;
+    const fold *f = &folds->fold[k];
     size_t columns = 0;
     for (size_t j = 0; j < x->measured; j++) {
         if (is_of_fold(x, j, k)) {
-            read_column(e, f, j, s->y + columns * e->n);
+            read_column(e, folds, f, j, s->y + columns * e->n);
             s->column[columns++] = j;
         }
     }
     memcpy(s->solved, s->y, columns * e->n * sizeof *s->y);
     solver with = {0};
-    gonio_status status = begin_solver(x, e, f, &with);
+    gonio_status status = begin_solver(e, f, &with);
     if (status == GONIO_OK) {
         solve(&with, columns, e->n, s->solved);
         status = find_errors(x, e, f, columns, s);
@@ -394,20 +422,20 @@ static gonio_status learn_fold(const gonio_i_learned_error *x, const gonio_i_fit
     return status;
 }
 
-static gonio_status learn_folds(const gonio_i_learned_error *x, const gonio_i_fit *e,
-                                lesson *lessons)
+static gonio_status learn_folds(const gonio_i_folds *folds, const gonio_i_fit *e, lesson *lessons)
 {
+    const gonio_i_learned_error *x = folds->of;
     const size_t most = (x->prior->view.materials / FOLDS + 1) * x->each;
-    column_scratch s = {gonio_i_allocate(x->context, most, sizeof *s.column),
-                        gonio_i_allocate(x->context, most * e->n, sizeof *s.y),
-                        gonio_i_allocate(x->context, most * e->n, sizeof *s.solved),
-                        gonio_i_allocate(x->context, most * x->components, sizeof *s.error),
-                        gonio_i_allocate(x->context, most * x->components, sizeof *s.turned)};
+    column_scratch s = {gonio_i_allocate(e->context, most, sizeof *s.column),
+                        gonio_i_allocate(e->context, most * e->n, sizeof *s.y),
+                        gonio_i_allocate(e->context, most * e->n, sizeof *s.solved),
+                        gonio_i_allocate(e->context, most * x->components, sizeof *s.error),
+                        gonio_i_allocate(e->context, most * x->components, sizeof *s.turned)};
     const bool done = s.column && s.y && s.solved && s.error && s.turned;
     gonio_status status = done ? GONIO_OK : GONIO_ERROR_MEMORY;
     size_t count = 0;
     for (size_t k = 0; k < FOLDS && status == GONIO_OK; k++) {
-        status = learn_fold(x, e, k, &s, lessons, &count);
+        status = learn_fold(folds, e, k, &s, lessons, &count);
     }
     free(s.column);
     free(s.y);
@@ -418,12 +446,12 @@ static gonio_status learn_folds(const gonio_i_learned_error *x, const gonio_i_fi
 }
 
 /* The features of the readings themselves. */
-static gonio_status look(const gonio_i_learned_error *x, const gonio_i_fit *e, double *feature)
+static gonio_status look(const gonio_i_folds *folds, const gonio_i_fit *e, double *feature)
 {
-    const fold *f = &x->fold[FOLDS];
-    double *y = gonio_i_allocate(x->context, 2 * e->n, sizeof *y);
+    const fold *f = &folds->fold[FOLDS];
+    double *y = gonio_i_allocate(e->context, 2 * e->n, sizeof *y);
     solver with = {0};
-    gonio_status status = y == NULL ? GONIO_ERROR_MEMORY : begin_solver(x, e, f, &with);
+    gonio_status status = y == NULL ? GONIO_ERROR_MEMORY : begin_solver(e, f, &with);
     if (status == GONIO_OK) {
         for (size_t i = 0; i < e->n; i++) {
             y[i] = e->y[i] - f->mean_seen[i];
@@ -514,20 +542,18 @@ static gonio_status regress(gonio_context *context, const lesson *lessons, size_
     return status;
 }
 
-gonio_status gonio_i_learned_error_find(gonio_i_learned_error *x, const gonio_i_fit *e,
+gonio_status gonio_i_learned_error_find(const gonio_i_folds *folds, const gonio_i_fit *e,
                                         double *square)
 {
+    const size_t measured = folds->of->measured;
     double feature[FEATURES];
-    lesson *lessons = gonio_i_allocate(x->context, x->measured, sizeof *lessons);
-    gonio_status status = lessons == NULL ? GONIO_ERROR_MEMORY : visit(x, e);
+    lesson *lessons = gonio_i_allocate(e->context, measured, sizeof *lessons);
+    gonio_status status = lessons == NULL ? GONIO_ERROR_MEMORY : learn_folds(folds, e, lessons);
     if (status == GONIO_OK) {
-        status = learn_folds(x, e, lessons);
+        status = look(folds, e, feature);
     }
     if (status == GONIO_OK) {
-        status = look(x, e, feature);
-    }
-    if (status == GONIO_OK) {
-        status = regress(x->context, lessons, x->measured, feature, square);
+        status = regress(e->context, lessons, measured, feature, square);
     }
     free(lessons);
     return status;

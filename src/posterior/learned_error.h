@@ -16,20 +16,28 @@
 
 typedef struct gonio_i_learned_error gonio_i_learned_error;
 
-/* *expectation is NULL if the database cannot tell: a basis without loadings, of few materials, or
- * of mixtures that nobody knows the parents of. The prior must outlive it. Errors: _MEMORY. */
+/* *learned is NULL if the database cannot tell: a basis without loadings, of few materials, or of
+ * mixtures that nobody knows the parents of. The prior must outlive it. Errors: _MEMORY. */
 gonio_status gonio_i_learned_error_create(gonio_context *context, const gonio_i_prior *prior,
-                                          gonio_i_learned_error **expectation);
-void gonio_i_learned_error_free(gonio_i_learned_error **expectation);
+                                          gonio_i_learned_error **learned);
+void gonio_i_learned_error_free(gonio_i_learned_error **learned);
 
 /* Readings of a column from which on _find takes long; fewer can be had by merging (merge.h). */
 enum { GONIO_I_LEARNED_ERROR_MOST = 400 };
 
+/* The database, a tenth left out at a time, as it is seen at some sites: made once for all columns
+ * of these sites and not changed, so that any number of threads may use it. Both must outlive it.
+ * Errors: _MEMORY. */
+typedef struct gonio_i_folds gonio_i_folds;
+
+gonio_status gonio_i_folds_create(gonio_context *context, const gonio_i_learned_error *learned,
+                                  const gonio_i_sites *sites, gonio_i_folds **folds);
+void gonio_i_folds_free(gonio_i_folds **folds);
+
 /* The square of the root mean square over the bins of the grid of the error of g that is expected
- * on average, for a column of readings (settled: their variances are what is believed of them).
- * Columns that were read at the same places cost little after the first. Errors: _MEMORY,
- * _NUMERICAL. */
-gonio_status gonio_i_learned_error_find(gonio_i_learned_error *expectation,
-                                        const gonio_i_fit *gaussian, double *square);
+ * on average, for a fit over the same sites (settled: its variances are what is believed of them).
+ * Errors: _MEMORY, _NUMERICAL. */
+gonio_status gonio_i_learned_error_find(const gonio_i_folds *folds, const gonio_i_fit *fit,
+                                        double *square);
 
 #endif

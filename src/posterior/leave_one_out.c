@@ -16,38 +16,53 @@ size_t gonio_i_thin(const gonio_i_column *column, size_t most, gonio_i_observati
     return count;
 }
 
-static gonio_status copy_thinned(gonio_context *context, const gonio_i_column *column,
-                                 gonio_i_column *copy)
+gonio_status gonio_i_thin_copy(gonio_context *context, const gonio_i_column *column, size_t most,
+                               gonio_i_column *copy)
 {
-    copy->observation =
-        gonio_i_allocate(context, GONIO_I_SUBSET_READINGS, sizeof *copy->observation);
+    *copy = (gonio_i_column){0};
+    copy->observation = gonio_i_allocate(context, column->count < most ? column->count : most,
+                                         sizeof *copy->observation);
     if (copy->observation == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    copy->count = gonio_i_thin(column, GONIO_I_SUBSET_READINGS, copy->observation);
+    copy->count = gonio_i_thin(column, most, copy->observation);
     return GONIO_OK;
 }
 
-gonio_status gonio_i_subset_begin(gonio_context *context, const gonio_i_column *columns,
-                                  size_t count, gonio_i_subset *probe)
+gonio_status gonio_i_subset_begin(gonio_context *context, const gonio_i_prior *prior,
+                                  const gonio_i_column *columns, size_t count,
+                                  gonio_i_subset *subset)
 {
     gonio_status status = GONIO_OK;
-    *probe = (gonio_i_subset){0};
-    probe->count = count < GONIO_I_SUBSET_COLUMNS ? count : GONIO_I_SUBSET_COLUMNS;
-    for (size_t k = 0; k < probe->count && status == GONIO_OK; k++) {
-        const gonio_i_column *column = &columns[k * count / probe->count];
-        probe->readings[k] = column->count;
-        status = copy_thinned(context, column, &probe->column[k]);
+    *subset = (gonio_i_subset){0};
+    subset->count = count < GONIO_I_SUBSET_COLUMNS ? count : GONIO_I_SUBSET_COLUMNS;
+    for (size_t k = 0; k < subset->count && status == GONIO_OK; k++) {
+        subset->from[k] = k * count / subset->count;
+        const gonio_i_column *column = &columns[subset->from[k]];
+        subset->readings[k] = column->count;
+        status = gonio_i_thin_copy(context, column, GONIO_I_SUBSET_READINGS, &subset->column[k]);
     }
-    return status;
+    return status == GONIO_OK
+               ? gonio_i_sites_share(context, prior, subset->column, subset->count, subset->sites)
+               : status;
 }
 
-void gonio_i_subset_end(gonio_i_subset *probe)
+void gonio_i_subset_read(gonio_i_subset *subset, const gonio_i_column *columns)
 {
-    for (size_t k = 0; k < probe->count; k++) {
-        free(probe->column[k].observation);
+    for (size_t k = 0; k < subset->count; k++) {
+        gonio_i_column *mine = &subset->column[k];
+        mine->count =
+            gonio_i_thin(&columns[subset->from[k]], GONIO_I_SUBSET_READINGS, mine->observation);
     }
-    *probe = (gonio_i_subset){0};
+}
+
+void gonio_i_subset_end(gonio_i_subset *subset)
+{
+    gonio_i_sites_release(subset->sites, subset->count);
+    for (size_t k = 0; k < subset->count; k++) {
+        free(subset->column[k].observation);
+    }
+    *subset = (gonio_i_subset){0};
 }
 
 double gonio_i_leave_one_out_density(double difference, double variance)
@@ -71,9 +86,9 @@ gonio_status gonio_i_leave_one_out_score(gonio_i_fit *e, const gonio_i_model *mo
     double *difference = NULL;
     const gonio_status status = gonio_i_leave_one_out_differences(e, model, &difference);
     for (size_t i = 0; i < e->n && status == GONIO_OK; i++) {
-        *score += e->left_out[i]
-                      ? 0.0
-                      : gonio_i_leave_one_out_density(difference[i], difference[e->n + i]);
+        score[i] = e->left_out[i]
+                       ? 0.0
+                       : gonio_i_leave_one_out_density(difference[i], difference[e->n + i]);
     }
     free(difference);
     return status;

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "crew.h"
 #include "leave_one_out.h"
 
 /* A factor of pi alone is not among the hypotheses: materials differ by more than that. */
@@ -79,62 +80,135 @@ static bool is_possible(const gonio_readings_view *view, const gonio_i_transform
     return true;
 }
 
-/* ln of the density of the values under a transform and with a remainder of size alpha; of
- * MOST_TRIED of a column, scaled. */
-static gonio_status weigh(gonio_context *context, const gonio_i_prior *prior,
-                          const gonio_readings *readings, const gonio_i_noise *noise,
-                          const gonio_i_transform *transform, double alpha, double *evidence)
+/* What hypotheses are tried on: MOST_TRIED readings of a few columns. */
+typedef struct trial {
+    gonio_context *context;
+    const gonio_i_prior *prior;
+    const gonio_readings *readings;
+    const gonio_i_noise *noise;
+    size_t count;
+    size_t channel[MOST_COLUMNS];
+    double share[MOST_COLUMNS]; /* of the column's readings */
+    gonio_i_column column[MOST_COLUMNS];
+    gonio_i_sites *sites[MOST_COLUMNS]; /* of the directions as they are read */
+} trial;
+
+static gonio_status begin(trial *t, const gonio_i_columns *columns)
 {
-    gonio_i_columns columns;
-    gonio_status status =
-        gonio_i_columns_create(context, &prior->view, readings, noise, transform, &columns);
-    const size_t tried = columns.count < MOST_COLUMNS ? columns.count : MOST_COLUMNS;
-    *evidence = 0.0;
+    gonio_status status = GONIO_OK;
+    const size_t tried = columns->count < MOST_COLUMNS ? columns->count : MOST_COLUMNS;
     for (size_t k = 0; k < tried && status == GONIO_OK; k++) {
-        const size_t index = k * columns.count / tried;
-        gonio_i_column *column = &columns.column[index];
-        const size_t all = column->count;
-        double mine = 0.0;
-        if (all == 0) {
-            continue;
+        const size_t channel = k * columns->count / tried;
+        const gonio_i_column *all = &columns->column[channel];
+        if (all->count > 0) {
+            gonio_i_column *thinned = &t->column[t->count];
+            status = gonio_i_thin_copy(t->context, all, MOST_TRIED, thinned);
+            t->channel[t->count] = channel;
+            t->share[t->count++] = (double)thinned->count / (double)all->count;
         }
-        column->count = gonio_i_thin(column, MOST_TRIED, column->observation);
-        status = gonio_i_posterior_evidence(context, prior, column, alpha, PEAK, &mine);
-        const double share = (double)column->count / (double)all;
-        *evidence += mine + share * gonio_i_transform_logarithm(readings, index, noise, transform);
     }
-    gonio_i_columns_free(&columns);
+    return status == GONIO_OK
+               ? gonio_i_sites_share(t->context, t->prior, t->column, t->count, t->sites)
+               : status;
+}
+
+static void end(trial *t)
+{
+    gonio_i_sites_release(t->sites, t->count);
+    for (size_t k = 0; k < t->count; k++) {
+        free(t->column[k].observation);
+    }
+}
+
+/* One model of the columns, with the sites that they have now. */
+typedef struct weighing {
+    const trial *t;
+    gonio_i_sites *const *sites;
+    double alpha;
+    double evidence[MOST_COLUMNS];
+} weighing;
+
+static gonio_status weigh_column(void *data, gonio_context *context, size_t k)
+{
+    weighing *w = data;
+    return gonio_i_fit_evidence(context, w->sites[k], &w->t->column[k], w->alpha, PEAK,
+                                &w->evidence[k]);
+}
+
+static gonio_status weigh_columns(const trial *t, gonio_i_sites *const *sites,
+                                  const gonio_i_transform *transform, double alpha,
+                                  double *evidence)
+{
+    weighing w = {.t = t, .sites = sites, .alpha = alpha};
+    gonio_i_steps steps = {.task = NULL};
+    const gonio_status status = gonio_i_crew_work(t->context, &steps, t->count, weigh_column, &w);
+    *evidence = 0.0;
+    for (size_t k = 0; k < t->count && status == GONIO_OK; k++) {
+        *evidence +=
+            w.evidence[k] + t->share[k] * gonio_i_transform_logarithm(t->readings, t->channel[k],
+                                                                      t->noise, transform);
+    }
     return status;
 }
 
-gonio_status gonio_i_mistake_find(gonio_context *context, const gonio_i_prior *prior,
-                                  const gonio_readings *readings, const gonio_i_noise *noise,
-                                  const double *dark, const char **mistake)
+/* ln of the density of the values under a transform and with a remainder of size alpha, scaled from
+ * the readings that are tried to all. Only directions that are turned need other sites. */
+static gonio_status weigh(trial *t, const gonio_i_transform *transform, double alpha,
+                          double *evidence)
+{
+    for (size_t k = 0; k < t->count; k++) {
+        gonio_i_column_transform(t->readings, t->noise, transform, &t->column[k]);
+    }
+    if (transform->turn == NULL) {
+        return weigh_columns(t, t->sites, transform, alpha, evidence);
+    }
+    gonio_i_sites *turned[MOST_COLUMNS] = {NULL};
+    gonio_status status = gonio_i_sites_share(t->context, t->prior, t->column, t->count, turned);
+    if (status == GONIO_OK) {
+        status = weigh_columns(t, turned, transform, alpha, evidence);
+    }
+    gonio_i_sites_release(turned, t->count);
+    return status;
+}
+
+static gonio_status try_hypotheses(trial *t, const double *dark, const char **mistake)
 {
     const gonio_i_transform as_it_is = {.factor = 1.0, .dark = dark};
-    const gonio_readings_view view = gonio_readings_describe(readings);
-    double best = 0.0;
+    const gonio_readings_view view = gonio_readings_describe(t->readings);
     double here = 0.0;
-    *mistake = NULL;
-    if (prior->view.channels == GONIO_JOINT) {
-        return GONIO_OK; /* its columns hold all channels: nothing to compare one by one */
-    }
     double unusual = 0.0;
-    gonio_status status = weigh(context, prior, readings, noise, &as_it_is, SOME, &here);
+    gonio_status status = weigh(t, &as_it_is, SOME, &here);
     if (status == GONIO_OK) {
-        status = weigh(context, prior, readings, noise, &as_it_is, MUCH, &unusual);
+        status = weigh(t, &as_it_is, MUCH, &unusual);
     }
-    best = fmax(here + CONVINCING, unusual);
+    double best = fmax(here + CONVINCING, unusual);
     for (int k = 0; k < HYPOTHESES && status == GONIO_OK; k++) {
         double evidence = 0.0;
         if (is_possible(&view, &hypotheses[k].transform)) {
-            status =
-                weigh(context, prior, readings, noise, &hypotheses[k].transform, SOME, &evidence);
+            status = weigh(t, &hypotheses[k].transform, SOME, &evidence);
             if (status == GONIO_OK && evidence > best) {
                 best = evidence;
                 *mistake = hypotheses[k].name;
             }
         }
     }
+    return status;
+}
+
+gonio_status gonio_i_mistake_find(gonio_context *context, const gonio_i_prior *prior,
+                                  const gonio_readings *readings, const gonio_i_noise *noise,
+                                  const gonio_i_columns *columns, const double *dark,
+                                  const char **mistake)
+{
+    trial t = {.context = context, .prior = prior, .readings = readings, .noise = noise};
+    *mistake = NULL;
+    if (prior->view.channels == GONIO_JOINT) {
+        return GONIO_OK; /* its columns hold all channels: nothing to compare one by one */
+    }
+    gonio_status status = begin(&t, columns);
+    if (status == GONIO_OK) {
+        status = try_hypotheses(&t, dark, mistake);
+    }
+    end(&t);
     return status;
 }

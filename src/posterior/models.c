@@ -3,8 +3,9 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdlib.h>
 
-#include "leave_one_out.h"
+#include "crew.h"
 
 /* Narrow peaks only where there is much that the database does not know: for materials like its own
  * they cost a tenth. */
@@ -58,36 +59,77 @@ typedef struct opinion {
     size_t outlying;
 } opinion;
 
-static gonio_status score_column(gonio_context *context, const gonio_i_prior *prior,
-                                 const gonio_i_column *column, size_t readings, bool doubt,
-                                 opinion *o)
+/* The densities of one column's readings under every model. */
+typedef struct scores {
+    double *score; /* [CHOICES][n] */
+    size_t outlying;
+} scores;
+
+typedef struct scoring {
+    const gonio_i_subset *subset;
+    bool doubt;
+    scores column[GONIO_I_SUBSET_COLUMNS];
+} scoring;
+
+static gonio_status score_models(gonio_i_fit *e, size_t readings, bool doubt, scores *s)
 {
-    gonio_i_fit e = {0};
-    size_t outlying = 0;
-    gonio_status status = gonio_i_fit_begin(context, prior, column, &e);
+    gonio_status status = gonio_i_fit_solve(e, &GONIO_I_SETTLING);
     if (status == GONIO_OK) {
-        status = gonio_i_fit_solve(&e, &GONIO_I_SETTLING);
+        status = gonio_i_fit_settle(e, doubt, &s->outlying);
     }
-    if (status == GONIO_OK) {
-        status = gonio_i_fit_settle(&e, doubt, &outlying);
-    }
-    o->outlying += outlying;
     for (int k = 0; k < CHOICES && status == GONIO_OK; k++) {
         const gonio_i_model model = choice(k, readings);
-        status = gonio_i_leave_one_out_score(&e, &model, &o->score[k]);
+        status = gonio_i_leave_one_out_score(e, &model, s->score + (size_t)k * e->n);
+    }
+    return status;
+}
+
+static gonio_status score_column(void *data, gonio_context *context, size_t k)
+{
+    scoring *all = data;
+    const gonio_i_subset *subset = all->subset;
+    scores *s = &all->column[k];
+    if (subset->readings[k] <= 1) {
+        return GONIO_OK;
+    }
+    gonio_i_fit e = {0};
+    s->score = gonio_i_allocate(context, CHOICES * subset->column[k].count, sizeof *s->score);
+    gonio_status status = s->score == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    if (status == GONIO_OK) {
+        status = gonio_i_fit_begin(context, subset->sites[k], false, &subset->column[k], &e);
+    }
+    if (status == GONIO_OK) {
+        status = score_models(&e, subset->readings[k], all->doubt, s);
     }
     gonio_i_fit_end(&e);
     return status;
 }
 
-static gonio_status score_columns(gonio_context *context, const gonio_i_prior *prior,
-                                  const gonio_i_subset *probe, bool doubt, opinion *o)
+/* Reading by reading, in order. */
+static void add_up(const scoring *all, opinion *o)
 {
-    gonio_status status = GONIO_OK;
-    for (size_t k = 0; k < probe->count && status == GONIO_OK; k++) {
-        if (probe->readings[k] > 1) {
-            status = score_column(context, prior, &probe->column[k], probe->readings[k], doubt, o);
+    for (size_t c = 0; c < all->subset->count; c++) {
+        const scores *s = &all->column[c];
+        const size_t n = all->subset->column[c].count;
+        o->outlying += s->outlying;
+        for (size_t i = 0; s->score != NULL && i < CHOICES * n; i++) {
+            o->score[i / n] += s->score[i];
         }
+    }
+}
+
+static gonio_status score_columns(gonio_context *context, const gonio_i_subset *subset, bool doubt,
+                                  opinion *o)
+{
+    scoring all = {.subset = subset, .doubt = doubt};
+    gonio_i_steps steps = {.task = NULL};
+    const gonio_status status =
+        gonio_i_crew_work(context, &steps, subset->count, score_column, &all);
+    if (status == GONIO_OK) {
+        add_up(&all, o);
+    }
+    for (size_t c = 0; c < subset->count; c++) {
+        free(all.column[c].score);
     }
     return status;
 }
@@ -142,28 +184,22 @@ static bool is_doubtful(const gonio_i_prior *prior, size_t columns, const opinio
 }
 
 gonio_status gonio_i_models_weigh(gonio_context *context, const gonio_i_prior *prior,
-                                  const gonio_i_column *columns, size_t count,
-                                  gonio_i_models *models)
+                                  const gonio_i_subset *subset, gonio_i_models *models)
 {
     static_assert((int)CHOICES <= (int)GONIO_I_MOST_MODELS, "room for all choices");
     double log_weight[CHOICES];
     opinion doubting = {0};
     opinion believing = {0};
-    gonio_i_subset probe;
-    gonio_status status = gonio_i_subset_begin(context, columns, count, &probe);
-    if (status == GONIO_OK) {
-        status = score_columns(context, prior, &probe, true, &doubting);
-    }
+    gonio_status status = score_columns(context, subset, true, &doubting);
     if (status == GONIO_OK && doubting.outlying > 0) {
-        status = score_columns(context, prior, &probe, false, &believing);
+        status = score_columns(context, subset, false, &believing);
     }
     const bool doubt =
-        doubting.outlying == 0 || is_doubtful(prior, probe.count, &doubting, &believing);
+        doubting.outlying == 0 || is_doubtful(prior, subset->count, &doubting, &believing);
     const opinion *says = doubt ? &doubting : &believing;
     for (int k = 0; k < CHOICES; k++) {
         log_weight[k] = SHARE * says->score[k] + log_prior(k);
     }
-    *models = normalise(log_weight, columns[0].count);
-    gonio_i_subset_end(&probe);
+    *models = normalise(log_weight, subset->readings[0]);
     return status;
 }

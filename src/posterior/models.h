@@ -10,7 +10,7 @@
 #ifndef GONIO_MODELS_H
 #define GONIO_MODELS_H
 
-#include "fit.h"
+#include "leave_one_out.h"
 
 enum { GONIO_I_MOST_MODELS = 20 };
 
@@ -27,7 +27,6 @@ gonio_i_models gonio_i_models_of(gonio_i_model model);
 /* The models that leaving out readings one at a time is in favour of, all columns together.
  * Errors: _MEMORY, _NUMERICAL. */
 gonio_status gonio_i_models_weigh(gonio_context *context, const gonio_i_prior *prior,
-                                  const gonio_i_column *columns, size_t count,
-                                  gonio_i_models *models);
+                                  const gonio_i_subset *subset, gonio_i_models *models);
 
 #endif

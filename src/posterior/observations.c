@@ -28,9 +28,6 @@ static double factor_of(gonio_pair pair, double s, const gonio_i_transform *tran
 static double true_value(gonio_pair pair, size_t channel, double value, double s,
                          const gonio_i_transform *transform)
 {
-    if (transform == NULL) {
-        return value;
-    }
     return value * factor_of(pair, s, transform) +
            gonio_i_dark_level_missing(transform->dark, channel, pair.incident.theta);
 }
@@ -42,35 +39,56 @@ static int bound_of(double read, const gonio_i_noise *noise)
     return saturated ? 1 : read <= 0.0 ? -1 : 0;
 }
 
+/* What a value means in log space. */
+static void set_value(gonio_i_observation *o, double value, double s, const gonio_i_noise *noise)
+{
+    o->g = log1p(value / s);
+    o->variance = variance_of(value, s, noise);
+}
+
 static gonio_i_observation observe(const gonio_readings *readings, size_t index, size_t channel,
-                                   const gonio_i_noise *noise, const gonio_i_transform *transform)
+                                   const gonio_i_noise *noise)
 {
     const gonio_pair pair = gonio_readings_describe(readings).pair[index];
-    const double s = gonio_readings_scale(readings, channel);
     const double read = gonio_readings_value(readings, index, channel);
-    const double value = true_value(pair, channel, read, s, transform);
-    const bool turned = transform != NULL && transform->turn != NULL;
-    return (gonio_i_observation){
-        .at = gonio_half_difference_from_pair(turned ? transform->turn(pair) : pair),
-        .channel = (int)channel,
-        .g = log1p(value / s),
-        .variance = variance_of(value, s, noise),
-        .bound = bound_of(read, noise)};
+    gonio_i_observation o = {.at = gonio_half_difference_from_pair(pair),
+                             .channel = (int)channel,
+                             .bound = bound_of(read, noise),
+                             .reading = index};
+    set_value(&o, read, gonio_readings_scale(readings, channel), noise);
+    return o;
+}
+
+void gonio_i_column_transform(const gonio_readings *readings, const gonio_i_noise *noise,
+                              const gonio_i_transform *transform, gonio_i_column *column)
+{
+    const gonio_readings_view view = gonio_readings_describe(readings);
+    for (size_t i = 0; i < column->count; i++) {
+        gonio_i_observation *o = &column->observation[i];
+        const gonio_pair pair = view.pair[o->reading];
+        const size_t channel = (size_t)o->channel;
+        const double s = gonio_readings_scale(readings, channel);
+        const double read = gonio_readings_value(readings, o->reading, channel);
+        set_value(o, true_value(pair, channel, read, s, transform), s, noise);
+        if (transform->turn != NULL) {
+            o->at = gonio_half_difference_from_pair(transform->turn(pair));
+        }
+    }
 }
 
 static void add_channel(const gonio_readings *readings, size_t channel, const gonio_i_noise *noise,
-                        const gonio_i_transform *transform, gonio_i_column *column)
+                        gonio_i_column *column)
 {
     for (size_t k = 0; k < gonio_readings_describe(readings).count; k++) {
         if (!isnan(gonio_readings_value(readings, k, channel))) {
-            column->observation[column->count++] = observe(readings, k, channel, noise, transform);
+            column->observation[column->count++] = observe(readings, k, channel, noise);
         }
     }
 }
 
 gonio_status gonio_i_columns_create(gonio_context *context, const gonio_basis_view *view,
                                     const gonio_readings *readings, const gonio_i_noise *noise,
-                                    const gonio_i_transform *transform, gonio_i_columns *columns)
+                                    gonio_i_columns *columns)
 {
     const bool joint = view->channels == GONIO_JOINT;
     const size_t channels = gonio_readings_describe(readings).channels;
@@ -84,7 +102,7 @@ gonio_status gonio_i_columns_create(gonio_context *context, const gonio_basis_vi
         status = columns->column[k].observation == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
     }
     for (size_t k = 0; k < channels && status == GONIO_OK; k++) {
-        add_channel(readings, k, noise, transform, &columns->column[joint ? 0 : k]);
+        add_channel(readings, k, noise, &columns->column[joint ? 0 : k]);
     }
     return status;
 }

@@ -28,12 +28,17 @@ typedef struct gonio_i_columns {
     gonio_i_column *column;
 } gonio_i_columns;
 
-/* Makes columns of what was read; a value of NaN was not. transform: NULL for what the readings
- * say. To be freed in any case. Errors: _MEMORY. */
+/* Makes columns of what was read, as the readings say; a value of NaN was not read. To be freed in
+ * any case. Errors: _MEMORY. */
 gonio_status gonio_i_columns_create(gonio_context *context, const gonio_basis_view *view,
                                     const gonio_readings *readings, const gonio_i_noise *noise,
-                                    const gonio_i_transform *transform, gonio_i_columns *columns);
+                                    gonio_i_columns *columns);
 void gonio_i_columns_free(gonio_i_columns *columns);
+
+/* Sets the observations of a column to what the same readings mean by a transform; directions
+ * change only if it turns them. */
+void gonio_i_column_transform(const gonio_readings *readings, const gonio_i_noise *noise,
+                              const gonio_i_transform *transform, gonio_i_column *column);
 
 /* _UNDETERMINED if a column has no reading. path: of the readings, for the message, or NULL. */
 gonio_status gonio_i_columns_check(gonio_context *context, const gonio_i_columns *columns,

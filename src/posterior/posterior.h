@@ -37,6 +37,7 @@ typedef struct gonio_i_observation {
     double variance; /* of noise, in log space, and of what the model leaves open */
     int channel;     /* of the row, if the basis is joint */
     int bound;       /* 0; -1: g is at most this (a reading of zero); 1: at least (saturated) */
+    size_t reading;  /* its number among the readings */
 } gonio_i_observation;
 
 typedef struct gonio_i_column {
@@ -70,11 +71,5 @@ gonio_status gonio_i_posterior_find(gonio_context *context, const gonio_i_prior 
                                     const gonio_i_column *columns, size_t count,
                                     const gonio_i_posterior_options *options,
                                     gonio_i_posterior *posterior);
-
-/* ln of the density of the readings of a column under the prior with a remainder of a given alpha
- * and peak. */
-gonio_status gonio_i_posterior_evidence(gonio_context *context, const gonio_i_prior *prior,
-                                        const gonio_i_column *column, double alpha, double peak,
-                                        double *evidence);
 
 #endif

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "leave_one_out.h"
+#include "crew.h"
 
 /* Remainders that an unknown kind of material may have: smooth ones, and with narrow peaks. */
 static const struct remainder {
@@ -38,7 +38,7 @@ static const double ENOUGH = 40.0;
 /* Fewer directions have too few others to be judged by. */
 enum { FEW = 5 };
 
-/* A direction, in all columns of the probe. */
+/* A direction, in all columns of the subset. */
 typedef struct direction {
     gonio_half_difference at;
     size_t readings;
@@ -49,8 +49,9 @@ typedef struct direction {
 
 typedef struct doubter {
     gonio_context *context;
-    gonio_i_subset probe;
+    const gonio_i_subset *subset;
     gonio_i_fit column[GONIO_I_SUBSET_COLUMNS];
+    double *score[GONIO_I_SUBSET_COLUMNS];  /* [MODELS][n]: scratch */
     size_t *number[GONIO_I_SUBSET_COLUMNS]; /* of each reading's direction */
     size_t directions;
     direction *direction; /* [directions] */
@@ -78,13 +79,13 @@ static size_t number_of(doubter *d, const gonio_half_difference *at)
 static gonio_status number_directions(doubter *d)
 {
     size_t readings = 0;
-    for (size_t c = 0; c < d->probe.count; c++) {
-        readings += d->probe.column[c].count;
+    for (size_t c = 0; c < d->subset->count; c++) {
+        readings += d->subset->column[c].count;
     }
     d->direction = gonio_i_allocate(d->context, readings, sizeof *d->direction);
     bool done = d->direction != NULL;
-    for (size_t c = 0; c < d->probe.count && done; c++) {
-        const gonio_i_column *column = &d->probe.column[c];
+    for (size_t c = 0; c < d->subset->count && done; c++) {
+        const gonio_i_column *column = &d->subset->column[c];
         d->number[c] = gonio_i_allocate(d->context, column->count, sizeof *d->number[c]);
         done = d->number[c] != NULL;
         for (size_t i = 0; i < column->count && done; i++) {
@@ -94,49 +95,52 @@ static gonio_status number_directions(doubter *d)
     return done ? GONIO_OK : GONIO_ERROR_MEMORY;
 }
 
-static gonio_status begin_column(doubter *d, const gonio_i_prior *prior, size_t c)
+static gonio_status begin_column(void *data, gonio_context *context, size_t c)
 {
+    doubter *d = data;
     gonio_i_fit *e = &d->column[c];
     size_t outlying = 0;
-    gonio_status status = gonio_i_fit_begin(d->context, prior, &d->probe.column[c], e);
+    gonio_status status =
+        gonio_i_fit_begin(context, d->subset->sites[c], false, &d->subset->column[c], e);
+    if (status == GONIO_OK) {
+        e->context = d->context; /* it outlives this call */
+        d->score[c] = gonio_i_allocate(context, MODELS * e->n, sizeof *d->score[c]);
+        status = d->score[c] == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    }
     if (status == GONIO_OK) {
         status = gonio_i_fit_solve(e, &GONIO_I_SETTLING);
     }
     return status == GONIO_OK ? gonio_i_fit_settle(e, false, &outlying) : status;
 }
 
-static gonio_status begin(doubter *d, const gonio_i_prior *prior, const gonio_i_column *columns,
-                          size_t count)
+static gonio_status begin(doubter *d)
 {
-    gonio_status status = gonio_i_subset_begin(d->context, columns, count, &d->probe);
-    if (status == GONIO_OK) {
-        status = number_directions(d);
-    }
-    for (size_t c = 0; c < d->probe.count && status == GONIO_OK; c++) {
-        status = begin_column(d, prior, c);
-    }
-    return status;
+    gonio_i_steps steps = {.task = NULL};
+    const gonio_status status = number_directions(d);
+    return status == GONIO_OK
+               ? gonio_i_crew_work(d->context, &steps, d->subset->count, begin_column, d)
+               : status;
 }
 
 static void end(doubter *d)
 {
-    for (size_t c = 0; c < d->probe.count; c++) {
+    for (size_t c = 0; c < d->subset->count; c++) {
         gonio_i_fit_end(&d->column[c]);
+        free(d->score[c]);
         free(d->number[c]);
     }
     free(d->direction);
-    gonio_i_subset_end(&d->probe);
 }
 
 /* Takes a direction out, or back in. */
 static void leave_out(doubter *d, size_t number, bool out)
 {
     d->direction[number].wrong = out;
-    for (size_t c = 0; c < d->probe.count; c++) {
+    for (size_t c = 0; c < d->subset->count; c++) {
         gonio_i_fit *e = &d->column[c];
         for (size_t i = 0; i < e->n; i++) {
             if (d->number[c][i] == number) {
-                e->variance[i] = out ? HARDLY_A_SAY : d->probe.column[c].observation[i].variance;
+                e->variance[i] = out ? HARDLY_A_SAY : d->subset->column[c].observation[i].variance;
             }
         }
     }
@@ -144,22 +148,46 @@ static void leave_out(doubter *d, size_t number, bool out)
 
 static gonio_i_model model_of(const doubter *d, size_t column, size_t k)
 {
-    return (gonio_i_model){gonio_i_kernel_width(d->probe.readings[column]), REMAINDERS[k].alpha,
+    return (gonio_i_model){gonio_i_kernel_width(d->subset->readings[column]), REMAINDERS[k].alpha,
                            REMAINDERS[k].peak};
+}
+
+static gonio_status score_column(void *data, gonio_context *context, size_t c)
+{
+    (void)context;
+    doubter *d = data;
+    gonio_i_fit *e = &d->column[c];
+    gonio_status status = GONIO_OK;
+    for (size_t k = 0; k < MODELS && status == GONIO_OK; k++) {
+        const gonio_i_model model = model_of(d, c, k);
+        status = gonio_i_leave_one_out_score(e, &model, d->score[c] + k * e->n);
+    }
+    return status;
+}
+
+/* How well the readings explain each other by model k: reading by reading, in order. */
+static double score_of(const doubter *d, size_t k)
+{
+    double sum = -GONIO_I_FOR_REMAINDERS * log(REMAINDERS[k].alpha / REMAINDERS[0].alpha);
+    for (size_t c = 0; c < d->subset->count; c++) {
+        const size_t n = d->column[c].n;
+        for (size_t i = 0; i < n; i++) {
+            sum += d->score[c][k * n + i];
+        }
+    }
+    return sum;
 }
 
 /* How well the readings explain each other, with the remainder that they like best: that of model
  * `best`. */
 static gonio_status score(doubter *d, double *value, size_t *best)
 {
-    gonio_status status = GONIO_OK;
+    gonio_i_steps steps = {.task = NULL};
+    const gonio_status status =
+        gonio_i_crew_work(d->context, &steps, d->subset->count, score_column, d);
     *value = -INFINITY;
     for (size_t k = 0; k < MODELS && status == GONIO_OK; k++) {
-        double sum = -GONIO_I_FOR_REMAINDERS * log(REMAINDERS[k].alpha / REMAINDERS[0].alpha);
-        for (size_t c = 0; c < d->probe.count && status == GONIO_OK; c++) {
-            const gonio_i_model model = model_of(d, c, k);
-            status = gonio_i_leave_one_out_score(&d->column[c], &model, &sum);
-        }
+        const double sum = score_of(d, k);
         *best = sum > *value ? k : *best;
         *value = fmax(*value, sum);
     }
@@ -189,7 +217,7 @@ static gonio_status find_off(doubter *d, size_t k)
         d->direction[j].off = 0.0;
         d->direction[j].gap = 0.0;
     }
-    for (size_t c = 0; c < d->probe.count && status == GONIO_OK; c++) {
+    for (size_t c = 0; c < d->subset->count && status == GONIO_OK; c++) {
         const gonio_i_model model = model_of(d, c, k);
         status = add_off(d, c, &model);
     }
@@ -294,12 +322,12 @@ static size_t widen(const doubter *d, gonio_i_column *column)
     return count;
 }
 
-gonio_status gonio_i_wrong_directions_find(gonio_context *context, const gonio_i_prior *prior,
+gonio_status gonio_i_wrong_directions_find(gonio_context *context, const gonio_i_subset *subset,
                                            gonio_i_column *columns, size_t count, size_t *wrong)
 {
-    doubter d = {.context = context};
+    doubter d = {.context = context, .subset = subset};
     size_t found = 0;
-    gonio_status status = begin(&d, prior, columns, count);
+    gonio_status status = begin(&d);
     if (status == GONIO_OK && d.directions >= FEW) {
         status = find_wrong(&d, &found);
     }

@@ -10,11 +10,12 @@
 #ifndef GONIO_WRONG_DIRECTIONS_H
 #define GONIO_WRONG_DIRECTIONS_H
 
-#include "fit.h"
+#include "leave_one_out.h"
 
-/* Gives the readings of such directions a variance that leaves them hardly a say, in all columns.
- * wrong: how many readings. Errors: _MEMORY, _NUMERICAL, _CANCELLED. */
-gonio_status gonio_i_wrong_directions_find(gonio_context *context, const gonio_i_prior *prior,
+/* Gives the readings of such directions, found on a subset of the columns, a variance that leaves
+ * them hardly a say, in all columns. wrong: how many readings. Errors: _MEMORY, _NUMERICAL,
+ * _CANCELLED. */
+gonio_status gonio_i_wrong_directions_find(gonio_context *context, const gonio_i_subset *subset,
                                            gonio_i_column *columns, size_t count, size_t *wrong);
 
 #endif

@@ -138,7 +138,7 @@ gonio_status gonio_i_estimate_readings(gonio_context *context, const gonio_basis
     gonio_i_columns columns;
     gonio_i_prior *prior = NULL;
     gonio_reconstruction *made = NULL;
-    status = gonio_i_columns_create(context, &view, readings, &noise, NULL, &columns);
+    status = gonio_i_columns_create(context, &view, readings, &noise, &columns);
     if (status == GONIO_OK) {
         status = gonio_i_columns_check(context, &columns, gonio_readings_describe(readings).path);
     }

@@ -55,8 +55,7 @@ static gonio_status find_posterior(next *n, const gonio_reconstruct_options *opt
     double *dark = NULL;
     gonio_status status = gonio_i_estimate_check(n->context, n->basis, n->readings, options);
     if (status == GONIO_OK) {
-        status =
-            gonio_i_columns_create(n->context, &n->view, n->readings, &noise, NULL, &n->columns);
+        status = gonio_i_columns_create(n->context, &n->view, n->readings, &noise, &n->columns);
     }
     if (status == GONIO_OK) {
         status = gonio_i_columns_check(n->context, &n->columns, n->readings->path);

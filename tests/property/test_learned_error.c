@@ -111,15 +111,21 @@ static void read_values(const double *g, gonio_i_observation *o)
 static double expected_of(const gonio_i_prior *with, gonio_i_observation *o, size_t count)
 {
     const gonio_i_column column = {count, o};
-    gonio_i_learned_error *expectation = NULL;
+    gonio_i_learned_error *learned = NULL;
+    gonio_i_sites *sites = NULL;
+    gonio_i_folds *folds = NULL;
     gonio_i_fit gaussian;
     double square = 0.0;
-    assert_int_equal(gonio_i_learned_error_create(context, with, &expectation), GONIO_OK);
-    assert_non_null(expectation);
-    assert_int_equal(gonio_i_fit_begin(context, with, &column, &gaussian), GONIO_OK);
-    assert_int_equal(gonio_i_learned_error_find(expectation, &gaussian, &square), GONIO_OK);
+    assert_int_equal(gonio_i_learned_error_create(context, with, &learned), GONIO_OK);
+    assert_non_null(learned);
+    assert_int_equal(gonio_i_sites_create(context, with, &column, &sites), GONIO_OK);
+    assert_int_equal(gonio_i_folds_create(context, learned, sites, &folds), GONIO_OK);
+    assert_int_equal(gonio_i_fit_begin(context, sites, false, &column, &gaussian), GONIO_OK);
+    assert_int_equal(gonio_i_learned_error_find(folds, &gaussian, &square), GONIO_OK);
     gonio_i_fit_end(&gaussian);
-    gonio_i_learned_error_free(&expectation);
+    gonio_i_folds_free(&folds);
+    gonio_i_sites_free(&sites);
+    gonio_i_learned_error_free(&learned);
     return square;
 }
 
@@ -528,12 +534,12 @@ static void test_what_comes_next_is_no_worse(void **state)
 static void test_who_cannot_tell(void **state)
 {
     (void)state;
-    gonio_i_learned_error *expectation = NULL;
+    gonio_i_learned_error *learned = NULL;
     gonio_basis *few = learn(9, 0);
     gonio_i_prior *other = NULL;
     assert_int_equal(gonio_i_prior_create(context, few, &other), GONIO_OK);
-    assert_int_equal(gonio_i_learned_error_create(context, other, &expectation), GONIO_OK);
-    assert_null(expectation);
+    assert_int_equal(gonio_i_learned_error_create(context, other, &learned), GONIO_OK);
+    assert_null(learned);
     gonio_i_prior_free(&other);
     gonio_basis_free(&few);
     gonio_basis *enough = learn(10, 0);
@@ -551,8 +557,8 @@ static void test_who_cannot_tell(void **state)
     /* Mixtures of a file that does not say what they are made of. */
     gonio_i_prior orphans = *prior;
     orphans.view.parents = NULL;
-    assert_int_equal(gonio_i_learned_error_create(context, &orphans, &expectation), GONIO_OK);
-    assert_null(expectation);
+    assert_int_equal(gonio_i_learned_error_create(context, &orphans, &learned), GONIO_OK);
+    assert_null(learned);
 }
 
 int main(void)

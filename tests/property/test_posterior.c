@@ -302,19 +302,35 @@ static void test_merged_readings(void **state)
     free(d.z);
 }
 
+/* A fit over sites of its own. */
+static gonio_i_fit begin_fit(const gonio_i_prior *prior, const gonio_i_column *column,
+                             gonio_i_sites **sites)
+{
+    gonio_i_fit e;
+    assert_int_equal(gonio_i_sites_create(context, prior, column, sites), GONIO_OK);
+    assert_int_equal(gonio_i_fit_begin(context, *sites, false, column, &e), GONIO_OK);
+    return e;
+}
+
+static void end_fit(gonio_i_fit *e, gonio_i_sites **sites)
+{
+    gonio_i_fit_end(e);
+    gonio_i_sites_free(sites);
+}
+
 static void test_leaving_one_out(void **state)
 {
     (void)state;
     enum { N = 15 };
     drawn d = draw(4, 0.05);
     const gonio_i_column column = {N, d.reading};
-    gonio_i_fit e;
+    gonio_i_sites *sites = NULL;
+    gonio_i_fit e = begin_fit(gaussian, &column, &sites);
     double left[N];
     double variance[N];
-    assert_int_equal(gonio_i_fit_begin(context, gaussian, &column, &e), GONIO_OK);
     assert_int_equal(gonio_i_fit_solve(&e, &(gonio_i_model){1.0, ALPHA, PEAK}), GONIO_OK);
     assert_int_equal(gonio_i_fit_leave_one_out(&e, left, variance), GONIO_OK);
-    gonio_i_fit_end(&e);
+    end_fit(&e, &sites);
     for (size_t i = 0; i < N; i++) {
         gonio_i_observation others[N - 1];
         double s[(N - 1) * (N - 1)];
@@ -339,34 +355,175 @@ static void test_leaving_one_out_of_a_mixture(void **state)
     const gonio_i_model model = {GONIO_I_KERNEL_WIDTH, ALPHA, PEAK};
     drawn d = draw(5, 0.1);
     const gonio_i_column column = {N, d.reading};
-    gonio_i_fit all;
+    gonio_i_sites *sites = NULL;
+    gonio_i_fit all = begin_fit(mixture, &column, &sites);
     double left[N];
     double variance[N];
-    assert_int_equal(gonio_i_fit_begin(context, mixture, &column, &all), GONIO_OK);
     assert_int_equal(gonio_i_fit_solve(&all, &model), GONIO_OK);
     assert_int_equal(gonio_i_fit_leave_one_out(&all, left, variance), GONIO_OK);
     for (size_t i = 0; i < N; i++) {
         gonio_i_observation other[N - 1];
         const gonio_i_column others = {N - 1, other};
-        gonio_i_fit e;
+        gonio_i_sites *fewer = NULL;
         for (size_t j = 0; j < N - 1; j++) {
             other[j] = d.reading[j < i ? j : j + 1];
         }
-        assert_int_equal(gonio_i_fit_begin(context, mixture, &others, &e), GONIO_OK);
+        gonio_i_fit e = begin_fit(mixture, &others, &fewer);
         assert_int_equal(gonio_i_fit_solve(&e, &model), GONIO_OK);
         double predicted = 0.0;
         for (size_t k = 0; k < e.components; k++) {
-            predicted += all.f[i * e.components + k] * e.centre[k];
+            predicted += sites->f[i * e.components + k] * e.centre[k];
         }
         for (size_t j = 0; j < N - 1; j++) {
             const size_t at = i * N + (j < i ? j : j + 1);
-            const double k = all.smooth[at] + PEAK * PEAK * all.peaked[at];
-            predicted += (model.h * model.h * all.gram[at] + ALPHA * ALPHA * k) * e.solved[j];
+            const double k = sites->smooth[at] + PEAK * PEAK * sites->peaked[at];
+            predicted += (model.h * model.h * sites->gram[at] + ALPHA * ALPHA * k) * e.solved[j];
         }
         assert_close(left[i], all.y[i] - predicted, 1e-7);
-        gonio_i_fit_end(&e);
+        end_fit(&e, &fewer);
     }
-    gonio_i_fit_end(&all);
+    end_fit(&all, &sites);
+    free(d.z);
+}
+
+/* ---- sites ---- */
+
+enum { SITES = 9, SHARING = 7 };
+
+/* The readings of a material as columns of other values; the last one lacks a reading. */
+typedef struct shared {
+    gonio_i_observation reading[SHARING][SITES];
+    gonio_i_column column[SHARING];
+} shared;
+
+static void share(const drawn *d, shared *s)
+{
+    for (size_t c = 0; c < SHARING; c++) {
+        s->column[c] = (gonio_i_column){c + 1 < SHARING ? SITES : SITES - 1, s->reading[c]};
+        for (size_t i = 0; i < SITES; i++) {
+            s->reading[c][i] = d->reading[i];
+            s->reading[c][i].g *= 1.0 + 0.1 * (double)c;
+            s->reading[c][i].variance *= 1.0 + 0.3 * (double)c;
+            s->reading[c][i].channel = (int)c;
+        }
+    }
+    s->reading[2][3].bound = 1;
+    s->reading[3][4].bound = -1;
+}
+
+/* Columns that were read at the same directions share their sites, whatever was read. */
+static void test_sites_are_shared(void **state)
+{
+    (void)state;
+    drawn d = draw(7, 0.1);
+    shared s;
+    gonio_i_sites *sites[SHARING];
+    size_t group[SHARING];
+    share(&d, &s);
+    s.reading[1][5].at.phi_d += 1e-12; /* not the same direction */
+    assert_int_equal(gonio_i_sites_share(context, mixture, s.column, SHARING, sites), GONIO_OK);
+    assert_int_equal(gonio_i_sites_group(mixture, s.column, SHARING, group), 3);
+    for (size_t c = 0; c < SHARING; c++) {
+        const bool alone = c == 1 || c == SHARING - 1;
+        assert_int_equal(group[c], c == 1 ? 1 : alone ? 2 : 0);
+        assert_true((sites[c] == sites[0]) == !alone);
+        assert_int_equal(sites[c]->n, s.column[c].count);
+        for (size_t j = 0; j < c; j++) {
+            assert_true((sites[c] == sites[j]) == (group[c] == group[j]));
+        }
+    }
+    gonio_i_sites_release(sites, SHARING);
+    for (size_t c = 0; c < SHARING; c++) {
+        assert_null(sites[c]);
+    }
+    free(d.z);
+}
+
+static void assert_same_fit(const gonio_i_fit *a, const gonio_i_fit *b)
+{
+    assert_int_equal(a->n, b->n);
+    assert_memory_equal(a->y, b->y, a->n * sizeof *a->y);
+    assert_memory_equal(a->variance, b->variance, a->n * sizeof *a->variance);
+    assert_memory_equal(a->left_out, b->left_out, a->n * sizeof *a->left_out);
+    assert_memory_equal(a->lower, b->lower, a->n * a->n * sizeof *a->lower);
+    assert_memory_equal(a->weight, b->weight, a->samples * sizeof *a->weight);
+    assert_memory_equal(a->centre, b->centre, a->components * sizeof *a->centre);
+    assert_memory_equal(a->solved, b->solved, a->n * sizeof *a->solved);
+    assert_memory_equal(&a->evidence, &b->evidence, sizeof a->evidence);
+}
+
+/* A fit over shared sites, in which other values were before, is bit for bit one over sites of its
+ * own; and it leaves the sites as they were. */
+static void test_fits_of_shared_sites(void **state)
+{
+    (void)state;
+    const gonio_i_model models[] = {{GONIO_I_KERNEL_WIDTH, ALPHA, PEAK}, {1.0, 0.5, 0.0}};
+    drawn d = draw(7, 0.1);
+    shared s;
+    share(&d, &s);
+    gonio_i_sites *sites = NULL;
+    gonio_i_sites *untouched = NULL;
+    gonio_i_fit fit = begin_fit(mixture, &s.column[0], &sites);
+    assert_int_equal(gonio_i_sites_create(context, mixture, &s.column[0], &untouched), GONIO_OK);
+    for (size_t c = 0; c + 1 < SHARING; c++) {
+        gonio_i_sites *own = NULL;
+        gonio_i_fit alone = begin_fit(mixture, &s.column[c], &own);
+        gonio_i_fit_read(&fit, &s.column[c]);
+        for (int m = 0; m < 2; m++) {
+            size_t outlying[2];
+            assert_int_equal(gonio_i_fit_solve(&fit, &models[m]), GONIO_OK);
+            assert_int_equal(gonio_i_fit_solve(&alone, &models[m]), GONIO_OK);
+            assert_same_fit(&fit, &alone);
+            assert_int_equal(gonio_i_fit_settle(&fit, true, &outlying[0]), GONIO_OK);
+            assert_int_equal(gonio_i_fit_settle(&alone, true, &outlying[1]), GONIO_OK);
+            assert_same_fit(&fit, &alone);
+            assert_int_equal(outlying[0], outlying[1]);
+        }
+        end_fit(&alone, &own);
+    }
+    assert_memory_equal(sites->f, untouched->f, SITES * sites->components * sizeof *sites->f);
+    assert_memory_equal(sites->seen, untouched->seen,
+                        SITES * mixture->samples * sizeof *sites->seen);
+    assert_memory_equal(sites->gram, untouched->gram, SITES * SITES * sizeof *sites->gram);
+    assert_memory_equal(sites->smooth, untouched->smooth, SITES * SITES * sizeof *sites->smooth);
+    assert_memory_equal(sites->peaked, untouched->peaked, SITES * SITES * sizeof *sites->peaked);
+    gonio_i_sites_free(&untouched);
+    end_fit(&fit, &sites);
+    free(d.z);
+}
+
+/* Columns found together, some over the same sites, are bit for bit those found one by one. */
+static void test_columns_together(void **state)
+{
+    (void)state;
+    const size_t rows = mixture->view.rows;
+    const size_t components = mixture->components;
+    const gonio_i_posterior_options options = {.smoothness = ALPHA, .deviation = true};
+    drawn d = draw(8, 0.1);
+    shared s;
+    share(&d, &s);
+    gonio_i_posterior all = {.coefficients = calloc(SHARING * components, sizeof(double)),
+                             .field = calloc(SHARING * rows, sizeof(double)),
+                             .deviation = calloc(SHARING * rows, sizeof(double))};
+    gonio_i_posterior one = {.coefficients = calloc(components, sizeof(double)),
+                             .field = calloc(rows, sizeof(double)),
+                             .deviation = calloc(rows, sizeof(double))};
+    assert_int_equal(gonio_i_posterior_find(context, mixture, s.column, SHARING, &options, &all),
+                     GONIO_OK);
+    for (size_t c = 0; c < SHARING; c++) {
+        assert_int_equal(gonio_i_posterior_find(context, mixture, &s.column[c], 1, &options, &one),
+                         GONIO_OK);
+        assert_memory_equal(one.field, all.field + c * rows, rows * sizeof(double));
+        assert_memory_equal(one.deviation, all.deviation + c * rows, rows * sizeof(double));
+        assert_memory_equal(one.coefficients, all.coefficients + c * components,
+                            components * sizeof(double));
+    }
+    gonio_i_posterior *both[] = {&all, &one};
+    for (int k = 0; k < 2; k++) {
+        free(both[k]->coefficients);
+        free(both[k]->field);
+        free(both[k]->deviation);
+    }
     free(d.z);
 }
 
@@ -401,9 +558,11 @@ static void test_the_evidence(void **state)
         }
         const double expected = log(density) - 0.5 * (logarithm + N * log(2.0 * M_PI));
         double evidence = 0.0;
-        assert_int_equal(
-            gonio_i_posterior_evidence(context, priors[p], &column, ALPHA, 0.0, &evidence),
-            GONIO_OK);
+        gonio_i_sites *sites = NULL;
+        assert_int_equal(gonio_i_sites_create(context, priors[p], &column, &sites), GONIO_OK);
+        assert_int_equal(gonio_i_fit_evidence(context, sites, &column, ALPHA, 0.0, &evidence),
+                         GONIO_OK);
+        gonio_i_sites_free(&sites);
         assert_close(evidence, expected, 1e-6 * fabs(expected));
     }
     free(d.z);
@@ -527,13 +686,23 @@ static void draw_columns(uint64_t seed, drawn_columns *d)
     free(first.z);
 }
 
+/* How many readings are of wrong directions. */
+static size_t find_wrong(gonio_i_column *columns, size_t count)
+{
+    gonio_i_subset subset;
+    size_t wrong = 0;
+    assert_int_equal(gonio_i_subset_begin(context, mixture, columns, count, &subset), GONIO_OK);
+    assert_int_equal(gonio_i_wrong_directions_find(context, &subset, columns, count, &wrong),
+                     GONIO_OK);
+    gonio_i_subset_end(&subset);
+    return wrong;
+}
+
 /* Directions that are doubted; of all columns alike. */
 static size_t doubted(drawn_columns *d, bool *is)
 {
-    size_t wrong = 0;
+    const size_t wrong = find_wrong(d->column, COLUMNS);
     size_t directions = 0;
-    assert_int_equal(gonio_i_wrong_directions_find(context, mixture, d->column, COLUMNS, &wrong),
-                     GONIO_OK);
     for (size_t i = 0; i < WRONG; i++) {
         is[i] = d->reading[0][i].variance > 1.0;
         directions += is[i];
@@ -581,15 +750,12 @@ static void test_directions_that_were_read_wrongly(void **state)
     /* Nobody else to say so. */
     for (size_t n = 1; n < 5; n++) {
         drawn_columns d;
-        size_t wrong = 0;
         draw_columns(40, &d);
         mistake(&d, 0, 3.0 * TENFOLD);
         for (size_t c = 0; c < COLUMNS; c++) {
             d.column[c].count = n;
         }
-        assert_int_equal(gonio_i_wrong_directions_find(context, mixture, d.column, COLUMNS, &wrong),
-                         GONIO_OK);
-        assert_int_equal(wrong, 0);
+        assert_int_equal(find_wrong(d.column, COLUMNS), 0);
     }
     print_message("%zu of 16 found where there are two\n", twos);
     assert_true(twos >= 12);
@@ -607,9 +773,7 @@ static void test_a_wrong_direction_hardly_counts(void **state)
         const found before = find(mixture, d.reading[0], WRONG, -1.0);
         mistake(&d, i, 2.0 * TENFOLD);
         const found with = find(mixture, d.reading[0], WRONG, -1.0);
-        size_t wrong = 0;
-        assert_int_equal(gonio_i_wrong_directions_find(context, mixture, d.column, 1, &wrong),
-                         GONIO_OK);
+        const size_t wrong = find_wrong(d.column, 1);
         alone += wrong == 1 && d.reading[0][i].variance > 1.0;
         d.reading[0][i] = d.reading[0][WRONG - 1];
         const found without = find(mixture, d.reading[0], WRONG - 1, -1.0);
@@ -639,7 +803,10 @@ static void test_the_mean_over_the_models(void **state)
             d.reading[taken++] = d.reading[i];
         }
     }
-    assert_int_equal(gonio_i_models_weigh(context, gaussian, &column, 1, &models), GONIO_OK);
+    gonio_i_subset subset;
+    assert_int_equal(gonio_i_subset_begin(context, gaussian, &column, 1, &subset), GONIO_OK);
+    assert_int_equal(gonio_i_models_weigh(context, gaussian, &subset, &models), GONIO_OK);
+    gonio_i_subset_end(&subset);
     assert_in_range(models.count, 2, GONIO_I_MOST_MODELS);
     found mixed = find(gaussian, d.reading, N, -1.0);
     found mean = {.field = calloc(gaussian->view.rows, sizeof *mean.field)};
@@ -951,6 +1118,9 @@ int main(void)
         cmocka_unit_test(test_merged_readings),
         cmocka_unit_test(test_leaving_one_out),
         cmocka_unit_test(test_leaving_one_out_of_a_mixture),
+        cmocka_unit_test(test_sites_are_shared),
+        cmocka_unit_test(test_fits_of_shared_sites),
+        cmocka_unit_test(test_columns_together),
         cmocka_unit_test(test_the_evidence),
         cmocka_unit_test(test_deviations_shrink),
         cmocka_unit_test(test_bounds),

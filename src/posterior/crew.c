@@ -1,0 +1,44 @@
+/* Work done side by side: see crew.h. */
+#include "crew.h"
+
+#include <stdlib.h>
+
+static gonio_status step_on(gonio_context *context, gonio_i_steps *steps)
+{
+    size_t done;
+#pragma omp atomic capture
+    done = ++steps->done;
+    if (steps->task == NULL) {
+        return GONIO_OK;
+    }
+    return gonio_i_progress(context, steps->task, (double)done / (double)steps->all);
+}
+
+gonio_status gonio_i_crew_work(gonio_context *context, gonio_i_steps *steps, size_t count,
+                               gonio_i_work work, void *data)
+{
+    const size_t threads = (size_t)gonio_context_threads(context);
+    gonio_context *team = gonio_i_team_begin(context);
+    gonio_status result = GONIO_OK;
+    size_t failed = count;
+    /* Fewer pieces than threads are done one by one, each by all threads. */
+#pragma omp parallel for schedule(dynamic, 1) if (count >= threads) num_threads((int)threads)
+    for (size_t k = 0; k < count; k++) {
+        size_t before;
+#pragma omp atomic read
+        before = failed;
+        if (before < k) {
+            continue;
+        }
+        gonio_status status = work(data, team, k);
+        status = status == GONIO_OK ? step_on(team, steps) : status;
+#pragma omp critical(gonio_crew)
+        if (status != GONIO_OK && k < failed) {
+#pragma omp atomic write
+            failed = k;
+            result = status;
+        }
+    }
+    gonio_i_team_end(team, context);
+    return result;
+}

@@ -1,0 +1,22 @@
+/* Independent pieces of work, one a column, done side by side. */
+#ifndef GONIO_CREW_H
+#define GONIO_CREW_H
+
+#include "../core/core.h"
+
+/* Progress over several calls. */
+typedef struct gonio_i_steps {
+    const char *task; /* NULL: nothing is told */
+    size_t done;
+    size_t all;
+} gonio_i_steps;
+
+/* Calls work(data, context, k) for every k < count, by as many threads as the context has; the
+ * context that work gets is a team's (core.h). After a failure no more is begun; the status is that
+ * of the first piece that failed. steps: counts each piece and tells the progress. Errors: those of
+ * the work; _CANCELLED. */
+typedef gonio_status (*gonio_i_work)(void *data, gonio_context *context, size_t k);
+gonio_status gonio_i_crew_work(gonio_context *context, gonio_i_steps *steps, size_t count,
+                               gonio_i_work work, void *data);
+
+#endif
