@@ -11,6 +11,12 @@
 #include <cmocka.h>
 #include <gonio/basis.h>
 
+/* A test's main is one function of the program gonio-tests: see main.c. */
+#ifdef GONIO_TEST
+int GONIO_TEST(void);
+#define main GONIO_TEST
+#endif
+
 /* The folder with measured data and reference numbers, from $GONIO_SHARED; NULL if it is not there.
  */
 const char *support_shared(void);

@@ -1,6 +1,5 @@
 /* Figures: data and scripts that are complete, safe against hostile names, the same every time, and
- * drawn where there is gnuplot. With a folder as its argument this program leaves the samples there
- * for people to judge: unit-figure FOLDER. */
+ * drawn where there is gnuplot. KEPT=FOLDER leaves the samples there for people to judge. */
 #include "../support.h"
 
 #include <math.h>
@@ -532,9 +531,9 @@ static void test_what_cannot_be_shown(void **state)
 
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
 
-int main(int argc, char **argv)
+int main(void)
 {
-    kept_folder = argc > 1 ? argv[1] : NULL;
+    kept_folder = getenv("KEPT");
     const struct CMUnitTest tests[] = {
         TEST(test_samples),
         TEST(test_a_script_draws_again_by_hand),

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs gonio into a scratch folder and builds a small program against it, shared and static, by
-# pkg-config and by CMake: test_package.sh BUILD SOURCE
+# pkg-config and by CMake: test_install.sh BUILD SOURCE
 set -euo pipefail
 build=$1
 source=$2
