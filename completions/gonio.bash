@@ -2,34 +2,28 @@
 # File names are left to bash. Installed as bash-completion/completions/gonio; to try it:
 #   . completions/gonio.bash
 
-_gonio_options()
+# The program lists its commands and their options, so that none is missing here.
+_gonio_commands()
 {
-    local common="--threads --quiet --help -q -h"
-    case $1 in
-        info)        echo "--json $common" ;;
-        convert)     echo "$common" ;;
-        learn)       echo "--output --components --grid --channels --mixtures --seed --mapping --no-mean --without" \
-                          "--json -o -K $common" ;;
-        plan)        echo "--output --number --target-error --candidates --metric --components --method --start" \
-                          "--restarts --seed --phi-d --history --json -o -n -K $common" ;;
-        next)        echo "--output --number --target-error --candidates --metric --noise --floor --saturation --no-checks" \
-                          "--json -o -n $common" ;;
-        measure)     echo "--output --noise --floor --outliers --seed -o $common" ;;
-        reconstruct) echo "--output --components --method --eta --noise --floor --saturation --deviation --predict-at --no-checks" \
-                          "--all-channels --average-repeats --negative-to-zero --other-basis --json -o -K $common" ;;
-        render)      echo "--output --mesh --environment --turn --show-environment --repair --light --light-at" \
-                          "--view --fov --size --samples --seed --key --compare --columns --labels" \
-                          "--differences -o -m -e $common" ;;
-        compare)     echo "--verbose --render --leave-out --json -v $common" ;;
-        reproduce)   echo "--output --quick --only --splits --seed --skip-bad -o $common" ;;
-        report)      echo "--output --readings --deviation -o $common" ;;
-        demo)        echo "--output -o $common" ;;
-    esac
+    "${COMP_WORDS[0]}" --help 2>/dev/null | sed -n 's/^  \([a-z]*\) .*/\1/p'
+}
+
+# Lines "-n --number N": the names of an option and, if it takes a value, what the help calls that.
+_gonio_list_options()
+{
+    "${COMP_WORDS[0]}" "$1" --list-options 2>/dev/null
+}
+
+# What the help calls the value of an option of a command; nothing if it takes none.
+_gonio_value_name()
+{
+    _gonio_list_options "$2" | sed -n "s/^\(.* \)*$1\( -[^ ]*\)* \([^- ].*\)\$/\3/p"
 }
 
 # Words for the value of an option of a command; fails if there is nothing to say (a file, or no option).
 _gonio_values()
 {
+    [[ $1 == -* ]] || return 1
     case $1 in
         --grid)     echo "sectored bivariate full" ;;
         --channels) echo "joint separate" ;;
@@ -41,10 +35,11 @@ _gonio_values()
         --environment|-e) echo "studio sky furnace" ;;
         --light)    echo "directional point" ;;
         --start)    echo "random qr volume" ;;
-        --components|--number|--restarts|--seed|--phi-d|--eta|--noise|--floor|--threads|-K|-n|\
-        --mixtures|--target-error|--outliers|--saturation|\
-        --turn|--without|--light-at|--view|--fov|--size|--samples|--key|--columns|--labels) echo "" ;;
-        *)          return 1 ;;
+        *)
+            case $(_gonio_value_name "$1" "$2") in
+                ''|FILE|DIR|OUT|BASIS|PLAN|READINGS|PAGE) return 1 ;;
+                *) echo "" ;; # numbers, names and texts
+            esac ;;
     esac
 }
 
@@ -60,8 +55,7 @@ _gonio()
     COMPREPLY=()
 
     if [[ $COMP_CWORD -eq 1 ]]; then
-        mapfile -t COMPREPLY < <(compgen -W "info convert learn plan next measure reconstruct compare \
-                                             report render reproduce demo help --help --version" -- "$current")
+        mapfile -t COMPREPLY < <(compgen -W "$(_gonio_commands) help --help --version" -- "$current")
         return
     fi
 
@@ -82,7 +76,7 @@ _gonio()
         mapfile -t COMPREPLY < <(compgen -W "$values" -- "$current")
         compopt +o default +o bashdefault 2>/dev/null
     elif [[ $current == -* ]]; then
-        mapfile -t COMPREPLY < <(compgen -W "$(_gonio_options "$command")" -- "$current")
+        mapfile -t COMPREPLY < <(compgen -W "$(_gonio_list_options "$command" | grep -oE -- '(^| )--?[a-zA-Z][a-z-]*')" -- "$current")
     elif [[ $current == atlas:* ]]; then
         mapfile -t COMPREPLY < <(compgen -W "$(_gonio_atlas)" -- "$current")
     elif [[ -n $current && atlas: == "$current"* && $previous != -o && $previous != --output ]]; then

@@ -9,7 +9,6 @@
 typedef struct options {
     const char *leave_out;
     int verbose;
-    int json;
     int render;
 } options;
 
@@ -79,7 +78,7 @@ static gonio_status compare_one(tool *t, const gonio_material *reference,
         status = gonio_reference_compare(t->context, seen, other, &error);
     }
     gonio_material_free(&other);
-    if (status == GONIO_OK && o->json) {
+    if (status == GONIO_OK && tool_json) {
         json_array_append_new(results, comparison_json(path, &comparison, rendered));
     } else if (status == GONIO_OK) {
         print_comparison(path, &comparison, rendered, o);
@@ -110,7 +109,7 @@ static gonio_status read_like(tool *t, const char *reference, const char *path,
 
 static gonio_status compare_readings(tool *t, const char *reference_path,
                                      const gonio_readings *reference, const char *path,
-                                     const bool *left_out, const options *o, json_t *results)
+                                     const bool *left_out, json_t *results)
 {
     gonio_readings *other = NULL;
     gonio_error error;
@@ -120,7 +119,7 @@ static gonio_status compare_readings(tool *t, const char *reference_path,
         status = gonio_compare_readings(t->context, reference, other, left_out, &error, &compared);
     }
     gonio_readings_free(&other);
-    if (status == GONIO_OK && o->json) {
+    if (status == GONIO_OK && tool_json) {
         json_array_append_new(results, json_pack("{s:s, s:I, s:o}", "file", path, "readings",
                                                  (json_int_t)compared, "all", error_json(&error)));
     } else if (status == GONIO_OK) {
@@ -158,7 +157,7 @@ static gonio_status compare_all_readings(tool *t, const options *o, const char *
         status = find_left_out(t, reference, o->leave_out, &left_out);
     }
     for (size_t k = 1; k < count && status == GONIO_OK; k++) {
-        status = compare_readings(t, paths[0], reference, paths[k], left_out, o, results);
+        status = compare_readings(t, paths[0], reference, paths[k], left_out, results);
     }
     free(left_out);
     gonio_readings_free(&reference);
@@ -184,31 +183,46 @@ static gonio_status compare_all_tables(tool *t, const options *o, const char **p
     return status;
 }
 
-static int run(tool *t, const options *o)
+static bool check(const tool *t, const options *o, const char **arguments, size_t count,
+                  bool readings)
 {
-    size_t count = 0;
-    const char **arguments = tool_arguments(t, &count);
     if (count < 2) {
-        return tool_usage_error(t, "REFERENCE and at least one OTHER are needed");
+        return tool_refuse(t, "REFERENCE and at least one OTHER are needed");
     }
-    const bool readings = tool_is_readings(arguments[0]);
     if (o->leave_out != NULL && !readings) {
-        return tool_usage_error(t, "--leave-out is for readings: %s is none", arguments[0]);
+        return tool_refuse(t, "--leave-out is for readings: %s is none", arguments[0]);
     }
     if (o->render && readings) {
-        return tool_usage_error(t, "--render is for whole materials: %s is readings", arguments[0]);
+        return tool_refuse(t, "--render is for whole materials: %s is readings", arguments[0]);
+    }
+    return true;
+}
+
+static void print_heading(const options *o)
+{
+    printf("%-28s %9s %9s %9s", "", "E6 %", "cbrt %", "log-rel");
+    if (o->render) {
+        printf(" %9s %9s", "PSNR dB", "dE_ITP");
+    }
+    putchar('\n');
+}
+
+static int run(tool *t, void *given)
+{
+    const options *o = given;
+    size_t count = 0;
+    const char **arguments = tool_arguments(t, &count);
+    const bool readings = count > 0 && tool_is_readings(arguments[0]);
+    if (!check(t, o, arguments, count, readings)) {
+        return EXIT_USAGE;
     }
     json_t *results = json_array();
-    if (!o->json) {
-        printf("%-28s %9s %9s %9s", "", "E6 %", "cbrt %", "log-rel");
-        if (o->render) {
-            printf(" %9s %9s", "PSNR dB", "dE_ITP");
-        }
-        putchar('\n');
+    if (!tool_json) {
+        print_heading(o);
     }
     const gonio_status status = readings ? compare_all_readings(t, o, arguments, count, results)
                                          : compare_all_tables(t, o, arguments, count, results);
-    if (status == GONIO_OK && o->json) {
+    if (status == GONIO_OK && tool_json) {
         return tool_print_json(
             t, json_pack("{s:s, s:o}", "reference", arguments[0], "comparisons", results));
     }
@@ -225,19 +239,18 @@ int cmd_compare(int argc, const char **argv)
          "Of readings: leave out the directions of this file (those that were used)", "FILE"},
         {"render", '\0', POPT_ARG_NONE, &o.render, 0, "Also render both and compare the renderings",
          NULL},
-        {"json", '\0', POPT_ARG_NONE, &o.json, 0, "Print the result as JSON", NULL},
         TOOL_OPTIONS};
-    tool t;
-    int code = tool_begin(
-        &t, argc, argv, table, "[OPTION...] REFERENCE OTHER...",
-        "E6: relative RMS of ln(1 + rho/s) over all valid bins (Ali et al., eq. 6), per cent.\n"
-        "cbrt: relative RMS of the cube root of rho cos cos (Fores et al. 2012), per cent.\n"
-        "log-rel: RMS of the log ratio, cosine-weighted (Nielsen et al. 2015).\n"
-        "With --render, of tone-mapped spheres in the built-in studio: PSNR, and dE_ITP, the mean\n"
-        "Delta E_ITP (BT.2124; 1 can just be seen).");
-    if (code < 0) {
-        code = run(&t, &o);
-    }
-    tool_end(&t);
-    return code;
+    const tool_command_line line = {
+        .table = table,
+        .usage = "[OPTION...] REFERENCE OTHER...",
+        .text =
+            "E6: relative RMS of ln(1 + rho/s) over all valid bins (Ali et al., eq. 6), per cent.\n"
+            "cbrt: relative RMS of the cube root of rho cos cos (Fores et al. 2012), per cent.\n"
+            "log-rel: RMS of the log ratio, cosine-weighted (Nielsen et al. 2015).\n"
+            "With --render, of tone-mapped spheres in the built-in studio: PSNR, and dE_ITP, the "
+            "mean\n"
+            "Delta E_ITP (BT.2124; 1 can just be seen).",
+        .work = run,
+        .options = &o};
+    return tool_run(argc, argv, &line);
 }

@@ -1,29 +1,48 @@
 /* gonio convert: any material to a MERL table. */
 #include "command_line.h"
+#include "json_output.h"
+
+/* Silent but for --json. */
+static int report(const tool *t, const gonio_material *material, const char *output)
+{
+    return tool_json ? tool_print_json(t, json_pack("{s:s, s:s, s:s}", "output", output, "material",
+                                                    gonio_material_name(material), "from",
+                                                    gonio_material_format(material)))
+                     : 0;
+}
+
+static int run(tool *t, void *given)
+{
+    (void)given;
+    size_t count = 0;
+    const char **arguments = tool_arguments(t, &count);
+    if (count != 2) {
+        tool_refuse(t, "IN and OUT are needed");
+        return EXIT_USAGE;
+    }
+    if (!tool_check_output(t, arguments[1], arguments, 1)) {
+        return EXIT_USAGE;
+    }
+    gonio_material *material = NULL;
+    gonio_status status = gonio_material_open(t->context, arguments[0], &material);
+    if (status == GONIO_OK) {
+        status = gonio_material_write_merl(t->context, material, arguments[1]);
+    }
+    const int code =
+        status == GONIO_OK ? report(t, material, arguments[1]) : tool_exit_code(status);
+    gonio_material_free(&material);
+    return code;
+}
 
 int cmd_convert(int argc, const char **argv)
 {
     const struct poptOption table[] = {TOOL_OPTIONS};
-    tool t;
-    int code = tool_begin(&t, argc, argv, table, "[OPTION...] IN OUT",
-                          "IN is a MERL .binary table, a neural BRDF .h5 or atlas:NAME (a built-in "
-                          "material; 'gonio info atlas:' lists them).\n"
-                          "OUT becomes a MERL .binary table.");
-    if (code < 0) {
-        size_t count = 0;
-        const char **arguments = tool_arguments(&t, &count);
-        gonio_material *material = NULL;
-        code = count != 2 ? tool_usage_error(&t, "IN and OUT are needed")
-                          : tool_check_output(&t, arguments[1], arguments, 1);
-        if (code == 0) {
-            gonio_status status = gonio_material_open(t.context, arguments[0], &material);
-            if (status == GONIO_OK) {
-                status = gonio_material_write_merl(t.context, material, arguments[1]);
-            }
-            code = tool_exit_code(status);
-        }
-        gonio_material_free(&material);
-    }
-    tool_end(&t);
-    return code;
+    const tool_command_line line = {
+        .table = table,
+        .usage = "[OPTION...] IN OUT",
+        .text = "IN is a MERL .binary table, a neural BRDF .h5 or atlas:NAME (a built-in material; "
+                "'gonio info atlas:' lists them).\n"
+                "OUT becomes a MERL .binary table.",
+        .work = run};
+    return tool_run(argc, argv, &line);
 }

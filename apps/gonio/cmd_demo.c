@@ -1,5 +1,6 @@
 /* gonio demo: the whole chain on a built-in material that the basis has not seen. */
 #include "command_line.h"
+#include "json_output.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -63,22 +64,41 @@ static double now(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-static int run_step(const step *s)
+static void announce(const step *s)
 {
-    int count = 0;
-    if (s->explanation[0] != '\0') {
-        printf("\n%s\n", s->explanation);
-    }
-    printf("$ gonio");
-    while (s->words[count] != NULL) {
-        printf(" %s", s->words[count++]);
+    printf("\n%s\n$ gonio", s->explanation);
+    for (int k = 0; s->words[k] != NULL; k++) {
+        printf(" %s", s->words[k]);
     }
     printf("\n");
     fflush(stdout);
+}
+
+static int run_step(const step *s)
+{
+    int count = 0;
+    while (s->words[count] != NULL) {
+        count++;
+    }
     /* popt wants an array that it may keep. */
     const char *words[MOST_WORDS + 1] = {0};
     memcpy(words, s->words, sizeof s->words);
     return s->run(count, words);
+}
+
+/* A step with the words of its command and what that printed as JSON, in place of printing. */
+static int run_step_as_json(const step *s, json_t *done)
+{
+    json_t *result = NULL;
+    json_t *words = json_array();
+    for (int k = 0; s->words[k] != NULL; k++) {
+        json_array_append_new(words, json_string(s->words[k]));
+    }
+    tool_keep_json(&result);
+    const int code = run_step(s);
+    tool_keep_json(NULL);
+    json_array_append_new(done, json_pack("{s:o, s:o?}", "command", words, "result", result));
+    return code;
 }
 
 static void say_where_the_page_is(const char *folder)
@@ -92,23 +112,40 @@ static void say_where_the_page_is(const char *folder)
     }
 }
 
-static int run(const tool *t, const char *folder)
+/* Makes the folder if need be and goes there, for the commands are run in it. Returns an exit code.
+ */
+static int enter(const char *folder)
 {
-    size_t count = 0;
-    tool_arguments(t, &count);
-    if (count > 0) {
-        return tool_usage_error(t, "no arguments are needed");
-    }
     if ((mkdir(folder, 0777) != 0 && errno != EEXIST) || chdir(folder) != 0) {
         fprintf(stderr, "gonio demo: %s: cannot use this folder: %s\n", folder, strerror(errno));
         return EXIT_DATA;
     }
+    return 0;
+}
+
+static int run_steps_as_json(const tool *t, const char *folder, int count)
+{
+    json_t *done = json_array();
+    int code = 0;
+    for (int k = 0; k < count && code == 0; k++) {
+        code = run_step_as_json(&steps[k], done);
+    }
+    if (code == 0) {
+        return tool_print_json(
+            t, json_pack("{s:s, s:s, s:o}", "folder", folder, "material", material, "steps", done));
+    }
+    json_decref(done);
+    return code;
+}
+
+static int run_steps(const char *folder, int count)
+{
     const double start = now();
+    int code = 0;
     printf("Measuring '%s' with 20 readings. Files go to %s; type along in there.\n", material,
            folder);
-    int code = 0;
-    const int steps_to_do = gonio_report_is_built() ? STEPS : STEPS - 1;
-    for (int k = 0; k < steps_to_do && code == 0; k++) {
+    for (int k = 0; k < count && code == 0; k++) {
+        announce(&steps[k]);
         code = run_step(&steps[k]);
     }
     if (code == 0) {
@@ -122,19 +159,35 @@ static int run(const tool *t, const char *folder)
     return code;
 }
 
+static int run(tool *t, void *given)
+{
+    const char *folder = *(const char **)given;
+    size_t arguments = 0;
+    tool_arguments(t, &arguments);
+    if (arguments > 0) {
+        tool_refuse(t, "no arguments are needed");
+        return EXIT_USAGE;
+    }
+    const int count = gonio_report_is_built() ? STEPS : STEPS - 1;
+    const int code = enter(folder);
+    if (code != 0) {
+        return code;
+    }
+    return tool_json ? run_steps_as_json(t, folder, count) : run_steps(folder, count);
+}
+
 int cmd_demo(int argc, const char **argv)
 {
     const char *folder = "gonio-demo";
     const struct poptOption table[] = {{"output", 'o', POPT_ARG_STRING, &folder, 0,
                                         "The folder for the files (default: gonio-demo)", "DIR"},
                                        TOOL_OPTIONS};
-    tool t;
-    int code = tool_begin(&t, argc, argv, table, "[OPTION...]",
-                          "Learns, plans, measures, reconstructs, compares and renders, in about a "
-                          "minute, and writes a page to see it on.");
-    if (code < 0) {
-        code = run(&t, folder);
-    }
-    tool_end(&t);
-    return code;
+    const tool_command_line line = {
+        .table = table,
+        .usage = "[OPTION...]",
+        .text = "Learns, plans, measures, reconstructs, compares and renders, in about a minute, "
+                "and writes a page to see it on.",
+        .work = run,
+        .options = (void *)&folder};
+    return tool_run(argc, argv, &line);
 }

@@ -298,14 +298,16 @@ static info_function *kind_of(const char *path)
     return tool_is_readings(path) ? info_readings : info_material;
 }
 
-static int run(const tool *t, int json)
+static int run(tool *t, void *given)
 {
+    (void)given;
     size_t count = 0;
     const char **arguments = tool_arguments(t, &count);
     if (count == 0) {
-        return tool_usage_error(t, "no file given");
+        tool_refuse(t, "no file given");
+        return EXIT_USAGE;
     }
-    json_t *results = json ? json_array() : NULL;
+    json_t *results = tool_json ? json_array() : NULL;
     int code = 0;
     for (size_t k = 0; k < count; k++) {
         const int one = strcmp(arguments[k], "atlas:") == 0
@@ -322,17 +324,12 @@ static int run(const tool *t, int json)
 
 int cmd_info(int argc, const char **argv)
 {
-    int json = 0;
-    const struct poptOption table[] = {
-        {"json", '\0', POPT_ARG_NONE, &json, 0, "Print the result as JSON", NULL}, TOOL_OPTIONS};
-    tool t;
-    int code =
-        tool_begin(&t, argc, argv, table, "[OPTION...] FILE...",
-                   "FILE is a material, a basis, a plan or readings, told apart by content.\n"
-                   "'gonio info atlas:' lists the built-in materials.");
-    if (code < 0) {
-        code = run(&t, json);
-    }
-    tool_end(&t);
-    return code;
+    const struct poptOption table[] = {TOOL_OPTIONS};
+    const tool_command_line line = {
+        .table = table,
+        .usage = "[OPTION...] FILE...",
+        .text = "FILE is a material, a basis, a plan or readings, told apart by content.\n"
+                "'gonio info atlas:' lists the built-in materials.",
+        .work = run};
+    return tool_run(argc, argv, &line);
 }

@@ -20,7 +20,6 @@ typedef struct options {
     int components;
     int mixtures; /* UNSET: as the rest suggests */
     long seed;
-    int json;
 } options;
 
 /* A path's material name: what follows "atlas:", or the base name without its extension. */
@@ -33,7 +32,7 @@ static size_t name_in(const char *path, const char **name)
 }
 
 /* Takes the materials of a comma-separated list of names out of the paths. */
-static int leave_out(const tool *t, material_list *list, const char *without)
+static bool leave_out(const tool *t, material_list *list, const char *without)
 {
     for (const char *next = without; next != NULL && *next != '\0';) {
         const size_t length = strcspn(next, ",");
@@ -50,35 +49,18 @@ static int leave_out(const tool *t, material_list *list, const char *without)
         }
         list->count = kept;
         if (kept == before) {
-            return tool_usage_error(t, "--without: no material is called '%.*s'", (int)length,
-                                    next);
+            return tool_refuse(t, "--without: no material is called '%.*s'", (int)length, next);
         }
         next += length + (next[length] == ',' ? 1 : 0);
     }
-    return 0;
-}
-
-/* The place of a word in a list that ends with NULL. */
-static int choose(const tool *t, const char *option, const char *text, const char *const *words,
-                  int *choice)
-{
-    char list[128] = "";
-    for (int k = 0; words[k] != NULL; k++) {
-        if (strcmp(text, words[k]) == 0) {
-            *choice = k;
-            return 0;
-        }
-        strncat(list, k > 0 ? ", " : "", sizeof list - strlen(list) - 1);
-        strncat(list, words[k], sizeof list - strlen(list) - 1);
-    }
-    return tool_usage_error(t, "%s: '%s' is none of %s", option, text, list);
+    return true;
 }
 
 static int report(const tool *t, const gonio_basis *basis, const options *o)
 {
     const gonio_basis_view view = gonio_basis_describe(basis);
     const double share = gonio_basis_cumulative_variance(basis, view.components);
-    if (o->json) {
+    if (tool_json) {
         return tool_print_json(t, json_pack("{s:s, s:I, s:I, s:I, s:f}", "basis", o->output,
                                             "materials", (json_int_t)view.materials, "components",
                                             (json_int_t)view.components, "cells",
@@ -122,7 +104,7 @@ static int learn(tool *t, const options *o, const material_list *list,
     return code;
 }
 
-static int choose_kind(const tool *t, const options *o, gonio_database_options *how)
+static bool choose_kind(const tool *t, const options *o, gonio_database_options *how)
 {
     static const char *const representations[] = {"bivariate", "full", "sectored", NULL};
     static const char *const channel_models[] = {"joint", "separate", NULL};
@@ -130,45 +112,46 @@ static int choose_kind(const tool *t, const options *o, gonio_database_options *
     int representation = 0;
     int channels = 0;
     int mapping = 0;
-    int code = choose(t, "--grid", o->representation, representations, &representation);
-    const char *usual = representation == GONIO_SECTORED ? "separate" : "joint";
-    if (code == 0) {
-        code = choose(t, "--channels", o->channels != NULL ? o->channels : usual, channel_models,
-                      &channels);
+    if (!tool_check_word(t, "--grid", o->representation, representations, &representation)) {
+        return false;
     }
-    if (code == 0) {
-        code = choose(t, "--mapping", o->mapping, mappings, &mapping);
+    const char *usual = representation == GONIO_SECTORED ? "separate" : "joint";
+    const char *wanted = o->channels != NULL ? o->channels : usual;
+    if (!tool_check_word(t, "--channels", wanted, channel_models, &channels) ||
+        !tool_check_word(t, "--mapping", o->mapping, mappings, &mapping)) {
+        return false;
     }
     *how = (gonio_database_options){.representation = (gonio_representation)representation,
                                     .channels = (gonio_channel_model)channels,
                                     .mapping = (gonio_mapping)mapping};
-    return code;
+    return true;
 }
 
-static int run(tool *t, const options *o)
+static bool check(const tool *t, const options *o, size_t count, gonio_database_options *how)
 {
+    if (count == 0) {
+        return tool_refuse(t, "no materials given");
+    }
+    return tool_check_count(t, "--components", o->components, o->components == 0 ? 0 : 1) &&
+           (o->mixtures == UNSET || tool_check_count(t, "--mixtures", o->mixtures, 0)) &&
+           choose_kind(t, o, how);
+}
+
+static int run(tool *t, void *given)
+{
+    const options *o = given;
     size_t count = 0;
     gonio_database_options how;
     const char **arguments = tool_arguments(t, &count);
+    if (!check(t, o, count, &how)) {
+        return EXIT_USAGE;
+    }
     material_list list = {0};
-    int code = count == 0 ? tool_usage_error(t, "no materials given") : 0;
-    if (code == 0) {
-        code = tool_check_count(t, "--components", o->components, o->components == 0 ? 0 : 1);
-    }
-    if (code == 0) {
-        code = o->mixtures != UNSET ? tool_check_count(t, "--mixtures", o->mixtures, 0) : 0;
-    }
-    if (code == 0) {
-        code = choose_kind(t, o, &how);
-    }
-    for (size_t k = 0; k < count && code == 0; k++) {
-        code = material_list_add(t, &list, arguments[k]);
-    }
-    if (code == 0) {
-        code = leave_out(t, &list, o->without);
-    }
-    if (code == 0) {
-        code = tool_check_output(t, o->output, (const char *const *)list.path, list.count);
+    int code = material_list_add_all(t, &list, arguments, count);
+    if (code == 0 &&
+        !(leave_out(t, &list, o->without) &&
+          tool_check_output(t, o->output, (const char *const *)list.path, list.count))) {
+        code = EXIT_USAGE;
     }
     if (code == 0) {
         code = learn(t, o, &list, &how);
@@ -207,16 +190,13 @@ int cmd_learn(int argc, const char **argv)
          "Do not take the mean material out (matusik needs this)", NULL},
         {"without", '\0', POPT_ARG_STRING, &o.without, 0,
          "Leave these materials out (for testing on them)", "NAME[,NAME...]"},
-        {"json", '\0', POPT_ARG_NONE, &o.json, 0, "Print the result as JSON", NULL},
         TOOL_OPTIONS};
-    tool t;
-    int code =
-        tool_begin(&t, argc, argv, table, "[OPTION...] DIR|FILE... -o BASIS",
-                   "DIR stands for the *.binary and *.h5 files in it, 'atlas:' for all built-in "
-                   "materials.\nExample: gonio learn merl/*.binary -o merl.gonio");
-    if (code < 0) {
-        code = run(&t, &o);
-    }
-    tool_end(&t);
-    return code;
+    const tool_command_line line = {
+        .table = table,
+        .usage = "[OPTION...] DIR|FILE... -o BASIS",
+        .text = "DIR stands for the *.binary and *.h5 files in it, 'atlas:' for all built-in "
+                "materials.\nExample: gonio learn merl/*.binary -o merl.gonio",
+        .work = run,
+        .options = &o};
+    return tool_run(argc, argv, &line);
 }

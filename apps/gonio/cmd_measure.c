@@ -1,8 +1,11 @@
 /* gonio measure: a simulated instrument reads a known material. */
 #include "command_line.h"
 #include "file_kinds.h"
+#include "json_output.h"
 
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 typedef struct options {
     const char *output;
@@ -12,16 +15,25 @@ typedef struct options {
     long seed;
 } options;
 
-static void report(const options *o, const gonio_readings *readings, const char *material)
+/* What was read of what. */
+static int report(const tool *t, const options *o, const gonio_readings *readings,
+                  const char *material)
 {
-    const size_t count = gonio_readings_describe(readings).count;
-    if (!tool_quiet) {
-        printf("%s: %zu reading%s of %s\n", o->output, count, tool_plural(count), material);
+    const gonio_readings_view view = gonio_readings_describe(readings);
+    if (tool_json) {
+        return tool_print_json(t, json_pack("{s:s, s:I, s:I, s:s}", "output", o->output, "readings",
+                                            (json_int_t)view.count, "channels",
+                                            (json_int_t)view.channels, "material", material));
     }
+    if (!tool_quiet) {
+        printf("%s: %zu reading%s of %s\n", o->output, view.count, tool_plural(view.count),
+               material);
+    }
+    return 0;
 }
 
 /* Takes the values from readings that were made at more directions. */
-static gonio_status look_up(tool *t, const options *o, gonio_readings *plan, const char *path)
+static gonio_status look_up(const tool *t, const char *path, gonio_readings *plan)
 {
     const gonio_readings_options any = {
         .values_needed = true, .average_repeats = true, .negative_to_zero = true};
@@ -30,66 +42,73 @@ static gonio_status look_up(tool *t, const options *o, gonio_readings *plan, con
     if (status == GONIO_OK) {
         status = gonio_readings_look_up(t->context, plan, known);
     }
-    if (status == GONIO_OK) {
-        status = gonio_readings_write(t->context, plan, t->command_line, o->output);
-    }
-    if (status == GONIO_OK) {
-        report(o, plan, path);
-    }
     gonio_readings_free(&known);
     return status;
 }
 
-static gonio_status measure(tool *t, const options *o, const char *plan, const char *path)
+/* Reads the material of a path, whose name goes to *name, to be released with free(). */
+static gonio_status read_material(const tool *t, const options *o, const char *path,
+                                  gonio_readings *plan, char **name)
 {
-    gonio_readings_options how = {.values_needed = false, .negative_to_zero = true};
     const gonio_instrument_options instrument = {o->noise / 100.0, o->floor, (uint64_t)o->seed,
                                                  o->outliers / 100.0};
-    gonio_readings *readings = NULL;
     gonio_material *material = NULL;
     gonio_table *table = NULL;
-    gonio_status status = gonio_readings_read(t->context, plan, &how, &readings);
-    if (status == GONIO_OK && tool_is_readings(path)) {
-        status = look_up(t, o, readings, path);
-        gonio_readings_free(&readings);
-        return status;
-    }
-    if (status == GONIO_OK) {
-        status = gonio_material_open(t->context, path, &material);
-    }
+    gonio_status status = gonio_material_open(t->context, path, &material);
     if (status == GONIO_OK) {
         status = gonio_table_load(t->context, material, &table);
     }
     if (status == GONIO_OK) {
-        status = gonio_measure(t->context, readings, table, &instrument);
+        status = gonio_measure(t->context, plan, table, &instrument);
+    }
+    if (status == GONIO_OK) {
+        *name = strdup(gonio_material_name(material));
+        status = *name != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
+    }
+    gonio_table_free(&table);
+    gonio_material_free(&material);
+    return status;
+}
+
+static int measure(const tool *t, const options *o, const char *plan, const char *path)
+{
+    const gonio_readings_options how = {.values_needed = false, .negative_to_zero = true};
+    gonio_readings *readings = NULL;
+    char *name = NULL;
+    gonio_status status = gonio_readings_read(t->context, plan, &how, &readings);
+    if (status == GONIO_OK) {
+        status = tool_is_readings(path) ? look_up(t, path, readings)
+                                        : read_material(t, o, path, readings, &name);
     }
     if (status == GONIO_OK) {
         status = gonio_readings_write(t->context, readings, t->command_line, o->output);
     }
-    if (status == GONIO_OK) {
-        report(o, readings, gonio_material_name(material));
-    }
-    gonio_table_free(&table);
-    gonio_material_free(&material);
+    const int code = status == GONIO_OK ? report(t, o, readings, name != NULL ? name : path)
+                                        : tool_exit_code(status);
+    free(name);
     gonio_readings_free(&readings);
-    return status;
+    return code;
 }
 
-static int run(tool *t, const options *o)
+static bool check(const tool *t, const options *o, const char **arguments, size_t count)
 {
-    size_t count = 0;
-    const char **arguments = tool_arguments(t, &count);
     if (count != 2) {
-        return tool_usage_error(t, "PLAN and MATERIAL are needed");
-    }
-    if (!(o->noise >= 0.0) || !(o->floor >= 0.0)) {
-        return tool_usage_error(t, "--noise and --floor cannot be negative");
+        return tool_refuse(t, "PLAN and MATERIAL are needed");
     }
     if (!(o->outliers >= 0.0 && o->outliers <= 100.0)) {
-        return tool_usage_error(t, "--outliers is a share in per cent, 0 to 100");
+        return tool_refuse(t, "--outliers is a share in per cent, 0 to 100");
     }
-    const int code = tool_check_output(t, o->output, arguments, count);
-    return code != 0 ? code : tool_exit_code(measure(t, o, arguments[0], arguments[1]));
+    return tool_check_not_negative(t, "--noise", o->noise) &&
+           tool_check_not_negative(t, "--floor", o->floor) &&
+           tool_check_output(t, o->output, arguments, count);
+}
+
+static int run(tool *t, void *given)
+{
+    const options *o = given;
+    size_t count = 0;
+    const char **arguments = tool_arguments(t, &count);
+    return check(t, o, arguments, count) ? measure(t, o, arguments[0], arguments[1]) : EXIT_USAGE;
 }
 
 int cmd_measure(int argc, const char **argv)
@@ -105,13 +124,12 @@ int cmd_measure(int argc, const char **argv)
          "Share of directions read ten times too high or too low (default: 0)", "PERCENT"},
         {"seed", '\0', POPT_ARG_LONG, &o.seed, 0, "Same seed, same noise (default: 0)", "N"},
         TOOL_OPTIONS};
-    tool t;
-    int code = tool_begin(&t, argc, argv, table, "[OPTION...] PLAN MATERIAL -o READINGS",
-                          "MATERIAL is a MERL .binary table, a neural BRDF .h5 or atlas:NAME.\n"
-                          "Example: gonio measure plan.csv gold.binary --noise 1 -o readings.csv");
-    if (code < 0) {
-        code = run(&t, &o);
-    }
-    tool_end(&t);
-    return code;
+    const tool_command_line line = {
+        .table = table,
+        .usage = "[OPTION...] PLAN MATERIAL -o READINGS",
+        .text = "MATERIAL is a MERL .binary table, a neural BRDF .h5 or atlas:NAME.\n"
+                "Example: gonio measure plan.csv gold.binary --noise 1 -o readings.csv",
+        .work = run,
+        .options = &o};
+    return tool_run(argc, argv, &line);
 }

@@ -3,22 +3,15 @@
 #include "command_line.h"
 #include "json_output.h"
 #include "planning_options.h"
+#include "posterior_options.h"
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 typedef struct options {
     const char *output;
-    const char *candidates;
-    const char *metric;
-    const char *target;
-    int count;
-    double noise; /* per cent */
-    double floor;
-    double saturation;
-    int no_checks;
-    int json;
+    planning_options planning;
+    posterior_options posterior;
 } options;
 
 /* What gonio_plan_next says; plan: NULL if the target is met. */
@@ -31,7 +24,7 @@ typedef struct answer {
 static int report(const tool *t, const options *o, const answer *a)
 {
     const gonio_plan *plan = a->plan;
-    if (o->json) {
+    if (tool_json) {
         return tool_print_json(
             t, json_pack("{s:b, s:f, s:s?, s:I, s:o, s:s?}", "target_met", plan == NULL,
                          "expected_e6_percent", a->now, "plan", plan != NULL ? o->output : NULL,
@@ -56,20 +49,10 @@ static gonio_status find_next(tool *t, const options *o, const gonio_basis *basi
     gonio_reconstruct_options how;
     gonio_plan_options what;
     gonio_pair *candidates = NULL;
-    gonio_status status = GONIO_OK;
     gonio_reconstruct_options_default(&how);
-    how.noise = o->noise / 100.0;
-    how.floor = o->floor;
-    how.saturation = o->saturation;
-    how.no_checks = o->no_checks;
+    posterior_options_apply(&o->posterior, &how);
     gonio_plan_options_default(&what);
-    what.count = (size_t)o->count;
-    what.metric = (gonio_metric)tool_metric(o->metric);
-    what.target = o->target != NULL ? tool_percent(o->target) : 0.0;
-    if (o->candidates != NULL) {
-        status = tool_candidates(t, o->candidates, &candidates, &what.candidate_count);
-        what.candidates = candidates;
-    }
+    gonio_status status = planning_options_apply(t, &o->planning, &what, &candidates);
     if (status == GONIO_OK) {
         status = gonio_plan_next(t->context, basis, readings, &how, &what, &a->now, &a->suspicion,
                                  &a->plan);
@@ -104,73 +87,46 @@ static int next(tool *t, const options *o, const char *basis_path, const char *p
     return code;
 }
 
-static int check(const tool *t, const options *o, const char *const *inputs, size_t count)
+static bool check(const tool *t, const options *o, const char *const *inputs, size_t count)
 {
     if (count == 0 || count > 2) {
-        return tool_usage_error(t, "READINGS, and before it a BASIS if you have one, are needed");
+        return tool_refuse(t, "READINGS, and before it a BASIS if you have one, are needed");
     }
-    int code = tool_check_output(t, o->output, inputs, count);
-    if (code == 0) {
-        code = tool_check_count(t, "-n", o->count, 1);
-    }
-    if (code == 0 && tool_metric(o->metric) < 0) {
-        code =
-            tool_usage_error(t, "--metric: '%s' is none of e6, cube-root, log-relative", o->metric);
-    }
-    if (code == 0 && o->target != NULL && tool_percent(o->target) < 0.0) {
-        code =
-            tool_usage_error(t, "--target-error: '%s' is no error in per cent above 0", o->target);
-    }
-    if (code == 0 && (!(o->noise >= 0.0) || !(o->floor >= 0.0) || !(o->saturation >= 0.0))) {
-        code = tool_usage_error(t, "--noise, --floor and --saturation cannot be negative");
-    }
-    return code == 0 && o->candidates != NULL ? tool_check_output(t, o->output, &o->candidates, 1)
-                                              : code;
+    return tool_check_output(t, o->output, inputs, count) &&
+           planning_options_check(t, &o->planning, o->output) &&
+           posterior_options_check(t, &o->posterior);
 }
 
-static int run(tool *t, const options *o)
+static int run(tool *t, void *given)
 {
+    const options *o = given;
     size_t count = 0;
     const char **arguments = tool_arguments(t, &count);
-    const int code = check(t, o, arguments, count);
-    return code != 0 ? code : next(t, o, count > 1 ? arguments[0] : NULL, arguments[count - 1]);
+    if (!check(t, o, arguments, count)) {
+        return EXIT_USAGE;
+    }
+    return next(t, o, count > 1 ? arguments[0] : NULL, arguments[count - 1]);
 }
 
 int cmd_next(int argc, const char **argv)
 {
-    options o = {.count = 5, .metric = "e6", .noise = 1.0, .floor = 1e-5};
+    options o = {.planning = {.count = 5, .metric = "e6"}, .posterior = POSTERIOR_DEFAULTS};
     const struct poptOption table[] = {
         {"output", 'o', POPT_ARG_STRING, &o.output, 0, "The plan to write (CSV)", "PLAN"},
-        {"number", 'n', POPT_ARG_INT, &o.count, 0, "How many readings to propose (default: 5)",
-         "N"},
-        {"target-error", '\0', POPT_ARG_STRING, &o.target, 0,
-         "Say so, and propose nothing, once the expected error (E6) is no more than this",
-         "PERCENT"},
-        {"candidates", '\0', POPT_ARG_STRING, &o.candidates, 0,
-         "Choose among the directions of this file", "FILE"},
-        {"metric", '\0', POPT_ARG_STRING, &o.metric, 0,
-         "The error that is to be small: e6 (default), cube-root or log-relative", "METRIC"},
-        {"noise", '\0', POPT_ARG_DOUBLE, &o.noise, 0,
-         "Standard deviation of a reading, in per cent of its value (default: 1)", "PERCENT"},
-        {"floor", '\0', POPT_ARG_DOUBLE, &o.floor, 0,
-         "Standard deviation of a reading of darkness, 1/sr (default: 1e-5)", "VALUE"},
-        {"saturation", '\0', POPT_ARG_DOUBLE, &o.saturation, 0,
-         "Readings of this value or more mean at least it, 1/sr", "VALUE"},
-        {"no-checks", '\0', POPT_ARG_NONE, &o.no_checks, 0,
-         "Do not look for usual mistakes nor for a dark level", NULL},
-        {"json", '\0', POPT_ARG_NONE, &o.json, 0, "Print the result as JSON", NULL},
+        PLANNING_OPTIONS(
+            &o.planning, "How many readings to propose (default: 5)",
+            "Say so, and propose nothing, once the expected error (E6) is no more than this"),
+        POSTERIOR_OPTIONS(&o.posterior),
         TOOL_OPTIONS};
-    tool t;
-    int code =
-        tool_begin(&t, argc, argv, table, "[OPTION...] [BASIS] READINGS -o PLAN",
-                   "Without BASIS, the basis of the built-in materials serves. What was read "
-                   "tells what the material is like; the proposed directions are those that "
-                   "leave the least expected error of such materials.\n"
-                   "Example: gonio next merl.gonio readings.csv -n 5 --target-error 3% "
-                   "-o more.csv");
-    if (code < 0) {
-        code = run(&t, &o);
-    }
-    tool_end(&t);
-    return code;
+    const tool_command_line line = {
+        .table = table,
+        .usage = "[OPTION...] [BASIS] READINGS -o PLAN",
+        .text = "Without BASIS, the basis of the built-in materials serves. What was read "
+                "tells what the material is like; the proposed directions are those that "
+                "leave the least expected error of such materials.\n"
+                "Example: gonio next merl.gonio readings.csv -n 5 --target-error 3% "
+                "-o more.csv",
+        .work = run,
+        .options = &o};
+    return tool_run(argc, argv, &line);
 }

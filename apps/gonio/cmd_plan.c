@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_FOR_TARGET = 300, UNSET = INT_MIN };
+enum { USUAL_COUNT = 80, MOST_FOR_TARGET = 300, UNSET = INT_MIN };
 
 typedef struct options {
     const char *output;
@@ -18,20 +18,15 @@ typedef struct options {
     const char *method;
     const char *start;
     int components;
-    int count;
     int restarts;
     long seed;
     double phi_d; /* degrees */
-    const char *candidates;
-    const char *metric;
-    const char *target; /* per cent */
-    double target_error;
-    int json;
+    planning_options planning;
 } options;
 
 static int report(const tool *t, const gonio_plan *plan, const options *o)
 {
-    if (o->json) {
+    if (tool_json) {
         const double expected = plan->expected != NULL ? plan->expected[plan->count - 1] : INFINITY;
         return tool_print_json(t, json_pack("{s:s, s:s, s:I, s:I, s:o, s:o}", "plan", o->output,
                                             "method", plan->method, "readings",
@@ -59,19 +54,12 @@ static gonio_status make_plan(tool *t, const options *o, const char *basis_path,
     how.method = o->method;
     how.start = o->start;
     how.components = (size_t)o->components;
-    how.count = (size_t)o->count;
     how.restarts = o->restarts;
     how.seed = (uint64_t)o->seed;
     how.keep_history = o->history != NULL;
     how.phi_d = o->phi_d * M_PI / 180.0;
-    how.metric = (gonio_metric)tool_metric(o->metric);
-    how.target = o->target_error;
     gonio_pair *candidates = NULL;
-    gonio_status status = GONIO_OK;
-    if (o->candidates != NULL) {
-        status = tool_candidates(t, o->candidates, &candidates, &how.candidate_count);
-        how.candidates = candidates;
-    }
+    gonio_status status = planning_options_apply(t, &o->planning, &how, &candidates);
     if (status == GONIO_OK) {
         status = tool_basis(t, basis_path, o->method, &basis);
     }
@@ -83,47 +71,33 @@ static gonio_status make_plan(tool *t, const options *o, const char *basis_path,
     return status;
 }
 
-static int check(const tool *t, const options *o, size_t count, const char **arguments)
+static bool check(const tool *t, const options *o, size_t count, const char **arguments)
 {
-    int code = count > 1 ? tool_usage_error(t, "one BASIS at most, not %zu", count) : 0;
-    if (code == 0) {
-        code = tool_check_output(t, o->output, arguments, count);
+    if (count > 1) {
+        return tool_refuse(t, "one BASIS at most, not %zu", count);
     }
-    if (code == 0 && o->history != NULL) {
-        code = tool_check_output(t, o->history, arguments, count);
+    if (!tool_check_output(t, o->output, arguments, count) ||
+        (o->history != NULL && !tool_check_output(t, o->history, arguments, count))) {
+        return false;
     }
-    if (code == 0 && o->history != NULL && strcmp(o->history, o->output) == 0) {
-        code = tool_usage_error(t, "--history and -o name the same file");
+    if (o->history != NULL && strcmp(o->history, o->output) == 0) {
+        return tool_refuse(t, "--history and -o name the same file");
     }
-    if (code == 0) {
-        code = tool_check_count(t, "-n", o->count, 1);
-    }
-    if (code == 0) {
-        code = tool_check_count(t, "--restarts", o->restarts, 1);
-    }
-    if (code == 0 && tool_metric(o->metric) < 0) {
-        code =
-            tool_usage_error(t, "--metric: '%s' is none of e6, cube-root, log-relative", o->metric);
-    }
-    if (code == 0 && o->target != NULL && o->target_error < 0.0) {
-        code =
-            tool_usage_error(t, "--target-error: '%s' is no error in per cent above 0", o->target);
-    }
-    if (code == 0 && o->candidates != NULL) {
-        code = tool_check_output(t, o->output, &o->candidates, 1);
-    }
-    return code != 0 ? code : tool_check_count(t, "--components", o->components, 0);
+    return planning_options_check(t, &o->planning, o->output) &&
+           tool_check_count(t, "--restarts", o->restarts, 1) &&
+           tool_check_count(t, "--components", o->components, 0);
 }
 
-static int run(tool *t, options *o)
+static int run(tool *t, void *given)
 {
+    options *o = given;
     size_t count = 0;
-    o->count = o->count != UNSET ? o->count : o->target != NULL ? MOST_FOR_TARGET : 80;
-    o->target_error = o->target != NULL ? tool_percent(o->target) : 0.0;
     const char **arguments = tool_arguments(t, &count);
-    const int code = check(t, o, count, arguments);
-    if (code != 0) {
-        return code;
+    if (o->planning.count == UNSET) {
+        o->planning.count = o->planning.target != NULL ? MOST_FOR_TARGET : USUAL_COUNT;
+    }
+    if (!check(t, o, count, arguments)) {
+        return EXIT_USAGE;
     }
     gonio_plan *plan = NULL;
     gonio_status status = make_plan(t, o, count > 0 ? arguments[0] : NULL, &plan);
@@ -133,25 +107,22 @@ static int run(tool *t, options *o)
     if (status == GONIO_OK) {
         status = gonio_plan_write(t->context, plan, t->command_line, o->output);
     }
-    const int result = status == GONIO_OK ? report(t, plan, o) : tool_exit_code(status);
+    const int code = status == GONIO_OK ? report(t, plan, o) : tool_exit_code(status);
     gonio_plan_free(&plan);
-    return result;
+    return code;
 }
 
 int cmd_plan(int argc, const char **argv)
 {
-    options o = {.count = UNSET, .start = "random", .restarts = 5, .phi_d = 90.0, .metric = "e6"};
+    options o = {.planning = {.count = UNSET, .metric = "e6"},
+                 .start = "random",
+                 .restarts = 5,
+                 .phi_d = 90.0};
     const struct poptOption table[] = {
         {"output", 'o', POPT_ARG_STRING, &o.output, 0, "The plan to write (CSV)", "PLAN"},
-        {"number", 'n', POPT_ARG_INT, &o.count, 0,
-         "How many readings (default: 80; with --target-error at most 300)", "N"},
-        {"target-error", '\0', POPT_ARG_STRING, &o.target, 0,
-         "As few readings as are expected to reach this error (E6), e.g. 3%", "PERCENT"},
-        {"candidates", '\0', POPT_ARG_STRING, &o.candidates, 0,
-         "Choose among the directions of this file (a plan, readings, or scattered readings)",
-         "FILE"},
-        {"metric", '\0', POPT_ARG_STRING, &o.metric, 0,
-         "The error that is to be small: e6 (default), cube-root or log-relative", "METRIC"},
+        PLANNING_OPTIONS(&o.planning,
+                         "How many readings (default: 80; with --target-error at most 300)",
+                         "As few readings as are expected to reach this error (E6), e.g. 3%"),
         {"components", 'K', POPT_ARG_INT, &o.components, 0,
          "Use the first K components (default: all of the basis; nielsen, frost: at most N)", "K"},
         {"method", '\0', POPT_ARG_STRING, &o.method, 0,
@@ -168,15 +139,13 @@ int cmd_plan(int argc, const char **argv)
          "DEGREES"},
         {"history", '\0', POPT_ARG_STRING, &o.history, 0,
          "Write the condition number after each swap (CSV)", "FILE"},
-        {"json", '\0', POPT_ARG_NONE, &o.json, 0, "Print the result as JSON", NULL},
         TOOL_OPTIONS};
-    tool t;
-    int code = tool_begin(&t, argc, argv, table, "[OPTION...] [BASIS] -o PLAN",
-                          "Without BASIS, the basis of the built-in materials serves.\n"
-                          "Example: gonio plan merl.gonio -n 20 -o plan.csv");
-    if (code < 0) {
-        code = run(&t, &o);
-    }
-    tool_end(&t);
-    return code;
+    const tool_command_line line = {
+        .table = table,
+        .usage = "[OPTION...] [BASIS] -o PLAN",
+        .text = "Without BASIS, the basis of the built-in materials serves.\n"
+                "Example: gonio plan merl.gonio -n 20 -o plan.csv",
+        .work = run,
+        .options = &o};
+    return tool_run(argc, argv, &line);
 }

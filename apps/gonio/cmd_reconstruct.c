@@ -3,6 +3,7 @@
 #include "builtin_basis.h"
 #include "command_line.h"
 #include "json_output.h"
+#include "posterior_options.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,18 +15,14 @@ typedef struct options {
     const char *output;
     const char *method;
     double eta;
-    double noise; /* per cent */
-    double floor;
-    double saturation;
+    posterior_options posterior;
     const char *predict_at;
     const char *deviation;
-    int no_checks;
     int components;
     int all_channels;
     int other_basis;
     int average_repeats;
     int negative_to_zero;
-    int json;
 } options;
 
 /* How much of the light the result reflects where it reflects most. */
@@ -150,16 +147,14 @@ static void report(const gonio_basis *basis, const gonio_reconstruction *r, cons
 
 static gonio_reconstruct_options settings(const options *o)
 {
-    return (gonio_reconstruct_options){.components = (size_t)o->components,
-                                       .all_channels = o->all_channels,
-                                       .other_basis = o->other_basis,
-                                       .method = o->method,
-                                       .eta = o->eta,
-                                       .noise = o->noise / 100.0,
-                                       .floor = o->floor,
-                                       .saturation = o->saturation,
-                                       .deviation = o->deviation != NULL,
-                                       .no_checks = o->no_checks};
+    gonio_reconstruct_options how = {.components = (size_t)o->components,
+                                     .all_channels = o->all_channels,
+                                     .other_basis = o->other_basis,
+                                     .method = o->method,
+                                     .eta = o->eta,
+                                     .deviation = o->deviation != NULL};
+    posterior_options_apply(&o->posterior, &how);
+    return how;
 }
 
 /* The deviations as a table, or the values at the directions of a file. */
@@ -294,78 +289,107 @@ static bool is_folder(const char *path)
     return path != NULL && stat(path, &status) == 0 && S_ISDIR(status.st_mode);
 }
 
-/* Where each result goes: into a folder if there are several, or if OUT is one. */
-static int choose_outputs(const tool *t, const options *o, const char *const *inputs,
-                          size_t inputs_count, const char *const *paths, size_t count,
-                          char **outputs)
+/* Whether two of the outputs are the same file, after a complaint. */
+static bool check_different(const tool *t, const char *const *paths, char *const *outputs,
+                            size_t count)
 {
-    const bool folder = is_folder(o->output);
-    if (count > 1 && !folder) {
-        return tool_usage_error(t, "several READINGS need a folder that exists: -o DIR");
-    }
-    int code = o->output == NULL ? tool_check_output(t, NULL, inputs, inputs_count) : 0;
-    for (size_t k = 0; k < count && code == 0; k++) {
-        outputs[k] = folder ? path_in_folder(o->output, paths[k]) : strdup(o->output);
-        code =
-            outputs[k] == NULL ? EXIT_DATA : tool_check_output(t, outputs[k], inputs, inputs_count);
-        for (size_t j = 0; j < k && code == 0; j++) {
+    for (size_t k = 1; k < count; k++) {
+        for (size_t j = 0; j < k; j++) {
             if (strcmp(outputs[j], outputs[k]) == 0) {
-                code = tool_usage_error(t, "%s and %s would both become %s", paths[j], paths[k],
-                                        outputs[k]);
+                return tool_refuse(t, "%s and %s would both become %s", paths[j], paths[k],
+                                   outputs[k]);
             }
         }
     }
-    return code;
+    return true;
 }
 
-/* The options of what is written besides, and of the instrument. */
-static int check_more(const tool *t, const options *o, const char *const *inputs, size_t count,
-                      size_t readings)
+/* Where each result goes: into a folder if there are several, or if OUT is one. Returns an exit
+ * code. */
+static int choose_outputs(const options *o, const char *const *paths, size_t count, char **outputs)
 {
-    if ((o->predict_at != NULL || o->deviation != NULL) && readings > 1) {
-        return tool_usage_error(t, "--predict-at and --deviation take one READINGS");
+    const bool folder = is_folder(o->output);
+    for (size_t k = 0; k < count; k++) {
+        outputs[k] = folder ? path_in_folder(o->output, paths[k]) : strdup(o->output);
+        if (outputs[k] == NULL) {
+            return EXIT_DATA;
+        }
     }
-    if (!(o->noise >= 0.0) || !(o->floor >= 0.0) || !(o->saturation >= 0.0)) {
-        return tool_usage_error(t, "--noise, --floor and --saturation cannot be negative");
-    }
-    if (o->predict_at != NULL && tool_check_output(t, o->output, &o->predict_at, 1) != 0) {
-        return EXIT_USAGE;
+    return 0;
+}
+
+/* What is written besides. */
+static bool check_more(const tool *t, const options *o, const char *const *inputs, size_t count)
+{
+    if (o->predict_at != NULL && !tool_check_output(t, o->output, &o->predict_at, 1)) {
+        return false;
     }
     if (o->deviation != NULL && strcmp(o->deviation, o->output) == 0) {
-        return tool_usage_error(t, "--deviation and -o name the same file");
+        return tool_refuse(t, "--deviation and -o name the same file");
     }
-    return o->deviation != NULL ? tool_check_output(t, o->deviation, inputs, count) : 0;
+    return o->deviation == NULL || tool_check_output(t, o->deviation, inputs, count);
 }
 
-static int run(tool *t, const options *o)
+static bool check(const tool *t, const options *o, const char *const *inputs, size_t count)
 {
+    if (count == 0) {
+        return tool_refuse(t, "READINGS, and before it a BASIS if you have one, are needed");
+    }
+    if (count > 2 && !is_folder(o->output)) {
+        return tool_refuse(t, "several READINGS need a folder that exists: -o DIR");
+    }
+    if ((o->predict_at != NULL || o->deviation != NULL) && count > 2) {
+        return tool_refuse(t, "--predict-at and --deviation take one READINGS");
+    }
+    if (!(o->eta > 0.0)) {
+        return tool_refuse(t, "--eta has to be above 0");
+    }
+    return tool_check_output(t, o->output, inputs, count) &&
+           tool_check_count(t, "--components", o->components, 0) &&
+           posterior_options_check(t, &o->posterior) && check_more(t, o, inputs, count);
+}
+
+static bool check_outputs(const tool *t, const char *const *inputs, size_t count,
+                          const char *const *paths, char *const *outputs, size_t outputs_count)
+{
+    for (size_t k = 0; k < outputs_count; k++) {
+        if (!tool_check_output(t, outputs[k], inputs, count)) {
+            return false;
+        }
+    }
+    return check_different(t, paths, outputs, outputs_count);
+}
+
+/* One object, or an array of as many as there are READINGS. */
+static int print_results(const tool *t, json_t *results)
+{
+    return tool_print_json(t, json_array_size(results) > 1
+                                  ? json_incref(results)
+                                  : json_incref(json_array_get(results, 0)));
+}
+
+static int run(tool *t, void *given)
+{
+    const options *o = given;
     size_t count = 0;
     const char **arguments = tool_arguments(t, &count);
-    if (count == 0) {
-        return tool_usage_error(t, "READINGS, and before it a BASIS if you have one, are needed");
+    if (!check(t, o, arguments, count)) {
+        return EXIT_USAGE;
     }
     const char *basis = count > 1 ? arguments[0] : NULL;
     const char *const *paths = count > 1 ? arguments + 1 : arguments;
     const size_t readings = count > 1 ? count - 1 : 1;
     char **outputs = calloc(readings, sizeof *outputs);
-    int code = outputs == NULL ? EXIT_DATA
-                               : choose_outputs(t, o, arguments, count, paths, readings, outputs);
-    if (code == 0) {
-        code = tool_check_count(t, "--components", o->components, 0);
+    json_t *results = tool_json ? json_array() : NULL;
+    int code = outputs == NULL ? EXIT_DATA : choose_outputs(o, paths, readings, outputs);
+    if (code == 0 && !check_outputs(t, arguments, count, paths, outputs, readings)) {
+        code = EXIT_USAGE;
     }
-    if (code == 0) {
-        code = check_more(t, o, arguments, count, readings);
-    }
-    if (code == 0 && !(o->eta > 0.0)) {
-        code = tool_usage_error(t, "--eta has to be above 0");
-    }
-    json_t *results = o->json ? json_array() : NULL;
     if (code == 0) {
         code = reconstruct_all(t, o, basis, paths, outputs, readings, results);
     }
     if (code == 0 && results != NULL) {
-        code = tool_print_json(t, readings > 1 ? json_incref(results)
-                                               : json_incref(json_array_get(results, 0)));
+        code = print_results(t, results);
     }
     json_decref(results);
     for (size_t k = 0; outputs != NULL && k < readings; k++) {
@@ -377,7 +401,7 @@ static int run(tool *t, const options *o)
 
 int cmd_reconstruct(int argc, const char **argv)
 {
-    options o = {.eta = 40.0, .noise = 1.0, .floor = 1e-5};
+    options o = {.eta = 40.0, .posterior = POSTERIOR_DEFAULTS};
     const struct poptOption table[] = {
         {"output", 'o', POPT_ARG_STRING, &o.output, 0,
          "The MERL .binary table to write, or a folder for NAME.binary", "OUT"},
@@ -391,40 +415,30 @@ int cmd_reconstruct(int argc, const char **argv)
          "How much ridge holds against large coefficients (default: 40)", "ETA"},
         {"all-channels", '\0', POPT_ARG_NONE, &o.all_channels, 0,
          "Use every channel that was read, not only the planned one", NULL},
-        {"noise", '\0', POPT_ARG_DOUBLE, &o.noise, 0,
-         "Standard deviation of a reading, in per cent of its value (posterior; default: 1)",
-         "PERCENT"},
-        {"floor", '\0', POPT_ARG_DOUBLE, &o.floor, 0,
-         "Standard deviation of a reading of darkness, 1/sr (posterior; default: 1e-5)", "VALUE"},
-        {"saturation", '\0', POPT_ARG_DOUBLE, &o.saturation, 0,
-         "Readings of this value or more mean at least it, 1/sr (posterior)", "VALUE"},
+        POSTERIOR_OPTIONS(&o.posterior),
         {"deviation", '\0', POPT_ARG_STRING, &o.deviation, 0,
          "Write the standard deviation of ln(1 + rho/s) too, as a table (posterior)", "FILE"},
         {"predict-at", '\0', POPT_ARG_STRING, &o.predict_at, 0,
          "Predict readings at the directions of this file, as CSV, in place of a table (posterior)",
          "FILE"},
-        {"no-checks", '\0', POPT_ARG_NONE, &o.no_checks, 0,
-         "Do not look for wrong units or angles, nor for a dark level", NULL},
         {"average-repeats", '\0', POPT_ARG_NONE, &o.average_repeats, 0,
          "Accept directions that were read more than once", NULL},
         {"negative-to-zero", '\0', POPT_ARG_NONE, &o.negative_to_zero, 0,
          "Take negative readings as 0", NULL},
         {"other-basis", '\0', POPT_ARG_NONE, &o.other_basis, 0,
          "Accept readings that were planned with another basis", NULL},
-        {"json", '\0', POPT_ARG_NONE, &o.json, 0, "Print the result as JSON", NULL},
         TOOL_OPTIONS};
-    tool t;
-    int code = tool_begin(
-        &t, argc, argv, table, "[OPTION...] [BASIS] READINGS... -o OUT",
-        "READINGS is CSV with the columns theta_i_deg, phi_i_deg, theta_o_deg, phi_o_deg, "
-        "R_per_sr, G_per_sr, B_per_sr in any order, and channel if only one was planned.\n"
-        "Without BASIS, the basis of the built-in materials serves. With BASIS, several READINGS "
-        "may follow, and "
-        "OUT is a folder.\n"
-        "Example: gonio reconstruct merl.gonio readings.csv -o new.binary");
-    if (code < 0) {
-        code = run(&t, &o);
-    }
-    tool_end(&t);
-    return code;
+    const tool_command_line line = {
+        .table = table,
+        .usage = "[OPTION...] [BASIS] READINGS... -o OUT",
+        .text = "READINGS is CSV with the columns theta_i_deg, phi_i_deg, theta_o_deg, phi_o_deg, "
+                "R_per_sr, G_per_sr, B_per_sr in any order, and channel if only one was planned.\n"
+                "Without BASIS, the basis of the built-in materials serves. With BASIS, several "
+                "READINGS "
+                "may follow, and "
+                "OUT is a folder.\n"
+                "Example: gonio reconstruct merl.gonio readings.csv -o new.binary",
+        .work = run,
+        .options = &o};
+    return tool_run(argc, argv, &line);
 }

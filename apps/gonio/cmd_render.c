@@ -1,5 +1,6 @@
 /* gonio render: a material on a sphere or a mesh, and comparison pictures of several. */
 #include "command_line.h"
+#include "json_output.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -35,6 +36,8 @@ typedef struct scene {
     gonio_mesh *mesh;
     gonio_environment *environment;
 } scene;
+
+enum { MOST_SAMPLES = 1000000 };
 
 static const double degree = M_PI / 180.0;
 
@@ -83,71 +86,70 @@ static bool read_size(const char *text, int *width, int *height)
     return *end == '\0';
 }
 
-static int set_view(const tool *t, const options *o, gonio_render_options *how)
+static bool set_view(const tool *t, const options *o, gonio_render_options *how)
 {
     double angle[2];
     if (read_numbers(o->view, angle, 2) != 2 || fabs(angle[1]) > 90.0) {
-        return tool_usage_error(t, "--view: '%s' is not AZIMUTH,ELEVATION in degrees", o->view);
+        return tool_refuse(t, "--view: '%s' is not AZIMUTH,ELEVATION in degrees", o->view);
     }
     if (!(o->field_of_view >= 0.0 && o->field_of_view <= 110.0)) {
-        return tool_usage_error(t, "--fov: %g is not 0 to 110 degrees", o->field_of_view);
+        return tool_refuse(t, "--fov: %g is not 0 to 110 degrees", o->field_of_view);
     }
     how->azimuth = angle[0] * degree;
     how->elevation = angle[1] * degree;
     how->field_of_view = o->field_of_view * degree;
-    return 0;
+    return true;
 }
 
-static int set_lamp(const tool *t, const options *o, gonio_render_options *how)
+static bool set_lamp(const tool *t, const options *o, gonio_render_options *how)
 {
     double at[3] = {0.0, 0.0, 4.0};
     const bool point = o->light != NULL && strcmp(o->light, "point") == 0;
     if (o->light != NULL && !point && strcmp(o->light, "directional") != 0) {
-        return tool_usage_error(t, "--light: '%s' is neither directional nor point", o->light);
+        return tool_refuse(t, "--light: '%s' is neither directional nor point", o->light);
     }
     if (o->light != NULL && o->environment != NULL) {
-        return tool_usage_error(t, "--light and --environment exclude each other");
+        return tool_refuse(t, "--light and --environment exclude each other");
     }
     const int numbers = read_numbers(o->light_at, at, 3);
     if (numbers < 2 || (numbers == 3 && !point)) {
-        return tool_usage_error(t, "--light-at: '%s' is not AZIMUTH,ELEVATION in degrees%s",
-                                o->light_at, point ? "[,DISTANCE]" : "");
+        return tool_refuse(t, "--light-at: '%s' is not AZIMUTH,ELEVATION in degrees%s", o->light_at,
+                           point ? "[,DISTANCE]" : "");
     }
     if (point && at[2] <= 1.0) {
-        return tool_usage_error(t,
-                                "--light-at: distance %g is not more than 1, the radius of the "
-                                "object",
-                                at[2]);
+        return tool_refuse(t,
+                           "--light-at: distance %g is not more than 1, the radius of the "
+                           "object",
+                           at[2]);
     }
     how->lamp = point ? GONIO_LAMP_POINT : GONIO_LAMP_DIRECTIONAL;
     how->lamp_position[0] = at[2] * cos(at[1] * degree) * sin(at[0] * degree);
     how->lamp_position[1] = at[2] * sin(at[1] * degree);
     how->lamp_position[2] = at[2] * cos(at[1] * degree) * cos(at[0] * degree);
-    return 0;
+    return true;
 }
 
-static int set_options(const tool *t, const options *o, gonio_render_options *how)
+static bool set_options(const tool *t, const options *o, gonio_render_options *how)
 {
     gonio_render_options_default(how);
     const char *size = o->size != NULL ? o->size : o->compare ? "256" : "512";
     if (!read_size(size, &how->width, &how->height)) {
-        return tool_usage_error(t, "--size: '%s' is not N or WIDTHxHEIGHT in pixels", size);
+        return tool_refuse(t, "--size: '%s' is not N or WIDTHxHEIGHT in pixels", size);
     }
     if (!(o->key > 0.0 && isfinite(o->key))) {
-        return tool_usage_error(t, "--key: %g is not more than 0", o->key);
+        return tool_refuse(t, "--key: %g is not more than 0", o->key);
     }
-    int code = tool_check_count(t, "--samples", o->samples, 1);
-    if (code == 0 && o->samples > 1000000) {
-        code = tool_usage_error(t, "--samples: %ld is too large, at most 1000000", o->samples);
+    if (!tool_check_count(t, "--samples", o->samples, 1)) {
+        return false;
     }
-    code = code == 0 ? tool_check_count(t, "--seed", o->seed, 0) : code;
-    code = code == 0 ? set_view(t, o, how) : code;
-    code = code == 0 ? set_lamp(t, o, how) : code;
+    if (o->samples > MOST_SAMPLES) {
+        return tool_refuse(t, "--samples: %ld is too large, at most %d", o->samples, MOST_SAMPLES);
+    }
     how->samples = (int)o->samples;
     how->seed = (uint64_t)o->seed;
     how->environment_turn = o->turn * degree;
     how->show_environment = o->show != 0;
-    return code;
+    return tool_check_count(t, "--seed", o->seed, 0) && set_view(t, o, how) && set_lamp(t, o, how);
 }
 
 static bool ends_with(const char *path, const char *extension)
@@ -157,13 +159,11 @@ static bool ends_with(const char *path, const char *extension)
     return length > tail && strcasecmp(path + length - tail, extension) == 0;
 }
 
-static int check_output_name(const tool *t, const options *o)
+static bool check_output_name(const tool *t, const options *o)
 {
-    if (ends_with(o->output, ".png") || (!o->compare && ends_with(o->output, ".exr"))) {
-        return 0;
-    }
-    return tool_usage_error(t, "%s: the output's name must end in .png%s", o->output,
-                            o->compare ? "" : " or .exr");
+    return ends_with(o->output, ".png") || (!o->compare && ends_with(o->output, ".exr")) ||
+           tool_refuse(t, "%s: the output's name must end in .png%s", o->output,
+                       o->compare ? "" : " or .exr");
 }
 
 /* ---- the scene ---- */
@@ -200,7 +200,23 @@ static gonio_status write_image(const tool *t, const options *o, const gonio_ima
     return gonio_image_write_png(t->context, image, &tone, o->output);
 }
 
-static gonio_status render_one(const tool *t, const options *o, const scene *s, const char *path)
+/* What was drawn of what. */
+static int report_one(const tool *t, const options *o, const scene *s, const char *material,
+                      const gonio_image *image)
+{
+    if (tool_json) {
+        return tool_print_json(t, json_pack("{s:s, s:s, s:i, s:i, s:i}", "output", o->output,
+                                            "material", material, "width", image->width, "height",
+                                            image->height, "samples", s->how.samples));
+    }
+    if (!tool_quiet) {
+        printf("%s: %s, %d x %d pixels, %d samples\n", o->output, material, image->width,
+               image->height, s->how.samples);
+    }
+    return 0;
+}
+
+static int render_one(const tool *t, const options *o, const scene *s, const char *path)
 {
     gonio_material *material = NULL;
     gonio_image *image = NULL;
@@ -211,13 +227,11 @@ static gonio_status render_one(const tool *t, const options *o, const scene *s, 
     if (status == GONIO_OK) {
         status = write_image(t, o, image);
     }
-    if (status == GONIO_OK && !tool_quiet) {
-        printf("%s: %s, %d x %d pixels, %d samples\n", o->output, gonio_material_name(material),
-               image->width, image->height, s->how.samples);
-    }
+    const int code = status == GONIO_OK ? report_one(t, o, s, gonio_material_name(material), image)
+                                        : tool_exit_code(status);
     gonio_image_free(&image);
     gonio_material_free(&material);
-    return status;
+    return code;
 }
 
 /* ---- a comparison picture ---- */
@@ -357,6 +371,36 @@ static gonio_status write_picture(const tool *t, const options *o, picture *p)
     return gonio_sheet_write_png(t->context, &sheet, o->output);
 }
 
+/* The rows of renderings: of each material the E6 from the first of its row. */
+static json_t *picture_json(const options *o, const picture *p, const char *const *paths)
+{
+    json_t *rows = json_array();
+    for (size_t row = 0; row < p->rows; row++) {
+        json_t *others = json_array();
+        for (size_t k = 1; k < p->columns; k++) {
+            const size_t at = row * p->columns + k;
+            json_array_append_new(others, json_pack("{s:s, s:o}", "file", paths[at], "e6_percent",
+                                                    tool_json_number(p->cells[at].e6)));
+        }
+        json_array_append_new(rows, json_pack("{s:s, s:o}", "reference", paths[row * p->columns],
+                                              "comparisons", others));
+    }
+    return json_pack("{s:s, s:i, s:i, s:o}", "output", o->output, "width", p->image[0]->width,
+                     "height", p->image[0]->height, "rows", rows);
+}
+
+static int report_picture(const tool *t, const options *o, const picture *p,
+                          const char *const *paths)
+{
+    if (tool_json) {
+        return tool_print_json(t, picture_json(o, p, paths));
+    }
+    if (!tool_quiet) {
+        printf("%s: %zu x %zu renderings\n", o->output, p->rows, p->columns);
+    }
+    return 0;
+}
+
 static int compare_all(const tool *t, const options *o, const scene *s, const char *const *paths,
                        size_t count)
 {
@@ -365,8 +409,8 @@ static int compare_all(const tool *t, const options *o, const scene *s, const ch
     gonio_status status = make_picture(t, count / columns, columns, &p);
     if (status == GONIO_OK && o->labels != NULL && !read_labels(o->labels, &p)) {
         free_picture(&p);
-        return tool_usage_error(t, "--labels: '%s' is not %zu names between commas", o->labels,
-                                columns);
+        tool_refuse(t, "--labels: '%s' is not %zu names between commas", o->labels, columns);
+        return EXIT_USAGE;
     }
     for (size_t row = 0; row < p.rows && status == GONIO_OK; row++) {
         status = compare_row(t, s, paths + row * columns, &p, row);
@@ -374,54 +418,53 @@ static int compare_all(const tool *t, const options *o, const scene *s, const ch
     if (status == GONIO_OK) {
         status = write_picture(t, o, &p);
     }
-    if (status == GONIO_OK && !tool_quiet) {
-        printf("%s: %zu x %zu renderings\n", o->output, p.rows, p.columns);
-    }
+    const int code = status == GONIO_OK ? report_picture(t, o, &p, paths) : tool_exit_code(status);
     free_picture(&p);
-    return tool_exit_code(status);
+    return code;
 }
 
 /* ---- the command ---- */
 
-static int check_arguments(const tool *t, const options *o, size_t count)
+static bool check_arguments(const tool *t, const options *o, size_t count)
 {
     if (!o->compare && count != 1) {
-        return tool_usage_error(t, "one MATERIAL is needed; --compare takes several");
+        return tool_refuse(t, "one MATERIAL is needed; --compare takes several");
     }
     if (!o->compare && (o->columns > 0 || o->labels != NULL || o->differences)) {
-        return tool_usage_error(t, "--columns, --labels and --differences go with --compare");
+        return tool_refuse(t, "--columns, --labels and --differences go with --compare");
     }
     if (o->compare && count < 2) {
-        return tool_usage_error(t, "REFERENCE and at least one OTHER are needed");
+        return tool_refuse(t, "REFERENCE and at least one OTHER are needed");
     }
     if (o->columns < 0 || o->columns == 1 || (o->columns > 1 && count % (size_t)o->columns != 0)) {
-        return tool_usage_error(t, "--columns: %zu materials are not rows of %ld", count,
-                                o->columns);
+        return tool_refuse(t, "--columns: %zu materials are not rows of %ld", count, o->columns);
     }
-    return 0;
+    return true;
 }
 
-static int run(const tool *t, const options *o)
+static bool check(const tool *t, const options *o, const char **arguments, size_t count,
+                  gonio_render_options *how)
 {
+    const char *const inputs[] = {o->mesh, o->environment};
+    return check_arguments(t, o, count) && tool_check_output(t, o->output, arguments, count) &&
+           tool_check_output(t, o->output, inputs, 2) && check_output_name(t, o) &&
+           set_options(t, o, how);
+}
+
+static int run(tool *t, void *given)
+{
+    const options *o = given;
     size_t count = 0;
     const char **arguments = tool_arguments(t, &count);
     scene s = {.mesh = NULL};
-    int code = check_arguments(t, o, count);
-    code = code == 0 ? tool_check_output(t, o->output, arguments, count) : code;
-    const char *const inputs[] = {o->mesh, o->environment};
-    code = code == 0 ? tool_check_output(t, o->output, inputs, 2) : code;
-    code = code == 0 ? check_output_name(t, o) : code;
-    code = code == 0 ? set_options(t, o, &s.how) : code;
-    if (code != 0) {
-        return code;
+    if (!check(t, o, arguments, count, &s.how)) {
+        return EXIT_USAGE;
     }
     const gonio_status status = load_scene(t, o, &s);
-    if (status != GONIO_OK) {
-        code = tool_exit_code(status);
-    } else if (o->compare) {
-        code = compare_all(t, o, &s, arguments, count);
-    } else {
-        code = tool_exit_code(render_one(t, o, &s, arguments[0]));
+    int code = tool_exit_code(status);
+    if (status == GONIO_OK) {
+        code = o->compare ? compare_all(t, o, &s, arguments, count)
+                          : render_one(t, o, &s, arguments[0]);
     }
     free_scene(&s);
     return code;
@@ -464,17 +507,18 @@ int cmd_render(int argc, const char **argv)
         {"differences", '\0', POPT_ARG_NONE, &o.differences, 0,
          "With Delta E_ITP as pictures below", NULL},
         TOOL_OPTIONS};
-    tool t;
-    int code = tool_begin(
-        &t, argc, argv, table, "[OPTION...] MATERIAL -o OUT | --compare REFERENCE OTHER... -o OUT",
-        "Azimuths are degrees to the right of the viewer's first place, elevations upwards.\n"
-        "Light comes straight from the lamp or the environment; the same seed gives the same image."
-        "\nPNG is tone-mapped after Reinhard et al. 2002. Below a comparison: E6, PSNR and mean\n"
-        "Delta E_ITP. Example: gonio render atlas:gold-polished -e sky --show-environment -o "
-        "g.png");
-    if (code < 0) {
-        code = run(&t, &o);
-    }
-    tool_end(&t);
-    return code;
+    const tool_command_line line = {
+        .table = table,
+        .usage = "[OPTION...] MATERIAL -o OUT | --compare REFERENCE OTHER... -o OUT",
+        .text =
+            "Azimuths are degrees to the right of the viewer's first place, elevations upwards.\n"
+            "Light comes straight from the lamp or the environment; the same seed gives the same "
+            "image."
+            "\nPNG is tone-mapped after Reinhard et al. 2002. Below a comparison: E6, PSNR and "
+            "mean\n"
+            "Delta E_ITP. Example: gonio render atlas:gold-polished -e sky --show-environment -o "
+            "g.png",
+        .work = run,
+        .options = &o};
+    return tool_run(argc, argv, &line);
 }

@@ -1,8 +1,8 @@
 /* gonio report: a page for a browser. */
 #include "command_line.h"
+#include "json_output.h"
 
 #include <stdio.h>
-#include <string.h>
 #include <sys/stat.h>
 
 typedef struct options {
@@ -30,15 +30,20 @@ static gonio_status read_readings(const tool *t, const char *path, gonio_reading
     return path == NULL ? GONIO_OK : gonio_readings_read(t->context, path, &how, readings);
 }
 
-/* Paths may be NULL. */
-static gonio_status report(const tool *t, const options *o, const char *folder,
-                           const char *reference, const char *reconstruction)
+/* What is on the page; NULL for what there is not. */
+typedef struct shown {
+    const char *folder;
+    const char *reference;
+    const char *reconstruction;
+} shown;
+
+static gonio_status write_page(const tool *t, const options *o, const shown *s)
 {
     gonio_material *materials[3] = {NULL, NULL, NULL};
     gonio_readings *readings = NULL;
-    gonio_status status = open_material(t, reference, &materials[0]);
+    gonio_status status = open_material(t, s->reference, &materials[0]);
     if (status == GONIO_OK) {
-        status = open_material(t, reconstruction, &materials[1]);
+        status = open_material(t, s->reconstruction, &materials[1]);
     }
     if (status == GONIO_OK) {
         status = open_material(t, o->deviation, &materials[2]);
@@ -47,12 +52,9 @@ static gonio_status report(const tool *t, const options *o, const char *folder,
         status = read_readings(t, o->readings, &readings);
     }
     const gonio_report_content content = {materials[0], materials[1], materials[2], readings,
-                                          folder};
+                                          s->folder};
     if (status == GONIO_OK) {
         status = gonio_report_write(t->context, &content, o->output);
-    }
-    if (status == GONIO_OK && !tool_quiet) {
-        printf("%s: open it in a browser\n", o->output);
     }
     gonio_readings_free(&readings);
     for (int k = 0; k < 3; k++) {
@@ -61,28 +63,52 @@ static gonio_status report(const tool *t, const options *o, const char *folder,
     return status;
 }
 
-static int run(const tool *t, const options *o)
+static bool check(const tool *t, const options *o, const char **arguments, size_t count)
 {
-    size_t count = 0;
-    const char **arguments = tool_arguments(t, &count);
     if (count < 1 || count > 2) {
-        return tool_usage_error(
-            t, "a REFERENCE, perhaps with a RECONSTRUCTION, or the folder of a reproduction is "
-               "needed");
+        return tool_refuse(t, "a REFERENCE, perhaps with a RECONSTRUCTION, or the folder of a "
+                              "reproduction is needed");
     }
-    const bool folder = is_folder(arguments[0]);
-    if (folder && (count > 1 || o->readings != NULL || o->deviation != NULL)) {
-        return tool_usage_error(t, "%s is a folder, which is shown on its own", arguments[0]);
+    if (is_folder(arguments[0]) && (count > 1 || o->readings != NULL || o->deviation != NULL)) {
+        return tool_refuse(t, "%s is a folder, which is shown on its own", arguments[0]);
     }
     if (o->deviation != NULL && count < 2) {
-        return tool_usage_error(t, "--deviation needs a RECONSTRUCTION that it is of");
+        return tool_refuse(t, "--deviation needs a RECONSTRUCTION that it is of");
     }
-    const char *const inputs[4] = {arguments[0], count > 1 ? arguments[1] : NULL, o->readings,
-                                   o->deviation};
-    const int code = tool_check_output(t, o->output, inputs, 4);
-    return code != 0 ? code
-                     : tool_exit_code(report(t, o, folder ? arguments[0] : NULL,
-                                             folder ? NULL : arguments[0], inputs[1]));
+    const char *const inputs[] = {o->readings, o->deviation};
+    return tool_check_output(t, o->output, arguments, count) &&
+           tool_check_output(t, o->output, inputs, 2);
+}
+
+/* What is shown on which page. */
+static int print_result(const tool *t, const options *o, const shown *s)
+{
+    if (tool_json) {
+        return tool_print_json(t, json_pack("{s:s, s:s?, s:s?, s:s?, s:s?, s:s?}", "output",
+                                            o->output, "folder", s->folder, "reference",
+                                            s->reference, "reconstruction", s->reconstruction,
+                                            "readings", o->readings, "deviation", o->deviation));
+    }
+    if (!tool_quiet) {
+        printf("%s: open it in a browser\n", o->output);
+    }
+    return 0;
+}
+
+static int run(tool *t, void *given)
+{
+    const options *o = given;
+    size_t count = 0;
+    const char **arguments = tool_arguments(t, &count);
+    if (!check(t, o, arguments, count)) {
+        return EXIT_USAGE;
+    }
+    const bool folder = is_folder(arguments[0]);
+    const shown s = {.folder = folder ? arguments[0] : NULL,
+                     .reference = folder ? NULL : arguments[0],
+                     .reconstruction = count > 1 ? arguments[1] : NULL};
+    const gonio_status status = write_page(t, o, &s);
+    return status == GONIO_OK ? print_result(t, o, &s) : tool_exit_code(status);
 }
 
 int cmd_report(int argc, const char **argv)
@@ -95,16 +121,16 @@ int cmd_report(int argc, const char **argv)
         {"deviation", '\0', POPT_ARG_STRING, &o.deviation, 0,
          "Standard deviations of ln(1 + rho/s) of the reconstruction, a MERL table", "FILE"},
         TOOL_OPTIONS};
-    tool t;
-    int code = tool_begin(
-        &t, argc, argv, table, "[OPTION...] REFERENCE [RECONSTRUCTION] | OUTDIR  -o PAGE",
-        "Writes a page for a browser, one file that needs no network: spheres to light and turn,\n"
-        "where was measured, the image slice, lobes and errors. OUTDIR is a folder of 'gonio\n"
-        "reproduce', whose figures become charts.\n"
-        "Example: gonio report gold.binary gold-80.binary --readings readings.csv -o gold.html");
-    if (code < 0) {
-        code = run(&t, &o);
-    }
-    tool_end(&t);
-    return code;
+    const tool_command_line line = {
+        .table = table,
+        .usage = "[OPTION...] REFERENCE [RECONSTRUCTION] | OUTDIR  -o PAGE",
+        .text =
+            "Writes a page for a browser, one file that needs no network: spheres to light and "
+            "turn,\n"
+            "where was measured, the image slice, lobes and errors. OUTDIR is a folder of 'gonio\n"
+            "reproduce', whose figures become charts.\n"
+            "Example: gonio report gold.binary gold-80.binary --readings readings.csv -o gold.html",
+        .work = run,
+        .options = &o};
+    return tool_run(argc, argv, &line);
 }

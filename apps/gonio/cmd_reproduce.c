@@ -1,5 +1,6 @@
 /* gonio reproduce: the paper's experiments on a database of one's own. */
 #include "command_line.h"
+#include "json_output.h"
 #include "material_list.h"
 #include "processes.h"
 
@@ -14,16 +15,18 @@ typedef struct options {
     int skip_bad;
 } options;
 
-/* What was asked for, the built-in materials by default. */
-static int list_materials(const tool *t, material_list *list)
+/* What was made. */
+static int report(const tool *t, const options *o, size_t materials)
 {
-    size_t count = 0;
-    const char **arguments = tool_arguments(t, &count);
-    int code = count == 0 ? material_list_add(t, list, "atlas:") : 0;
-    for (size_t k = 0; k < count && code == 0; k++) {
-        code = material_list_add(t, list, arguments[k]);
+    if (tool_json) {
+        return tool_print_json(t, json_pack("{s:s, s:s+, s:s+, s:I}", "folder", o->output, "report",
+                                            o->output, "/report.md", "results", o->output,
+                                            "/results.json", "materials", (json_int_t)materials));
     }
-    return code;
+    if (!tool_quiet) {
+        printf("%s: see report.md, figures, tables and results.json in it\n", o->output);
+    }
+    return 0;
 }
 
 static int reproduce(const tool *t, const options *o, const material_list *list,
@@ -37,22 +40,32 @@ static int reproduce(const tool *t, const options *o, const material_list *list,
                                          .team = team};
     const gonio_status status =
         gonio_reproduce(t->context, (const char *const *)list->path, list->count, o->output, &how);
-    if (status == GONIO_OK && team->rank == 0 && !tool_quiet) {
-        printf("%s: see report.md, figures, tables and results.json in it\n", o->output);
+    if (status != GONIO_OK) {
+        return tool_exit_code(status);
     }
-    return tool_exit_code(status);
+    return team->rank == 0 ? report(t, o, list->count) : 0;
 }
 
+static bool check(const tool *t, const options *o)
+{
+    if (!tool_check_count(t, "--seed", o->seed, 0)) {
+        return false;
+    }
+    return (o->output != NULL && *o->output != '\0') || tool_refuse(t, "no output: give -o FOLDER");
+}
+
+/* Of what was asked for, the built-in materials by default. */
 static int run(const tool *t, const options *o, const gonio_team *team)
 {
+    static const char *const built_in[] = {"atlas:"};
+    size_t count = 0;
+    const char **arguments = tool_arguments(t, &count);
+    if (!check(t, o)) {
+        return EXIT_USAGE;
+    }
     material_list list = {0};
-    int code = tool_check_count(t, "--seed", o->seed, 0);
-    if (code == 0 && (o->output == NULL || *o->output == '\0')) {
-        code = tool_usage_error(t, "no output: give -o FOLDER");
-    }
-    if (code == 0) {
-        code = list_materials(t, &list);
-    }
+    int code = count > 0 ? material_list_add_all(t, &list, arguments, count)
+                         : material_list_add_all(t, &list, built_in, 1);
     if (code == 0) {
         code = reproduce(t, o, &list, team);
     }
@@ -61,8 +74,9 @@ static int run(const tool *t, const options *o, const gonio_team *team)
 }
 
 /* All ranks do the same; rank 0 alone says what is not an error. */
-static int run_in_team(const tool *t, const options *o)
+static int run_in_team(tool *t, void *given)
 {
+    const options *o = given;
     gonio_team team;
     if (!processes_begin(&team, t->name)) {
         return EXIT_DATA;
@@ -87,16 +101,15 @@ int cmd_reproduce(int argc, const char **argv)
         {"skip-bad", '\0', POPT_ARG_NONE, &o.skip_bad, 0, "Leave out materials that cannot be used",
          NULL},
         TOOL_OPTIONS};
-    tool t;
-    int code = tool_begin(&t, argc, argv, table, "[OPTION...] [DIR|FILE...] -o OUT",
-                          "Runs the experiments of Ali et al. and sets them beside the paper's: "
-                          "OUT/report.md, figures, tables.\nDIR stands for the *.binary and *.h5 "
-                          "files in it; without one the built-in materials serve.\nA run that was "
-                          "stopped goes on when the command is given again; with mpirun several "
-                          "machines share\nthe work. Example: gonio reproduce merl -o paper");
-    if (code < 0) {
-        code = run_in_team(&t, &o);
-    }
-    tool_end(&t);
-    return code;
+    const tool_command_line line = {
+        .table = table,
+        .usage = "[OPTION...] [DIR|FILE...] -o OUT",
+        .text = "Runs the experiments of Ali et al. and sets them beside the paper's: "
+                "OUT/report.md, figures, tables.\nDIR stands for the *.binary and *.h5 "
+                "files in it; without one the built-in materials serve.\nA run that was "
+                "stopped goes on when the command is given again; with mpirun several "
+                "machines share\nthe work. Example: gonio reproduce merl -o paper",
+        .work = run_in_team,
+        .options = &o};
+    return tool_run(argc, argv, &line);
 }

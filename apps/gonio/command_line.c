@@ -9,10 +9,12 @@
 #include <sys/stat.h>
 
 int tool_threads = 0;
+int tool_json = 0;
 
 struct poptOption tool_common_options[] = {
     {"threads", '\0', POPT_ARG_INT, &tool_threads, 0, "Use at most N threads (default: all)", "N"},
     {"quiet", 'q', POPT_ARG_NONE, &tool_quiet, 0, "Only errors, no notes and no progress", NULL},
+    {"json", '\0', POPT_ARG_NONE, &tool_json, 0, "Print the result as JSON", NULL},
     POPT_TABLEEND};
 
 static bool is_plain(const char *word)
@@ -51,7 +53,7 @@ static char *join(int argc, const char **argv)
     return text;
 }
 
-int tool_usage_error(const tool *t, const char *format, ...)
+bool tool_refuse(const tool *t, const char *format, ...)
 {
     va_list arguments;
     fprintf(stderr, "gonio %s: ", t->name);
@@ -59,27 +61,52 @@ int tool_usage_error(const tool *t, const char *format, ...)
     vfprintf(stderr, format, arguments);
     va_end(arguments);
     fprintf(stderr, " (see gonio %s -h)\n", t->name);
-    return EXIT_USAGE;
+    return false;
 }
 
-static int parse(tool *t, const char *text)
+static bool is_end(const struct poptOption *option)
+{
+    return option->longName == NULL && option->shortName == '\0' && option->arg == NULL;
+}
+
+/* A line an option: "-n --number N". */
+static void list_options(const struct poptOption *table)
+{
+    for (const struct poptOption *option = table; !is_end(option); option++) {
+        if ((option->argInfo & POPT_ARG_MASK) == POPT_ARG_INCLUDE_TABLE) {
+            list_options(option->arg);
+        } else if ((option->argInfo & POPT_ARGFLAG_DOC_HIDDEN) == 0) {
+            const char *value = option->argDescrip;
+            if (option->shortName != '\0') {
+                printf("-%c ", option->shortName);
+            }
+            printf("--%s%s%s\n", option->longName, value != NULL ? " " : "",
+                   value != NULL ? value : "");
+        }
+    }
+}
+
+/* Returns an exit code, or -1 to go on. */
+static int parse(tool *t, const tool_command_line *line)
 {
     int code = 0;
     while ((code = poptGetNextOpt(t->options)) > 0) {
-        if (code == 'h') {
+        if (code == TOOL_HELP) {
             poptPrintHelp(t->options, stdout, 0);
-            printf("\n%s\n", text);
+            printf("\n%s\n", line->text);
+            return 0;
+        }
+        if (code == TOOL_LIST_OPTIONS) {
+            list_options(t->table);
             return 0;
         }
     }
     if (code < -1) {
-        return tool_usage_error(t, "%s: %s", poptBadOption(t->options, POPT_BADOPTION_NOALIAS),
-                                poptStrerror(code));
+        tool_refuse(t, "%s: %s", poptBadOption(t->options, POPT_BADOPTION_NOALIAS),
+                    poptStrerror(code));
+        return EXIT_USAGE;
     }
-    if (tool_threads < 0) {
-        return tool_usage_error(t, "--threads cannot be negative");
-    }
-    return -1;
+    return tool_check_not_negative(t, "--threads", tool_threads) ? -1 : EXIT_USAGE;
 }
 
 /* Whether an option's value is a string, which popt gives as a copy that is the caller's to free.
@@ -87,11 +114,6 @@ static int parse(tool *t, const char *text)
 static bool holds_string(const struct poptOption *option)
 {
     return (option->argInfo & POPT_ARG_MASK) == POPT_ARG_STRING && option->arg != NULL;
-}
-
-static bool is_end(const struct poptOption *option)
-{
-    return option->longName == NULL && option->shortName == '\0' && option->arg == NULL;
 }
 
 static void remember_defaults(tool *t)
@@ -114,10 +136,10 @@ static void free_strings(tool *t)
     }
 }
 
-int tool_begin(tool *t, int argc, const char **argv, const struct poptOption *table,
-               const char *usage, const char *text)
+/* Returns an exit code, or -1 to go on. */
+static int begin(tool *t, int argc, const char **argv, const tool_command_line *line)
 {
-    *t = (tool){.table = table,
+    *t = (tool){.table = line->table,
                 .name = argv[0],
                 .messages.command = argv[0],
                 .command_line = join(argc, argv)};
@@ -127,9 +149,9 @@ int tool_begin(tool *t, int argc, const char **argv, const struct poptOption *ta
         return EXIT_DATA;
     }
     argv[0] = t->title; /* what the help calls the program */
-    t->options = poptGetContext(t->title, argc, argv, table, 0);
-    poptSetOtherOptionHelp(t->options, usage);
-    const int code = parse(t, text);
+    t->options = poptGetContext(t->title, argc, argv, t->table, 0);
+    poptSetOtherOptionHelp(t->options, line->usage);
+    const int code = parse(t, line);
     if (code >= 0) {
         return code;
     }
@@ -139,7 +161,7 @@ int tool_begin(tool *t, int argc, const char **argv, const struct poptOption *ta
     return gonio_context_create(&t->context, &options) == GONIO_OK ? -1 : EXIT_DATA;
 }
 
-void tool_end(tool *t)
+static void end(tool *t)
 {
     tool_clear_progress(&t->messages);
     gonio_context_free(&t->context);
@@ -147,6 +169,17 @@ void tool_end(tool *t)
     free_strings(t);
     free(t->title);
     free(t->command_line);
+}
+
+int tool_run(int argc, const char **argv, const tool_command_line *line)
+{
+    tool t;
+    int code = begin(&t, argc, argv, line);
+    if (code < 0) {
+        code = line->work(&t, line->options);
+    }
+    end(&t);
+    return code;
 }
 
 const char **tool_arguments(const tool *t, size_t *count)
@@ -164,25 +197,44 @@ int tool_exit_code(gonio_status status)
     return status == GONIO_OK ? 0 : status == GONIO_ERROR_ARGUMENT ? EXIT_USAGE : EXIT_DATA;
 }
 
-int tool_check_output(const tool *t, const char *output, const char *const *inputs, size_t count)
+bool tool_check_output(const tool *t, const char *output, const char *const *inputs, size_t count)
 {
     struct stat out;
     if (output == NULL || *output == '\0') {
-        return tool_usage_error(t, "no output: give -o FILE");
+        return tool_refuse(t, "no output: give -o FILE");
     }
     for (size_t k = 0; stat(output, &out) == 0 && k < count; k++) {
         struct stat in;
         if (inputs[k] != NULL && stat(inputs[k], &in) == 0 && in.st_dev == out.st_dev &&
             in.st_ino == out.st_ino && S_ISREG(in.st_mode)) {
-            return tool_usage_error(t, "%s is an input: give another name for the output", output);
+            return tool_refuse(t, "%s is an input: give another name for the output", output);
         }
     }
-    return 0;
+    return true;
 }
 
-int tool_check_count(const tool *t, const char *option, long value, long least)
+bool tool_check_count(const tool *t, const char *option, long value, long least)
 {
-    return value < least
-               ? tool_usage_error(t, "%s: %ld is too small, at least %ld", option, value, least)
-               : 0;
+    return value >= least ||
+           tool_refuse(t, "%s: %ld is too small, at least %ld", option, value, least);
+}
+
+bool tool_check_not_negative(const tool *t, const char *option, double value)
+{
+    return value >= 0.0 || tool_refuse(t, "%s cannot be negative", option);
+}
+
+bool tool_check_word(const tool *t, const char *option, const char *text, const char *const *words,
+                     int *choice)
+{
+    char list[128] = "";
+    for (int k = 0; words[k] != NULL; k++) {
+        if (strcmp(text, words[k]) == 0) {
+            *choice = k;
+            return true;
+        }
+        strncat(list, k > 0 ? ", " : "", sizeof list - strlen(list) - 1);
+        strncat(list, words[k], sizeof list - strlen(list) - 1);
+    }
+    return tool_refuse(t, "%s: '%s' is none of %s", option, text, list);
 }

@@ -25,30 +25,53 @@ typedef struct tool {
 
 /* The options of every command, to be included with TOOL_OPTIONS at the end of a table. */
 extern int tool_threads;
+extern int tool_json; /* whether the result is to be printed as JSON */
 extern struct poptOption tool_common_options[];
+enum { TOOL_HELP = 'h', TOOL_LIST_OPTIONS = 'l' };
 #define TOOL_OPTIONS                                                                               \
     {NULL, '\0', POPT_ARG_INCLUDE_TABLE, tool_common_options, 0, "Common options:", NULL},         \
-        {"help", 'h', POPT_ARG_NONE, NULL, 'h', "Show this help", NULL}, POPT_TABLEEND
+        {"list-options", '\0', POPT_ARG_NONE | POPT_ARGFLAG_DOC_HIDDEN, NULL, TOOL_LIST_OPTIONS,   \
+         NULL,           NULL},                                                                    \
+        {"help", 'h', POPT_ARG_NONE, NULL, TOOL_HELP, "Show this help", NULL}, POPT_TABLEEND
 
-/* Parses the options. `usage` stands behind the command's name in the help, `text` below it.
- * Returns an exit code, or -1 to go on. The tool must be ended with tool_end in any case. */
-int tool_begin(tool *t, int argc, const char **argv, const struct poptOption *table,
-               const char *usage, const char *text);
-void tool_end(tool *t);
+/* What a command does, and how its command line is written. */
+typedef struct tool_command_line {
+    const struct poptOption *table; /* ends with TOOL_OPTIONS */
+    const char *usage;              /* stands behind the command's name in the help */
+    const char *text;               /* stands below the options in the help */
+    /* The work, once the options are read; returns an exit code. */
+    int (*work)(tool *t, void *options);
+    void *options; /* where the table puts the values */
+} tool_command_line;
+
+/* Runs a command: reads its options, does its work unless help is asked for, tidies up. Returns the
+ * exit code. --list-options, which the help does not show, prints a line an option: its names and,
+ * if it takes a value, what the help calls that. */
+int tool_run(int argc, const char **argv, const tool_command_line *line);
 
 /* The arguments that are not options. */
 const char **tool_arguments(const tool *t, size_t *count);
 
-/* Complains about the command line; returns EXIT_USAGE. */
-int tool_usage_error(const tool *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* Complains about the command line; returns false, so that checks can end with
+ * `return tool_refuse(...)`. The exit code is then EXIT_USAGE. */
+bool tool_refuse(const tool *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* The exit code of a status: 0, 1 or 2. */
 int tool_exit_code(gonio_status status);
 
-/* Refuses an output that is one of the inputs; returns 0 or EXIT_USAGE. */
-int tool_check_output(const tool *t, const char *output, const char *const *inputs, size_t count);
+/* Checks of the command line. Each returns whether all is well, after a complaint if it is not. */
 
-/* A count given by the user: an integer from `least` on; EXIT_USAGE otherwise, 0 if fine. */
-int tool_check_count(const tool *t, const char *option, long value, long least);
+/* An output is named and is none of the inputs (NULL: there is none). */
+bool tool_check_output(const tool *t, const char *output, const char *const *inputs, size_t count);
+
+/* An integer from `least` on. */
+bool tool_check_count(const tool *t, const char *option, long value, long least);
+
+/* A number that is not negative. */
+bool tool_check_not_negative(const tool *t, const char *option, double value);
+
+/* One of the words of a list that ends with NULL, whose place goes to *choice. */
+bool tool_check_word(const tool *t, const char *option, const char *text, const char *const *words,
+                     int *choice);
 
 #endif

@@ -4,6 +4,13 @@
 #include <math.h>
 #include <stdio.h>
 
+static json_t **kept_json = NULL;
+
+void tool_keep_json(json_t **kept)
+{
+    kept_json = kept;
+}
+
 json_t *tool_json_number(double value)
 {
     return isfinite(value) ? json_real(value) : json_null();
@@ -14,6 +21,10 @@ int tool_print_json(const tool *t, json_t *json)
     if (json == NULL) {
         fprintf(stderr, "gonio %s: no JSON: a name is not UTF-8, or out of memory\n", t->name);
         return EXIT_DATA;
+    }
+    if (kept_json != NULL) {
+        *kept_json = json;
+        return 0;
     }
     json_dumpf(json, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(10));
     putchar('\n');

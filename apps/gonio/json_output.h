@@ -10,7 +10,12 @@
 json_t *tool_json_number(double value);
 
 /* Prints JSON to standard output and releases it; NULL, from a json_pack that failed, is an error.
- */
+ * Returns an exit code. */
 int tool_print_json(const tool *t, json_t *json);
+
+/* For commands that run others: until the next call, tool_print_json keeps what it is given in
+ * *kept (borrowed, *kept NULL at first), for the caller to release, instead of printing it. NULL:
+ * print again. */
+void tool_keep_json(json_t **kept);
 
 #endif

@@ -72,7 +72,8 @@ static int add_folder(const tool *t, material_list *list, const char *folder)
     return done ? 0 : EXIT_DATA;
 }
 
-int material_list_add(const tool *t, material_list *list, const char *argument)
+/* Returns an exit code. */
+static int add(const tool *t, material_list *list, const char *argument)
 {
     struct stat status;
     if (strcmp(argument, "atlas:") == 0) {
@@ -86,4 +87,14 @@ int material_list_add(const tool *t, material_list *list, const char *argument)
         return add_folder(t, list, argument);
     }
     return add_path(list, strdup(argument)) ? 0 : EXIT_DATA;
+}
+
+int material_list_add_all(const tool *t, material_list *list, const char *const *arguments,
+                          size_t count)
+{
+    int code = 0;
+    for (size_t k = 0; k < count && code == 0; k++) {
+        code = add(t, list, arguments[k]);
+    }
+    return code;
 }

@@ -10,9 +10,10 @@ typedef struct material_list {
     char **path;
 } material_list;
 
-/* Adds what an argument stands for: the materials of a folder by name, 'atlas:' for all built-in
+/* Adds what each argument stands for: the materials of a folder by name, 'atlas:' for all built-in
  * ones, or itself. Returns an exit code, 0 if fine. */
-int material_list_add(const tool *t, material_list *list, const char *argument);
+int material_list_add_all(const tool *t, material_list *list, const char *const *arguments,
+                          size_t count);
 
 void material_list_free(material_list *list);
 

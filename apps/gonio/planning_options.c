@@ -3,29 +3,32 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
-static const char *const metrics[] = {"e6", "cube-root", "log-relative"};
+/* In the order of gonio_metric. */
+static const char *const metrics[] = {"e6", "cube-root", "log-relative", NULL};
 
-int tool_metric(const char *name)
-{
-    for (int k = 0; k < 3; k++) {
-        if (strcmp(name, metrics[k]) == 0) {
-            return k;
-        }
-    }
-    return -1;
-}
-
-double tool_percent(const char *text)
+/* "3" or "3%"; -1 if it is neither, or not above 0. */
+static double percent(const char *text)
 {
     char *end = NULL;
-    const double percent = strtod(text, &end);
+    const double value = strtod(text, &end);
     end += *end == '%';
-    return *end == '\0' && percent > 0.0 && isfinite(percent) ? percent : -1.0;
+    return *end == '\0' && value > 0.0 && isfinite(value) ? value : -1.0;
 }
 
-gonio_status tool_candidates(tool *t, const char *path, gonio_pair **pairs, size_t *count)
+bool planning_options_check(const tool *t, const planning_options *o, const char *output)
+{
+    int metric = 0;
+    return tool_check_count(t, "-n", o->count, 1) &&
+           tool_check_word(t, "--metric", o->metric, metrics, &metric) &&
+           (o->target == NULL || percent(o->target) > 0.0 ||
+            tool_refuse(t, "--target-error: '%s' is no error in per cent above 0", o->target)) &&
+           (o->candidates == NULL || tool_check_output(t, output, &o->candidates, 1));
+}
+
+/* The directions of a readings file, with or without values. */
+static gonio_status read_directions(const tool *t, const char *path, gonio_pair **pairs,
+                                    size_t *count)
 {
     const gonio_readings_options how = {.average_repeats = true, .negative_to_zero = true};
     gonio_readings *readings = NULL;
@@ -41,4 +44,22 @@ gonio_status tool_candidates(tool *t, const char *path, gonio_pair **pairs, size
     }
     gonio_readings_free(&readings);
     return *pairs != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
+}
+
+gonio_status planning_options_apply(const tool *t, const planning_options *o,
+                                    gonio_plan_options *how, gonio_pair **candidates)
+{
+    int metric = 0;
+    tool_check_word(t, "--metric", o->metric, metrics, &metric);
+    how->count = (size_t)o->count;
+    how->metric = (gonio_metric)metric;
+    how->target = o->target != NULL ? percent(o->target) : 0.0;
+    *candidates = NULL;
+    if (o->candidates == NULL) {
+        return GONIO_OK;
+    }
+    const gonio_status status =
+        read_directions(t, o->candidates, candidates, &how->candidate_count);
+    how->candidates = *candidates;
+    return status;
 }

@@ -1,16 +1,38 @@
-/* What a plan is to aim at, for the commands that plan. */
+/* What a plan is to aim at: the options that the commands that plan share. */
 #ifndef GONIO_PLANNING_OPTIONS_H
 #define GONIO_PLANNING_OPTIONS_H
 
 #include "command_line.h"
 
-/* The gonio_metric of a name; -1 if there is none. */
-int tool_metric(const char *name);
+typedef struct planning_options {
+    int count;
+    const char *target;     /* per cent; NULL: none */
+    const char *candidates; /* a file of directions; NULL: any */
+    const char *metric;
+} planning_options;
 
-/* "3" or "3%"; -1 if it is neither, or not above 0. */
-double tool_percent(const char *text);
+/* Rows of an option table. `number` and `target_error`: what the help says of the first two. */
+#define PLANNING_OPTIONS(o, number, target_error)                                                  \
+    {"number", 'n', POPT_ARG_INT, &(o)->count, 0, number, "N"},                                    \
+        {"target-error", '\0', POPT_ARG_STRING, &(o)->target, 0, target_error, "PERCENT"},         \
+        {"candidates",                                                                             \
+         '\0',                                                                                     \
+         POPT_ARG_STRING,                                                                          \
+         &(o)->candidates,                                                                         \
+         0,                                                                                        \
+         "Choose among the directions of this file (a plan, readings, or scattered readings)",     \
+         "FILE"},                                                                                  \
+    {                                                                                              \
+        "metric", '\0', POPT_ARG_STRING, &(o)->metric, 0,                                          \
+            "The error that is to be small: e6 (default), cube-root or log-relative", "METRIC"     \
+    }
 
-/* The directions of a readings file, with or without values; to be released with free(). */
-gonio_status tool_candidates(tool *t, const char *path, gonio_pair **pairs, size_t *count);
+/* Whether all is well, after a complaint if it is not. `output`: the plan's file. */
+bool planning_options_check(const tool *t, const planning_options *o, const char *output);
+
+/* Sets what a plan is made with. `candidates` is read from its file and belongs to the caller, to
+ * be released with free() after the plan is made; NULL if there are none. */
+gonio_status planning_options_apply(const tool *t, const planning_options *o,
+                                    gonio_plan_options *how, gonio_pair **candidates);
 
 #endif

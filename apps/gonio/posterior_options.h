@@ -1,0 +1,53 @@
+/* What the posterior is told of the instrument: the options that the commands that use it share. */
+#ifndef GONIO_POSTERIOR_OPTIONS_H
+#define GONIO_POSTERIOR_OPTIONS_H
+
+#include "command_line.h"
+
+typedef struct posterior_options {
+    double noise; /* per cent */
+    double floor; /* 1/sr */
+    double saturation;
+    int no_checks;
+} posterior_options;
+
+#define POSTERIOR_DEFAULTS                                                                         \
+    {                                                                                              \
+        .noise = 1.0, .floor = 1e-5                                                                \
+    }
+
+/* Rows of an option table. */
+#define POSTERIOR_OPTIONS(o)                                                                       \
+    {"noise",                                                                                      \
+     '\0',                                                                                         \
+     POPT_ARG_DOUBLE,                                                                              \
+     &(o)->noise,                                                                                  \
+     0,                                                                                            \
+     "Noise of a reading in per cent of its value, standard deviation (posterior; default: 1)",    \
+     "PERCENT"},                                                                                   \
+        {"floor",                                                                                  \
+         '\0',                                                                                     \
+         POPT_ARG_DOUBLE,                                                                          \
+         &(o)->floor,                                                                              \
+         0,                                                                                        \
+         "Additive noise of a reading in 1/sr, standard deviation (posterior; default: 1e-5)",     \
+         "VALUE"},                                                                                 \
+        {"saturation",                                                                             \
+         '\0',                                                                                     \
+         POPT_ARG_DOUBLE,                                                                          \
+         &(o)->saturation,                                                                         \
+         0,                                                                                        \
+         "Readings of this value or more mean at least it, 1/sr (posterior)",                      \
+         "VALUE"},                                                                                 \
+    {                                                                                              \
+        "no-checks", '\0', POPT_ARG_NONE, &(o)->no_checks, 0,                                      \
+            "Do not look for usual mistakes nor for a dark level (posterior)", NULL                \
+    }
+
+/* Whether all is well, after a complaint if it is not. */
+bool posterior_options_check(const tool *t, const posterior_options *o);
+
+/* Sets what a reconstruction is made with. */
+void posterior_options_apply(const posterior_options *o, gonio_reconstruct_options *how);
+
+#endif
