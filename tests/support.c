@@ -53,6 +53,35 @@ const char *support_message(void)
     return last_message;
 }
 
+static gonio_status read_loaded(void *self, gonio_context *context, int theta_h, double *rho)
+{
+    (void)context;
+    const double *values = gonio_table_values(self) + (size_t)theta_h * GONIO_SLAB_VALUES;
+    memcpy(rho, values, GONIO_SLAB_VALUES * sizeof *rho);
+    return GONIO_OK;
+}
+
+static void release_loaded(void *self)
+{
+    gonio_table *table = self;
+    gonio_table_free(&table);
+}
+
+gonio_material *support_load(gonio_context *context, const char *path)
+{
+    gonio_material *file = NULL;
+    gonio_table *table = NULL;
+    gonio_material *loaded = NULL;
+    assert_int_equal(gonio_material_open(context, path, &file), GONIO_OK);
+    assert_int_equal(gonio_table_load(context, file, &table), GONIO_OK);
+    const gonio_material_source source = {read_loaded, release_loaded, table};
+    assert_int_equal(gonio_material_create(context, gonio_material_name(file),
+                                           gonio_material_format(file), source, &loaded),
+                     GONIO_OK);
+    gonio_material_free(&file);
+    return loaded;
+}
+
 static int remove_one(const char *path, const struct stat *status, int type, struct FTW *walk)
 {
     (void)status;

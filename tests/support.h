@@ -10,6 +10,8 @@
 
 #include <cmocka.h>
 #include <gonio/basis.h>
+#include <gonio/context.h>
+#include <gonio/material.h>
 
 /* A test's main is one function of the program gonio-tests: see main.c. */
 #ifdef GONIO_TEST
@@ -27,6 +29,9 @@ void support_need_shared(void);
 /* The names of the MERL database's materials. */
 enum { SUPPORT_MERL = 100 };
 extern const char *const support_merl[SUPPORT_MERL];
+
+/* A material of a file, read whole into memory, for tests that read it several times: 35 MB. */
+gonio_material *support_load(gonio_context *context, const char *path);
 
 /* A context that keeps the last error message in support_message(). */
 gonio_context *support_context(void);
