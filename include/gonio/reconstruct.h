@@ -27,7 +27,9 @@ typedef struct gonio_reconstruct_options {
     double eta;         /* of ridge, > 0; 0 for 40 */
     /* Of posterior only: */
     double noise;      /* standard deviation of a reading relative to its value; default 0.01 */
-    double floor;      /* standard deviation of a reading of darkness, 1/sr; default 1e-5 */
+    double floor;      /* standard deviation of the additive noise, 1/sr; default 1e-5. Where a
+                        * reading has a standard deviation of its own (measurement.h), that counts
+                        * in place of noise and floor */
     double saturation; /* readings of this value or more, 1/sr, mean at least it; 0: none */
     bool deviation;    /* find the standard deviation of every cell too */
     bool no_checks;    /* do not look for usual mistakes (gonio_reconstruction.suspicion) nor for a

@@ -375,29 +375,48 @@ static gonio_status read_slabs(gonio_context *context, gonio_database *database,
     return status;
 }
 
-static gonio_status read_material(gonio_context *context, gonio_database *database, size_t column,
-                                  const char *path, const reader *r)
+/* Materials to learn from: files, opened one at a time, or materials in memory. */
+typedef struct sources {
+    const char *const *path;               /* [materials] or NULL */
+    const gonio_material *const *material; /* [materials] or NULL */
+} sources;
+
+/* name: for messages. */
+static gonio_status take_material(gonio_context *context, gonio_database *database, size_t column,
+                                  const gonio_material *material, const char *name, const reader *r)
 {
-    gonio_material *material = NULL;
-    gonio_status status = gonio_material_open(context, path, &material);
-    if (status != GONIO_OK) {
-        return status;
-    }
     database->names[column] = strdup(gonio_material_name(material));
     size_t with_data = 0;
-    status = database->names[column] == NULL
-                 ? GONIO_ERROR_MEMORY
-                 : read_slabs(context, database, column, material, r, &with_data);
-    gonio_material_free(&material);
+    const gonio_status status =
+        database->names[column] == NULL
+            ? GONIO_ERROR_MEMORY
+            : read_slabs(context, database, column, material, r, &with_data);
     if (status == GONIO_OK && with_data == 0) {
-        status = gonio_i_fail(context, GONIO_ERROR_DATA,
-                              "%s: the material holds no data at all; leave it out", path);
+        return gonio_i_fail(context, GONIO_ERROR_DATA,
+                            "%s: the material holds no data at all; leave it out", name);
     }
     return status;
 }
 
+static gonio_status read_material(gonio_context *context, gonio_database *database, size_t column,
+                                  const sources *from, const reader *r)
+{
+    if (from->material != NULL) {
+        const gonio_material *given = from->material[column];
+        return take_material(context, database, column, given, gonio_material_name(given), r);
+    }
+    gonio_material *opened = NULL;
+    const char *path = from->path[column];
+    gonio_status status = gonio_material_open(context, path, &opened);
+    if (status == GONIO_OK) {
+        status = take_material(context, database, column, opened, path, r);
+    }
+    gonio_material_free(&opened);
+    return status;
+}
+
 static gonio_status read_materials(gonio_context *context, gonio_database *database,
-                                   const char *const *paths, uint8_t *seen)
+                                   const sources *from, uint8_t *seen)
 {
     gonio_status result = GONIO_OK;
     size_t finished = 0;
@@ -412,7 +431,7 @@ static gonio_status read_materials(gonio_context *context, gonio_database *datab
 #pragma omp atomic read
             so_far = result;
             if (mine == GONIO_OK && so_far == GONIO_OK) {
-                mine = read_material(team, database, k, paths[k], &r);
+                mine = read_material(team, database, k, from, &r);
             }
             size_t done;
 #pragma omp atomic capture
@@ -500,7 +519,7 @@ static gonio_status check_names(gonio_context *context, const gonio_database *da
     return status;
 }
 
-static gonio_status fill(gonio_context *context, gonio_database *database, const char *const *paths)
+static gonio_status fill(gonio_context *context, gonio_database *database, const sources *from)
 {
     gonio_status status =
         gonio_i_scratch_open(context, database->options.scratch, &database->scratch);
@@ -514,7 +533,7 @@ static gonio_status fill(gonio_context *context, gonio_database *database, const
     if (seen == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    status = read_materials(context, database, paths, seen);
+    status = read_materials(context, database, from, seen);
     if (status == GONIO_OK) {
         status = check_names(context, database);
     }
@@ -525,8 +544,8 @@ static gonio_status fill(gonio_context *context, gonio_database *database, const
     return status;
 }
 
-gonio_status gonio_database_create(gonio_context *context, const char *const *paths, size_t count,
-                                   const gonio_database_options *options, gonio_database **database)
+static gonio_status create(gonio_context *context, const sources *from, size_t count,
+                           const gonio_database_options *options, gonio_database **database)
 {
     if (count == 0) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "no materials given");
@@ -550,7 +569,7 @@ gonio_status gonio_database_create(gonio_context *context, const char *const *pa
     made->fingerprints = gonio_i_allocate(context, count, sizeof *made->fingerprints);
     const gonio_status status = made->names == NULL || made->fingerprints == NULL
                                     ? GONIO_ERROR_MEMORY
-                                    : fill(context, made, paths);
+                                    : fill(context, made, from);
     if (status != GONIO_OK) {
         gonio_database_free(&made);
         return status;
@@ -558,6 +577,21 @@ gonio_status gonio_database_create(gonio_context *context, const char *const *pa
     made->options.scratch = NULL;
     *database = made;
     return GONIO_OK;
+}
+
+gonio_status gonio_database_create(gonio_context *context, const char *const *paths, size_t count,
+                                   const gonio_database_options *options, gonio_database **database)
+{
+    return create(context, &(sources){.path = paths}, count, options, database);
+}
+
+gonio_status gonio_database_create_from_materials(gonio_context *context,
+                                                  const gonio_material *const *materials,
+                                                  size_t count,
+                                                  const gonio_database_options *options,
+                                                  gonio_database **database)
+{
+    return create(context, &(sources){.material = materials}, count, options, database);
 }
 
 void gonio_database_free(gonio_database **database)

@@ -10,11 +10,19 @@ double gonio_i_dark_level_missing(const double *dark, size_t channel, double the
     return dark != NULL ? dark[channel] / fmax(cos(theta_i), 1e-3) : 0.0;
 }
 
-/* The variance of g = ln(1 + v/s) for noise of the value v. */
-static double variance_of(double value, double s, const gonio_i_noise *noise)
+/* The variance of a value, in squares of 1/sr: of its own deviation where that is known (not NaN).
+ */
+static double noise_of(double value, double deviation, const gonio_i_noise *noise)
 {
     const double relative = noise->relative * value;
-    return (relative * relative + noise->floor * noise->floor) / ((value + s) * (value + s)) +
+    return isnan(deviation) ? relative * relative + noise->floor * noise->floor
+                            : deviation * deviation;
+}
+
+/* The variance of g = ln(1 + v/s) for noise of the value v. */
+static double variance_of(double value, double deviation, double s, const gonio_i_noise *noise)
+{
+    return noise_of(value, deviation, noise) / ((value + s) * (value + s)) +
            GONIO_I_MODEL_DEVIATION * GONIO_I_MODEL_DEVIATION;
 }
 
@@ -32,6 +40,17 @@ static double true_value(gonio_pair pair, size_t channel, double value, double s
            gonio_i_dark_level_missing(transform->dark, channel, pair.incident.theta);
 }
 
+/* The standard deviation of a value that a transform makes; NaN where it is not known. */
+static double true_deviation(const gonio_readings_view *view, size_t index, size_t channel,
+                             double s, const gonio_i_transform *transform)
+{
+    if (view->deviation == NULL) {
+        return NAN;
+    }
+    const double deviation = view->deviation[index * view->channels + channel];
+    return transform != NULL ? deviation * factor_of(view->pair[index], s, transform) : deviation;
+}
+
 /* Of a value as it was read. */
 static int bound_of(double read, const gonio_i_noise *noise)
 {
@@ -39,23 +58,25 @@ static int bound_of(double read, const gonio_i_noise *noise)
     return saturated ? 1 : read <= 0.0 ? -1 : 0;
 }
 
-/* What a value means in log space. */
-static void set_value(gonio_i_observation *o, double value, double s, const gonio_i_noise *noise)
+/* What a value means in log space; deviation: its own, or NaN. */
+static void set_value(gonio_i_observation *o, double value, double deviation, double s,
+                      const gonio_i_noise *noise)
 {
     o->g = log1p(value / s);
-    o->variance = variance_of(value, s, noise);
+    o->variance = variance_of(value, deviation, s, noise);
 }
 
 static gonio_i_observation observe(const gonio_readings *readings, size_t index, size_t channel,
                                    const gonio_i_noise *noise)
 {
-    const gonio_pair pair = gonio_readings_describe(readings).pair[index];
+    const gonio_readings_view view = gonio_readings_describe(readings);
+    const double s = gonio_readings_scale(readings, channel);
     const double read = gonio_readings_value(readings, index, channel);
-    gonio_i_observation o = {.at = gonio_half_difference_from_pair(pair),
+    gonio_i_observation o = {.at = gonio_half_difference_from_pair(view.pair[index]),
                              .channel = (int)channel,
                              .bound = bound_of(read, noise),
                              .reading = index};
-    set_value(&o, read, gonio_readings_scale(readings, channel), noise);
+    set_value(&o, read, true_deviation(&view, index, channel, s, NULL), s, noise);
     return o;
 }
 
@@ -69,7 +90,8 @@ void gonio_i_column_transform(const gonio_readings *readings, const gonio_i_nois
         const size_t channel = (size_t)o->channel;
         const double s = gonio_readings_scale(readings, channel);
         const double read = gonio_readings_value(readings, o->reading, channel);
-        set_value(o, true_value(pair, channel, read, s, transform), s, noise);
+        set_value(o, true_value(pair, channel, read, s, transform),
+                  true_deviation(&view, o->reading, channel, s, transform), s, noise);
         if (transform->turn != NULL) {
             o->at = gonio_half_difference_from_pair(transform->turn(pair));
         }

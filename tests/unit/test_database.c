@@ -178,12 +178,79 @@ static void test_what_cannot_be_read(void **state)
     gonio_context_free(&context);
 }
 
+/* Materials in memory make the same matrix as the files that they were opened from. */
+static void test_materials_in_memory(void **state)
+{
+    (void)state;
+    enum { COUNT = 30 };
+    const gonio_database_options how = {.channels = GONIO_SEPARATE};
+    gonio_material *material[MATERIALS];
+    gonio_database *from_files = make_database(paths, MATERIALS, how.representation, how.channels);
+    gonio_database *from_materials = NULL;
+    double block[2][COUNT * MATERIALS * GONIO_CHANNELS];
+    for (size_t k = 0; k < MATERIALS; k++) {
+        assert_int_equal(gonio_material_open(NULL, paths[k], &material[k]), GONIO_OK);
+    }
+    assert_int_equal(gonio_database_create_from_materials(NULL,
+                                                          (const gonio_material *const *)material,
+                                                          MATERIALS, &how, &from_materials),
+                     GONIO_OK);
+    for (size_t k = 0; k < MATERIALS; k++) {
+        gonio_material_free(&material[k]);
+    }
+    const gonio_database_view a = gonio_database_describe(from_files);
+    const gonio_database_view b = gonio_database_describe(from_materials);
+    assert_int_equal(a.rows, b.rows);
+    assert_memory_equal(a.fingerprints, b.fingerprints, MATERIALS * sizeof *a.fingerprints);
+    for (size_t k = 0; k < MATERIALS; k++) {
+        assert_string_equal(a.names[k], b.names[k]);
+    }
+    assert_int_equal(gonio_database_read_rows(from_files, NULL, 100, COUNT, NULL, 0, block[0]),
+                     GONIO_OK);
+    assert_int_equal(gonio_database_read_rows(from_materials, NULL, 100, COUNT, NULL, 0, block[1]),
+                     GONIO_OK);
+    assert_memory_equal(block[0], block[1], sizeof block[0]);
+    gonio_database_free(&from_materials);
+    gonio_database_free(&from_files);
+}
+
+static bool every_bin(gonio_bin bin)
+{
+    (void)bin;
+    return true;
+}
+
+static void test_materials_in_memory_that_are_refused(void **state)
+{
+    (void)state;
+    gonio_context *context = support_context();
+    gonio_material *one = made_material((made_constant){{1.0, 1.0, 1.0}, NULL});
+    gonio_material *empty = made_material((made_constant){{1.0, 1.0, 1.0}, every_bin});
+    const gonio_material *const twice[2] = {one, one};
+    const gonio_material *const nothing[1] = {empty};
+    gonio_database *database = NULL;
+    assert_int_equal(gonio_database_create_from_materials(context, twice, 2, NULL, &database),
+                     GONIO_ERROR_DATA);
+    assert_non_null(strstr(support_message(), "two materials are called 'made'"));
+    assert_int_equal(gonio_database_create_from_materials(context, nothing, 1, NULL, &database),
+                     GONIO_ERROR_DATA);
+    assert_non_null(strstr(support_message(), "made: the material holds no data at all"));
+    assert_int_equal(gonio_database_create_from_materials(context, NULL, 0, NULL, &database),
+                     GONIO_ERROR_ARGUMENT);
+    assert_null(database);
+    gonio_material_free(&empty);
+    gonio_material_free(&one);
+    gonio_context_free(&context);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_rows_are_the_materials),
         cmocka_unit_test(test_cells_that_some_material_lacks_are_left_out),
         cmocka_unit_test(test_what_cannot_be_read),
+        cmocka_unit_test(test_materials_in_memory),
+        cmocka_unit_test(test_materials_in_memory_that_are_refused),
     };
     return cmocka_run_group_tests_name("database", tests, NULL, NULL);
 }
