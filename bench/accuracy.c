@@ -19,7 +19,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "blas_kernels.h"
 
@@ -126,15 +125,10 @@ static gonio_basis *learn(gonio_context *context, const setting *s, const json_t
 /* The first n directions of a plan as readings to be filled in. */
 static gonio_readings *first_of(gonio_context *context, const gonio_plan *plan, size_t n)
 {
-    static const gonio_readings_options any = {.average_repeats = true};
-    char path[] = "/tmp/gonio-accuracy-XXXXXX";
     gonio_readings *readings = NULL;
     gonio_plan part = *plan;
     part.count = n;
-    close(mkstemp(path));
-    check(gonio_plan_write(context, &part, NULL, path));
-    check(gonio_readings_read(context, path, &any, &readings));
-    unlink(path);
+    check(gonio_readings_create_from_plan(context, &part, &readings));
     return readings;
 }
 

@@ -680,22 +680,17 @@ static void write_readings(const bench *b, gonio_context *context, const gonio_b
                            const char *folder)
 {
     gonio_plan_options how;
-    const gonio_readings_options any = {.values_needed = false, .negative_to_zero = true};
     gonio_plan *plan = NULL;
-    char *path = NULL;
     gonio_plan_options_default(&how);
     how.method = "random";
-    check(asprintf(&path, "%s/plan.csv", folder) > 0 &&
-              gonio_plan_create(context, basis, &how, &plan) == GONIO_OK &&
-              gonio_plan_write(context, plan, NULL, path) == GONIO_OK,
-          "planning");
+    check(gonio_plan_create(context, basis, &how, &plan) == GONIO_OK, "planning");
     for (size_t k = 0; k < TABLES; k++) {
         gonio_readings *readings = NULL;
         gonio_material *material = NULL;
         gonio_table *table = NULL;
         char *to = NULL;
         check(asprintf(&to, "%s/readings-%03zu.csv", folder, k) > 0 &&
-                  gonio_readings_read(context, path, &any, &readings) == GONIO_OK &&
+                  gonio_readings_create_from_plan(context, plan, &readings) == GONIO_OK &&
                   gonio_material_open(context, b->paths[k % b->count], &material) == GONIO_OK &&
                   gonio_table_load(context, material, &table) == GONIO_OK &&
                   gonio_measure(context, readings, table, NULL) == GONIO_OK &&
@@ -707,7 +702,6 @@ static void write_readings(const bench *b, gonio_context *context, const gonio_b
         free(to);
     }
     gonio_plan_free(&plan);
-    free(path);
 }
 
 /* Seconds for a shell command, with FOLDER as its working directory. */
@@ -760,7 +754,7 @@ static void bench_reconstruct_many(bench *b, gonio_context *context, const gonio
     }
     report(b, "reconstruct 100 materials in one command", median(seconds, RUNS), "s");
     report(b, "reconstruct 100 materials: over plain write(2)", median(ratio, RUNS), "x");
-    command_seconds(folder, "rm -rf out basis.gonio plan.csv readings-*.csv");
+    command_seconds(folder, "rm -rf out basis.gonio readings-*.csv");
     free(path);
 }
 

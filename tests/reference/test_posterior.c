@@ -63,26 +63,31 @@ static gonio_basis *learn(json_t *names)
     return basis;
 }
 
-static void write_plan(const gonio_basis *basis, const gonio_plan_options *options,
-                       const char *path)
+static gonio_plan *make_plan(const gonio_basis *basis, const gonio_plan_options *options)
 {
     gonio_plan *plan = NULL;
     assert_int_equal(gonio_plan_create(context, basis, options, &plan), GONIO_OK);
-    assert_int_equal(gonio_plan_write(context, plan, NULL, path), GONIO_OK);
-    gonio_plan_free(&plan);
+    return plan;
 }
 
-static gonio_readings *read_file(const char *path, bool values_needed)
+static gonio_readings *read_plan(const gonio_plan *plan)
+{
+    gonio_readings *readings = NULL;
+    assert_int_equal(gonio_readings_create_from_plan(context, plan, &readings), GONIO_OK);
+    return readings;
+}
+
+static gonio_readings *read_file(const char *path)
 {
     const gonio_readings_options options = {
-        .values_needed = values_needed, .average_repeats = true, .negative_to_zero = true};
+        .values_needed = true, .average_repeats = true, .negative_to_zero = true};
     gonio_readings *readings = NULL;
     assert_int_equal(gonio_readings_read(context, path, &options, &readings), GONIO_OK);
     return readings;
 }
 
 /* E6 of a material that is read as planned. */
-static double error_of(const gonio_basis *basis, const char *plan, const char *name)
+static double error_of(const gonio_basis *basis, const gonio_plan *plan, const char *name)
 {
     char *path = NULL;
     gonio_material *original = NULL;
@@ -92,7 +97,7 @@ static double error_of(const gonio_basis *basis, const char *plan, const char *n
     gonio_reconstruct_options options;
     gonio_instrument_options instrument;
     gonio_comparison comparison;
-    gonio_readings *readings = read_file(plan, false);
+    gonio_readings *readings = read_plan(plan);
     gonio_reconstruct_options_default(&options);
     gonio_instrument_options_default(&instrument);
     assert_true(asprintf(&path, "%s/data/neural-merl/%s.h5", support_shared(), name) > 0);
@@ -118,16 +123,13 @@ static void test_new_materials_with_20_readings(void **state)
 {
     (void)state;
     support_need_shared();
-    char *folder = support_folder();
-    char plan[256];
-    snprintf(plan, sizeof plan, "%s/p.csv", folder);
     json_t *split = json_array_get(json_object_get(reference, "splits"), 0);
     json_t *tests = json_object_get(split, "test");
     gonio_basis *basis = learn(json_object_get(split, "basis"));
     gonio_plan_options options;
     gonio_plan_options_default(&options);
     options.count = 20;
-    write_plan(basis, &options, plan);
+    gonio_plan *plan = make_plan(basis, &options);
     const size_t step = json_array_size(tests) / TESTED;
     double sum = 0.0;
     for (size_t k = 0; k < TESTED; k++) {
@@ -135,8 +137,8 @@ static void test_new_materials_with_20_readings(void **state)
     }
     print_message("mean of %d: E6 %.2f %%\n", TESTED, sum / TESTED);
     assert_true(sum / TESTED < 3.2);
+    gonio_plan_free(&plan);
     gonio_basis_free(&basis);
-    support_remove(folder);
 }
 
 /* All the neural materials, in the order of the first split. */
@@ -151,11 +153,8 @@ static json_t *all_materials(void)
 /* E6 of all other readings of a paint, from `count` planned ones. */
 static double error_of_paint(const gonio_basis *basis, const char *paint, size_t count)
 {
-    char *folder = support_folder();
-    char plan_path[256];
-    snprintf(plan_path, sizeof plan_path, "%s/p.csv", folder);
-    gonio_readings *all = read_file(paint, true);
-    gonio_readings *predicted = read_file(paint, true);
+    gonio_readings *all = read_file(paint);
+    gonio_readings *predicted = read_file(paint);
     const gonio_readings_view view = gonio_readings_describe(all);
     assert_int_equal(view.count, 1439);
     assert_int_equal(view.channels, 31);
@@ -168,8 +167,9 @@ static double error_of_paint(const gonio_basis *basis, const char *paint, size_t
     options.count = count;
     options.candidates = candidates;
     options.candidate_count = view.count;
-    write_plan(basis, &options, plan_path);
-    gonio_readings *plan = read_file(plan_path, false);
+    gonio_plan *chosen = make_plan(basis, &options);
+    gonio_readings *plan = read_plan(chosen);
+    gonio_plan_free(&chosen);
     bool *used = calloc(view.count, sizeof *used);
     gonio_reconstruct_options how;
     gonio_reconstruct_options_default(&how);
@@ -191,7 +191,6 @@ static double error_of_paint(const gonio_basis *basis, const char *paint, size_t
     gonio_readings_free(&all);
     free(used);
     free(candidates);
-    support_remove(folder);
     return error.value[GONIO_E6];
 }
 

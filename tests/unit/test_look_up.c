@@ -8,8 +8,6 @@
 #include "made_readings.h"
 #include "reconstruct/spectrum.h"
 
-static const gonio_readings_options any = {.average_repeats = true, .negative_to_zero = true};
-
 static void assert_close(double value, double expected, double tolerance)
 {
     if (!(fabs(value - expected) <= tolerance)) {
@@ -17,31 +15,16 @@ static void assert_close(double value, double expected, double tolerance)
     }
 }
 
-static gonio_readings *make(const char *lines, const char *columns)
-{
-    char text[2048];
-    char *folder = support_folder();
-    gonio_readings *readings = NULL;
-    snprintf(text, sizeof text, "theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg%s\n%s", columns,
-             lines);
-    assert_int_equal(made_readings(NULL, folder, "r.csv", text, &any, &readings), GONIO_OK);
-    support_remove(folder);
-    return readings;
-}
-
-static const char rgb[] = ",R_per_sr,G_per_sr,B_per_sr";
-
 /* 30 and 50 degrees apart, 40 of phi; a second one; one in the mirror direction. */
-static const char known_lines[] = "30,0,50,40,0.1,0.2,0.3\n"
-                                  "20,0,70,200,0.4,0.5,\n"
-                                  "45,0,45,180,10,20,30\n";
+static const double known_rows[3][7] = {
+    {30, 0, 50, 40, 0.1, 0.2, 0.3}, {20, 0, 70, 200, 0.4, 0.5, NAN}, {45, 0, 45, 180, 10, 20, 30}};
 
 /* Which known reading a plan of one direction takes: its R; -1 if there is none. */
-static double looked_up(const char *line)
+static double looked_up(const double row[4])
 {
     gonio_context *context = support_context();
-    gonio_readings *known = make(known_lines, rgb);
-    gonio_readings *plan = make(line, "");
+    gonio_readings *known = made_colours(known_rows, 3);
+    gonio_readings *plan = made_directions((const double(*)[4])row, 1);
     const gonio_status status = gonio_readings_look_up(context, plan, known);
     const double value = status == GONIO_OK ? gonio_readings_value(plan, 0, 0) : -1.0;
     if (status != GONIO_OK) {
@@ -61,25 +44,26 @@ static void test_look_up(void **state)
 {
     (void)state;
     static const struct {
-        const char *line;
+        double row[4];
         double value;
     } cases[] = {
-        {"30,0,50,40\n", 0.1},         {"30,100,50,140\n", 0.1}, /* turned: isotropic */
-        {"50,40,30,0\n", 0.1},                                   /* reciprocal */
-        {"30.003,0,50.003,40\n", 0.1},                           /* within 1e-4 radians */
-        {"30.1,0,50,40\n", -1.0},      {"30,0,50,41\n", -1.0},   {"20,0,70,200\n", 0.4},
-        {"70,200,20,0\n", 0.4},        {"45,10,45,190\n", 10.0}, {"0,0,45,0\n", -1.0},
+        {{30, 0, 50, 40}, 0.1},         {{30, 100, 50, 140}, 0.1}, /* turned: isotropic */
+        {{50, 40, 30, 0}, 0.1},                                    /* reciprocal */
+        {{30.003, 0, 50.003, 40}, 0.1},                            /* within 1e-4 radians */
+        {{30.1, 0, 50, 40}, -1.0},      {{30, 0, 50, 41}, -1.0},   {{20, 0, 70, 200}, 0.4},
+        {{70, 200, 20, 0}, 0.4},        {{45, 10, 45, 190}, 10.0}, {{0, 0, 45, 0}, -1.0},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        assert_close(looked_up(cases[k].line), cases[k].value, 0.0);
+        assert_close(looked_up(cases[k].row), cases[k].value, 0.0);
     }
 }
 
 static void test_what_was_not_read_stays_so(void **state)
 {
     (void)state;
-    gonio_readings *known = make(known_lines, rgb);
-    gonio_readings *plan = make("20,0,70,200\n30,0,50,40\n", "");
+    static const double rows[][4] = {{20, 0, 70, 200}, {30, 0, 50, 40}};
+    gonio_readings *known = made_colours(known_rows, 3);
+    gonio_readings *plan = made_directions(rows, 2);
     assert_int_equal(gonio_readings_look_up(NULL, plan, known), GONIO_OK);
     assert_close(gonio_readings_value(plan, 0, 1), 0.5, 0.0);
     assert_true(isnan(gonio_readings_value(plan, 0, 2)));
@@ -91,14 +75,19 @@ static void test_what_was_not_read_stays_so(void **state)
 static void test_spectra_are_looked_up_too(void **state)
 {
     (void)state;
-    gonio_readings *known =
-        make("30,0,50,40,0.1,0.2\n10,0,20,0,0.3,0.4\n", ",400nm_per_sr,500nm_per_sr");
-    gonio_readings *plan = make("10,0,20,0\n", "");
+    static const double waves[] = {400, 500};
+    static const double spectra[][6] = {{30, 0, 50, 40, 0.1, 0.2}, {10, 0, 20, 0, 0.3, 0.4}};
+    static const double deviations[] = {0.01, 0.02, 0.03, 0.04};
+    static const double rows[][4] = {{10, 0, 20, 0}};
+    gonio_readings *known = made_spectra(&spectra[0][0], 2, 2, waves, true);
+    gonio_readings *plan = made_directions(rows, 1);
+    assert_int_equal(gonio_readings_set_deviations(NULL, known, deviations), GONIO_OK);
     assert_int_equal(gonio_readings_look_up(NULL, plan, known), GONIO_OK);
     assert_int_equal(gonio_readings_describe(plan).channels, 2);
     assert_close(gonio_readings_value(plan, 0, 0), 0.3, 0.0);
     assert_close(gonio_readings_value(plan, 0, 1), 0.4, 0.0);
     assert_close(gonio_readings_describe(plan).wavelength[1], 500.0, 0.0);
+    assert_close(gonio_readings_describe(plan).deviation[1], 0.04, 0.0);
     gonio_readings_free(&plan);
     gonio_readings_free(&known);
 }
@@ -108,10 +97,10 @@ static void test_spectra_are_looked_up_too(void **state)
 static void test_errors_between_readings(void **state)
 {
     (void)state;
-    gonio_readings *a = make(known_lines, rgb);
-    gonio_readings *b = make("30,0,50,40,0.11,0.2,0.2\n20,0,70,200,0.4,0.6,7\n"
-                             "45,0,45,180,1,2,3\n",
-                             rgb);
+    static const double rows[][7] = {
+        {30, 0, 50, 40, 0.11, 0.2, 0.2}, {20, 0, 70, 200, 0.4, 0.6, 7}, {45, 0, 45, 180, 1, 2, 3}};
+    gonio_readings *a = made_colours(known_rows, 3);
+    gonio_readings *b = made_colours(rows, 3);
     const bool left_out[3] = {false, false, true};
     const double pairs[][3] = {/* value, other, channel */
                                {0.1, 0.11, 0},
@@ -151,11 +140,14 @@ static void test_readings_that_cannot_be_compared(void **state)
 {
     (void)state;
     gonio_context *context = support_context();
-    gonio_readings *a = make(known_lines, rgb);
-    gonio_readings *fewer = make("30,0,50,40,0.1,0.2,0.3\n", rgb);
-    gonio_readings *spectral =
-        make("30,0,50,40,1\n20,0,70,200,1\n45,0,45,180,1\n", ",400nm_per_sr");
-    gonio_readings *dark = make("30,0,50,40,0,0,0\n", rgb);
+    static const double dark_row[][7] = {{30, 0, 50, 40, 0, 0, 0}};
+    static const double spectra[][5] = {
+        {30, 0, 50, 40, 1}, {20, 0, 70, 200, 1}, {45, 0, 45, 180, 1}};
+    static const double wave = 400.0;
+    gonio_readings *a = made_colours(known_rows, 3);
+    gonio_readings *fewer = made_colours(known_rows, 1);
+    gonio_readings *spectral = made_spectra(&spectra[0][0], 3, 1, &wave, true);
+    gonio_readings *dark = made_colours(dark_row, 1);
     gonio_error error;
     size_t compared = 0;
     const bool all[3] = {true, true, true};

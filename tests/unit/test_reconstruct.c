@@ -10,12 +10,12 @@
 
 #include "core/random.h"
 #include "made_material.h"
+#include "made_readings.h"
 
 enum { MATERIALS = 6, K = 5, READINGS = 14 };
 
 typedef struct fixture {
     char *folder;
-    char path[256];
     gonio_context *context;
     gonio_basis *basis;
     gonio_basis_view view;
@@ -41,7 +41,6 @@ static int set_up(void **state)
     fixture *f = calloc(1, sizeof *f);
     assert_non_null(f);
     f->folder = support_folder();
-    snprintf(f->path, sizeof f->path, "%s/readings.csv", f->folder);
     f->context = support_context();
     f->basis = learn(GONIO_BIVARIATE, GONIO_JOINT);
     f->view = gonio_basis_describe(f->basis);
@@ -142,40 +141,37 @@ static void test_rows_give_a_known_material_back(void **state)
 
 /* ---- from readings ---- */
 
-/* Measures the known material where a file says. */
-static gonio_readings *measure(const fixture *f, const gonio_basis *basis)
+/* Measures the known material at the directions of readings. */
+static void measure(const fixture *f, const gonio_basis *basis, gonio_readings *readings)
 {
-    const gonio_readings_options plan = {.values_needed = false};
     gonio_material *material = make_truth(basis);
     gonio_table *table = made_table(material);
-    gonio_readings *readings = NULL;
-    assert_int_equal(gonio_readings_read(f->context, f->path, &plan, &readings), GONIO_OK);
     assert_int_equal(gonio_measure(f->context, readings, table, NULL), GONIO_OK);
     gonio_table_free(&table);
     gonio_material_free(&material);
-    return readings;
 }
 
-static void write_plan(const fixture *f, const gonio_basis *basis)
+static gonio_readings *make_plan(const gonio_basis *basis)
 {
+    gonio_readings *readings = NULL;
     gonio_plan_options options;
     gonio_plan *plan = NULL;
     gonio_plan_options_default(&options);
     options.count = READINGS;
     options.restarts = 1;
     assert_int_equal(gonio_plan_create(NULL, basis, &options, &plan), GONIO_OK);
-    assert_int_equal(gonio_plan_write(NULL, plan, NULL, f->path), GONIO_OK);
+    assert_int_equal(gonio_readings_create_from_plan(NULL, plan, &readings), GONIO_OK);
     gonio_plan_free(&plan);
+    return readings;
 }
 
-/* Angles are kept to 1e-9 degrees, which the narrowest cells turn into about 1e-7. */
 static void assert_chain(const fixture *f, const gonio_basis *basis, bool all_channels,
                          size_t expected_readings)
 {
     const gonio_reconstruct_options options = {.all_channels = all_channels};
     gonio_reconstruction *r = NULL;
-    write_plan(f, basis);
-    gonio_readings *readings = measure(f, basis);
+    gonio_readings *readings = make_plan(basis);
+    measure(f, basis, readings);
     if (gonio_reconstruct(f->context, basis, readings, &options, &r) != GONIO_OK) {
         fail_msg("%s", support_message());
     }
@@ -200,16 +196,20 @@ static void test_the_planned_channel_suffices(void **state)
 static void test_all_channels_may_be_used(void **state)
 {
     const fixture *f = *state;
-    static const char plan[] = "theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,channel\n"
-                               "10,0,10,180,R\n10,0,10,180,B\n50,0,20,180,G\n10,0,10,180,G\n"
-                               "30,0,70,90,G\n80,0,75,170,B\n";
+    static const double row[6][4] = {{10, 0, 10, 180}, {10, 0, 10, 180}, {50, 0, 20, 180},
+                                     {10, 0, 10, 180}, {30, 0, 70, 90},  {80, 0, 75, 170}};
+    static const int planned[6] = {0, 2, 1, 1, 1, 2};
     const gonio_reconstruct_options all = {.all_channels = true};
     gonio_reconstruction *r = NULL;
-    FILE *file = fopen(f->path, "wb");
-    assert_non_null(file);
-    fputs(plan, file);
-    assert_int_equal(fclose(file), 0);
-    gonio_readings *readings = measure(f, f->basis);
+    gonio_pair pair[6];
+    for (size_t k = 0; k < 6; k++) {
+        pair[k] = made_pair(row[k]);
+    }
+    const gonio_readings_arrays arrays = {
+        .count = 6, .channels = GONIO_CHANNELS, .pair = pair, .planned = planned};
+    gonio_readings *readings = NULL;
+    assert_int_equal(gonio_readings_create(f->context, &arrays, NULL, &readings), GONIO_OK);
+    measure(f, f->basis, readings);
     assert_int_equal(gonio_reconstruct(f->context, f->basis, readings, &all, &r), GONIO_OK);
     assert_int_equal(r->readings, 4 * GONIO_CHANNELS);
     gonio_reconstruction_free(&r);
@@ -233,35 +233,37 @@ static void test_separate_channels(void **state)
 static void test_directions_between_centres(void **state)
 {
     const fixture *f = *state;
-    FILE *file = fopen(f->path, "wb");
+    gonio_pair pair[READINGS];
+    int planned[READINGS];
+    double value[READINGS][GONIO_CHANNELS];
     gonio_i_random random;
     gonio_reconstruction *r = NULL;
     gonio_i_random_seed(&random, 3, 0);
-    assert_non_null(file);
-    fputs("theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,channel,R_per_sr,G_per_sr,B_per_sr\n", file);
     for (int j = 0; j < READINGS; j++) {
-        const double degrees = M_PI / 180.0;
         const int channel = j % GONIO_CHANNELS;
         double angle[4], row[K];
         for (int k = 0; k < 4; k++) {
             angle[k] = round((k % 2 ? 360.0 : 80.0) * gonio_i_random_uniform(&random));
         }
-        const gonio_half_difference c = gonio_half_difference_from_pair((gonio_pair){
-            {angle[0] * degrees, angle[1] * degrees}, {angle[2] * degrees, angle[3] * degrees}});
+        pair[j] = made_pair(angle);
+        planned[j] = channel;
+        const gonio_half_difference c = gonio_half_difference_from_pair(pair[j]);
         double g = 0.0;
         gonio_basis_row_at(f->basis, c, channel, K, &g, row);
         for (int k = 0; k < K; k++) {
             g += row[k] * truth[k];
         }
-        fprintf(file, "%g,%g,%g,%g,%c", angle[0], angle[1], angle[2], angle[3], "RGB"[channel]);
         for (int k = 0; k < GONIO_CHANNELS; k++) {
-            fprintf(file, k == channel ? ",%.17g" : ",", gonio_brdf_from_log(g, channel));
+            value[j][k] = k == channel ? gonio_brdf_from_log(g, channel) : NAN;
         }
-        fputc('\n', file);
     }
-    assert_int_equal(fclose(file), 0);
+    const gonio_readings_arrays arrays = {.count = READINGS,
+                                          .channels = GONIO_CHANNELS,
+                                          .pair = pair,
+                                          .planned = planned,
+                                          .value = &value[0][0]};
     gonio_readings *readings = NULL;
-    assert_int_equal(gonio_readings_read(f->context, f->path, NULL, &readings), GONIO_OK);
+    assert_int_equal(gonio_readings_create(f->context, &arrays, NULL, &readings), GONIO_OK);
     assert_int_equal(gonio_reconstruct(f->context, f->basis, readings, NULL, &r), GONIO_OK);
     assert_coefficients(r, 1e-8);
     assert_true(error_of(f->basis, r) < 1e-8);
@@ -275,14 +277,14 @@ static void test_what_does_not_belong_together(void **state)
     gonio_basis *other = learn(GONIO_BIVARIATE, GONIO_SEPARATE);
     gonio_reconstruct_options options = {.other_basis = false};
     gonio_reconstruction *r = NULL;
-    write_plan(f, f->basis);
-    gonio_readings *readings = measure(f, f->basis);
+    gonio_readings *readings = make_plan(f->basis);
+    measure(f, f->basis, readings);
     assert_int_equal(gonio_reconstruct(f->context, other, readings, &options, &r),
                      GONIO_ERROR_MISMATCH);
     options.other_basis = true;
     assert_int_equal(gonio_reconstruct(f->context, other, readings, &options, &r),
                      GONIO_ERROR_UNDETERMINED); /* each channel has but a third of the readings */
-    assert_non_null(strstr(support_message(), f->path));
+    assert_non_null(strstr(support_message(), "plan: "));
     options.components = K + 1;
     assert_int_equal(gonio_reconstruct(f->context, f->basis, readings, &options, &r),
                      GONIO_ERROR_ARGUMENT);
@@ -358,14 +360,11 @@ typedef struct several {
 /* Readings that differ, as noise does. */
 static void make_several(const fixture *f, several *s)
 {
-    write_plan(f, f->basis);
     gonio_material *material = make_truth(f->basis);
     gonio_table *table = made_table(material);
     for (size_t k = 0; k < TABLES; k++) {
-        const gonio_readings_options plan = {.values_needed = false};
         const gonio_instrument_options noise = {.noise = 0.01, .seed = k};
-        assert_int_equal(gonio_readings_read(f->context, f->path, &plan, &s->readings[k]),
-                         GONIO_OK);
+        s->readings[k] = make_plan(f->basis);
         assert_int_equal(gonio_measure(f->context, s->readings[k], table, &noise), GONIO_OK);
         s->path[k] = malloc(512);
         assert_non_null(s->path[k]);
@@ -473,13 +472,10 @@ static void test_tables_before_the_first_failure_are_written(void **state)
     free(s.path[2]);
     s.path[2] = path;
 
-    FILE *file = fopen(f->path, "wb");
-    assert_non_null(file);
-    fputs("theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,R_per_sr\n10,0,20,180,0.1\n", file);
-    assert_int_equal(fclose(file), 0);
+    static const double row[][7] = {{10, 0, 20, 180, 0.1, NAN, NAN}};
     for (size_t k = 1; k < TABLES; k += 2) {
         gonio_readings_free(&s.readings[k]);
-        assert_int_equal(gonio_readings_read(f->context, f->path, NULL, &s.readings[k]), GONIO_OK);
+        s.readings[k] = made_colours(row, 1);
     }
     assert_int_equal(write_several(f, f->context, &s), GONIO_ERROR_UNDETERMINED);
     assert_non_null(strstr(support_message(), "1 readings of which 1 are independent"));
