@@ -1,8 +1,11 @@
-/* A material: the BRDF of an isotropic surface on the grid of direction.h, read slab by slab.
+/* A material: a BRDF at any directions, in any channels: colours, one channel, or wavelengths.
  *
- * A material is never held whole: it is asked for one theta_h index (a slab) at a time, from a
- * file, an analytic model or any callback. A slab is an array rho[channel][theta_d][phi_d] of 3 x
- * 90 x 180 doubles (GONIO_SLAB_VALUES) in 1/sr, linear R, G, B. A bin with data has three finite
+ * Where it comes from - a file, an analytic model, a callback - may know it at any directions, or
+ * on the grid of direction.h only, or both; each is made from the other where it is asked for.
+ *
+ * On the grid a material is never held whole: it is asked for one theta_h index (a slab) at a time.
+ * A slab is an array rho[channel][theta_d][phi_d] of 3 x 90 x 180 doubles (GONIO_SLAB_VALUES) in
+ * 1/sr, linear R, G, B, of an isotropic and reciprocal surface. A bin with data has three finite
  * values >= 0; a bin without has -1 in all three channels. */
 #ifndef GONIO_MATERIAL_H
 #define GONIO_MATERIAL_H
@@ -23,18 +26,38 @@ enum {
 
 typedef struct gonio_material gonio_material;
 
-/* Where a material's values come from. */
+/* Where a material's values come from: at least one of read_slab and evaluate. Both may be called
+ * from several threads at once and must give the same values every time. */
 typedef struct gonio_material_source {
-    /* Fills rho (GONIO_SLAB_VALUES) for one theta_h index in 0 .. 89. May be called from several
-     * threads at once and must give the same values every time. */
+    /* Fills rho (GONIO_SLAB_VALUES) for one theta_h index in 0 .. 89. NULL: made from evaluate, as
+     * gonio_material_read_slab says. */
     gonio_status (*read_slab)(void *self, gonio_context *context, int theta_h, double *rho);
     /* Releases self; may be NULL. */
     void (*release)(void *self);
     void *self;
+    /* Fills values[count][channels], 1/sr, for directions above the horizon. NaN or a negative
+     * number: no data. NULL: interpolated from slabs. */
+    gonio_status (*evaluate)(void *self, gonio_context *context, const gonio_pair *pairs,
+                             size_t count, double *values);
+    size_t channels;          /* of evaluate; 0 for R, G, B */
+    const double *wavelength; /* [channels], nm, copied; NULL: 3 channels are R, G, B, 1 is grey */
+    bool anisotropic;         /* values depend on phi_h too */
+    double theta_limit;       /* polar angle up to which values were measured, radians; 0: all */
 } gonio_material_source;
 
+/* What a material is; pointers belong to it. */
+typedef struct gonio_material_view {
+    const char *name;         /* as gonio_material_name */
+    const char *format;       /* as gonio_material_format */
+    size_t channels;          /* of gonio_material_evaluate */
+    const double *wavelength; /* [channels], nm; NULL: R, G, B, or grey */
+    bool anisotropic;
+    double theta_limit; /* radians; 0 for none */
+} gonio_material_view;
+
 /* Opens a material: a MERL .binary table (phi_d of 180 bins, or 360 folded by reciprocity), a
- * neural BRDF .h5, recognised by content, or "atlas:NAME" for a built-in one. The path is copied.
+ * neural BRDF .h5, an RGL .bsdf (RGB or spectral, isotropic or not), recognised by content, or
+ * "atlas:NAME" for a built-in one. The path is copied.
  * Errors: _IO (missing, unreadable, a directory), _FORMAT (not a known format, truncated,
  * oversized, non-finite weights), _ARGUMENT (no such built-in material), _MEMORY. */
 GONIO_API gonio_status gonio_material_open(gonio_context *context, const char *path,
@@ -54,8 +77,31 @@ GONIO_API const char *gonio_material_name(const gonio_material *material);
 /* Where it came from in words: "MERL table 90 x 90 x 180", "neural BRDF 6-21-21-3". */
 GONIO_API const char *gonio_material_format(const gonio_material *material);
 
-/* Reads one slab into rho (GONIO_SLAB_VALUES doubles, the caller's). Thread-safe.
- * Errors: _ARGUMENT (theta_h outside 0 .. 89), and those of the source (_IO, _FORMAT). */
+GONIO_API gonio_material_view gonio_material_describe(const gonio_material *material);
+
+/* The BRDF at any pairs of directions: values[count][channels] in 1/sr, channels as
+ * gonio_material_describe says. NaN where there are no data: below the horizon, beyond theta_limit,
+ * in a hole, or in a channel that is negative there. From the source itself if it can evaluate;
+ * otherwise from its table by trilinear interpolation, as gonio_table_value. Thread-safe; uses the
+ * context's threads. Errors: _MEMORY, and those of the source. */
+GONIO_API gonio_status gonio_material_evaluate(gonio_context *context,
+                                               const gonio_material *material,
+                                               const gonio_pair *pairs, size_t count,
+                                               double *values);
+
+/* What the colours of a spectrum are seen under: equal energy, CIE D65, CIE A. */
+typedef enum gonio_illuminant {
+    GONIO_ILLUMINANT_E,
+    GONIO_ILLUMINANT_D65,
+    GONIO_ILLUMINANT_A
+} gonio_illuminant;
+
+/* Reads one slab into rho (GONIO_SLAB_VALUES doubles, the caller's). Thread-safe. Of a source that
+ * is evaluated: at the centres of the bins, the mean of either side of the reciprocal pair and, if
+ * it is anisotropic, of 8 azimuths of the half vector; spectra as linear sRGB under equal energy,
+ * in which a flat spectrum is white; one channel as grey; 0 in a channel without data where others
+ * have some; no data beyond theta_limit. Errors: _ARGUMENT (theta_h outside 0 .. 89), and those of
+ * the source (_IO, _FORMAT). */
 GONIO_API gonio_status gonio_material_read_slab(const gonio_material *material,
                                                 gonio_context *context, int theta_h, double *rho);
 

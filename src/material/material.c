@@ -1,4 +1,4 @@
-/* Materials: opening by content, built-in ones, and reading slab by slab. */
+/* Materials: the object, opening by content, built-in ones, and reading slab by slab. */
 #include <gonio/atlas.h>
 #include <gonio/material.h>
 
@@ -11,12 +11,17 @@
 #include <xxhash.h>
 
 #include "../core/core.h"
+#include "colour.h"
 #include "formats/format.h"
+#include "slab.h"
+#include "source.h"
 
 struct gonio_material {
     char *name;
     char *format;
     gonio_material_source source;
+    double *wavelength; /* [source.channels]; NULL for colours */
+    double *weight;     /* [GONIO_CHANNELS][source.channels]: from spectra to colours, or NULL */
 };
 
 struct gonio_fingerprint {
@@ -26,24 +31,78 @@ struct gonio_fingerprint {
 static const gonio_i_format_reader *const readers[] = {
     &gonio_i_merl_reader,
     &gonio_i_neural_reader,
+    &gonio_i_rgl_reader,
 };
 
 enum { READERS = sizeof readers / sizeof *readers };
 
+static gonio_status check_source(gonio_context *context, const gonio_material_source *source)
+{
+    const bool colours = source->channels == 1 || source->channels == GONIO_CHANNELS;
+    if (source->read_slab == NULL && source->evaluate == NULL) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "a material needs read_slab or evaluate");
+    }
+    if (source->evaluate != NULL && source->wavelength == NULL && !colours) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "a material of %zu channels needs their wavelengths", source->channels);
+    }
+    return GONIO_OK;
+}
+
+/* Wavelengths of the material's own, and what they weigh in its colours. */
+static gonio_status keep_wavelengths(gonio_context *context, gonio_material *material)
+{
+    const size_t channels = material->source.channels;
+    if (material->source.wavelength == NULL) {
+        return GONIO_OK;
+    }
+    material->wavelength = gonio_i_allocate(context, channels, sizeof *material->wavelength);
+    material->weight =
+        gonio_i_allocate(context, GONIO_CHANNELS * channels, sizeof *material->weight);
+    if (material->wavelength == NULL || material->weight == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    memcpy(material->wavelength, material->source.wavelength, channels * sizeof(double));
+    material->source.wavelength = material->wavelength;
+    return gonio_i_colour_weights(context, material->wavelength, channels, GONIO_ILLUMINANT_E,
+                                  material->weight);
+}
+
+static gonio_status keep_names(gonio_context *context, const char *name, const char *format,
+                               gonio_material *material)
+{
+    material->name = strdup(name);
+    material->format = strdup(format);
+    return material->name != NULL && material->format != NULL
+               ? GONIO_OK
+               : gonio_i_fail(context, GONIO_ERROR_MEMORY, "out of memory");
+}
+
 gonio_status gonio_material_create(gonio_context *context, const char *name, const char *format,
                                    gonio_material_source source, gonio_material **material)
 {
-    gonio_material *made = gonio_i_allocate(context, 1, sizeof *made);
-    if (made == NULL) {
-        return GONIO_ERROR_MEMORY;
+    source.channels = source.channels == 0 ? GONIO_CHANNELS : source.channels;
+    gonio_status status = check_source(context, &source);
+    gonio_material *made = NULL;
+    if (status == GONIO_OK) {
+        made = gonio_i_allocate(context, 1, sizeof *made);
+        status = made != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
     }
-    made->name = strdup(name);
-    made->format = strdup(format);
-    if (made->name == NULL || made->format == NULL) {
+    if (status == GONIO_OK) {
+        made->source = source;
+        status = keep_names(context, name, format, made);
+    }
+    if (status == GONIO_OK) {
+        status = keep_wavelengths(context, made);
+    }
+    if (status != GONIO_OK) {
+        if (made != NULL) {
+            made->source.release = NULL; /* the source stays the caller's */
+        }
         gonio_material_free(&made);
-        return gonio_i_fail(context, GONIO_ERROR_MEMORY, "out of memory");
+        return status;
     }
-    made->source = source;
     *material = made;
     return GONIO_OK;
 }
@@ -58,6 +117,8 @@ void gonio_material_free(gonio_material **material)
     }
     free((*material)->name);
     free((*material)->format);
+    free((*material)->wavelength);
+    free((*material)->weight);
     free(*material);
     *material = NULL;
 }
@@ -79,7 +140,27 @@ gonio_status gonio_material_read_slab(const gonio_material *material, gonio_cont
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "theta_h index %d outside 0 .. 89",
                             theta_h);
     }
-    return material->source.read_slab(material->source.self, context, theta_h, rho);
+    const gonio_material_source *source = &material->source;
+    return source->read_slab != NULL
+               ? source->read_slab(source->self, context, theta_h, rho)
+               : gonio_i_slab_evaluate(context, source, material->weight, theta_h, rho);
+}
+
+gonio_material_view gonio_material_describe(const gonio_material *material)
+{
+    const gonio_material_source *source = &material->source;
+    const bool grid = source->evaluate == NULL;
+    return (gonio_material_view){.name = material->name,
+                                 .format = material->format,
+                                 .channels = grid ? GONIO_CHANNELS : source->channels,
+                                 .wavelength = grid ? NULL : source->wavelength,
+                                 .anisotropic = source->anisotropic,
+                                 .theta_limit = source->theta_limit};
+}
+
+gonio_material_source gonio_i_material_source(const gonio_material *material)
+{
+    return material->source;
 }
 
 static gonio_status read_atlas_slab(void *self, gonio_context *context, int theta_h, double *rho)
@@ -102,7 +183,8 @@ static gonio_status open_atlas(gonio_context *context, const char *name, gonio_m
         return GONIO_ERROR_MEMORY;
     }
     *self = index;
-    const gonio_material_source source = {read_atlas_slab, free, self};
+    const gonio_material_source source = {
+        .read_slab = read_atlas_slab, .release = free, .self = self};
     char *format = gonio_i_format("built-in %s", gonio_atlas_class(index));
     const gonio_status status =
         format == NULL ? GONIO_ERROR_MEMORY

@@ -5,10 +5,11 @@
 #include <stdlib.h>
 
 #include "../core/core.h"
-#include "../direction/grid.h"
+#include "look_up.h"
 
 struct gonio_table {
-    double *rho; /* [theta_h][channel][theta_d][phi_d] */
+    double *rho;                            /* [theta_h][channel][theta_d][phi_d] */
+    const double *slab[GONIO_THETA_H_BINS]; /* of rho */
 };
 
 static void load_slabs(gonio_context *team, const gonio_material *material, int threads,
@@ -47,6 +48,9 @@ gonio_status gonio_table_load(gonio_context *context, const gonio_material *mate
     gonio_status status = GONIO_OK;
     made->rho = gonio_i_allocate(context, (size_t)GONIO_THETA_H_BINS * GONIO_SLAB_VALUES,
                                  sizeof *made->rho);
+    for (size_t k = 0; made->rho != NULL && k < GONIO_THETA_H_BINS; k++) {
+        made->slab[k] = made->rho + k * GONIO_SLAB_VALUES;
+    }
     if (made->rho == NULL) {
         status = GONIO_ERROR_MEMORY;
     } else {
@@ -77,38 +81,10 @@ const double *gonio_table_values(const gonio_table *table)
     return table->rho;
 }
 
-static const double *bin_values(const gonio_table *table, gonio_bin bin)
-{
-    return table->rho + (size_t)bin.theta_h * GONIO_SLAB_VALUES +
-           (size_t)bin.theta_d * GONIO_PHI_D_BINS + (size_t)bin.phi_d;
-}
-
 bool gonio_table_value(const gonio_table *table, gonio_half_difference coordinates,
                        double rho[GONIO_CHANNELS])
 {
-    rho[0] = rho[1] = rho[2] = 0.0;
-    double cosine_i = 0.0;
-    double cosine_o = 0.0;
-    gonio_cosines(coordinates, &cosine_i, &cosine_o);
-    if (cosine_i <= 0.0 || cosine_o <= 0.0) {
-        return false;
-    }
-    gonio_i_stencil stencil[GONIO_I_TRILINEAR];
-    gonio_i_trilinear(coordinates, stencil);
-    double total = 0.0;
-    for (int k = 0; k < GONIO_I_TRILINEAR; k++) {
-        const double *value = bin_values(table, stencil[k].bin);
-        if (value[0] >= 0.0) {
-            total += stencil[k].weight;
-            for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
-                rho[channel] += stencil[k].weight * value[(size_t)channel * GONIO_SLAB_BINS];
-            }
-        }
-    }
-    for (int channel = 0; channel < GONIO_CHANNELS && total > 0.0; channel++) {
-        rho[channel] /= total;
-    }
-    return total > 0.0;
+    return gonio_i_look_up(table->slab, coordinates, rho);
 }
 
 /* Outgoing directions are drawn through the half vector, h = (theta_h, phi) with theta_h spaced

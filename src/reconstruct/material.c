@@ -189,7 +189,8 @@ gonio_status gonio_reconstruction_material(gonio_context *context, const gonio_b
     r->components = reconstruction->components;
     r->columns = reconstruction->columns;
     memcpy(r->coefficients, reconstruction->coefficients, count * sizeof(double));
-    const gonio_material_source source = {read_reconstructed, free, r};
+    const gonio_material_source source = {
+        .read_slab = read_reconstructed, .release = free, .self = r};
     const gonio_status status =
         gonio_material_create(context, name, "reconstruction", source, material);
     if (status != GONIO_OK) {
@@ -238,7 +239,7 @@ gonio_status gonio_bivariate_material(gonio_context *context, const gonio_materi
         return GONIO_ERROR_MEMORY;
     }
     *self = original;
-    const gonio_material_source source = {read_average, free, self};
+    const gonio_material_source source = {.read_slab = read_average, .release = free, .self = self};
     const gonio_status status = gonio_material_create(context, gonio_material_name(original),
                                                       "bivariate average", source, material);
     if (status != GONIO_OK) {

@@ -127,7 +127,7 @@ static gonio_status write_deviation(const char *folder)
     char path[4096];
     snprintf(path, sizeof path, "%s/deviation.binary", folder);
     gonio_material *material = NULL;
-    const gonio_material_source source = {read_deviation, NULL, NULL};
+    const gonio_material_source source = {.read_slab = read_deviation};
     gonio_status status = gonio_material_create(NULL, "deviation", "made", source, &material);
     if (status == GONIO_OK) {
         status = gonio_material_write_merl(NULL, material, path);

@@ -283,7 +283,7 @@ static void a_tabulated_model_renders_like_itself(void **state)
     (void)state;
     enum { SIDE = 48 };
     gonio_material *material = NULL;
-    const gonio_material_source source = {read_ggx, NULL, NULL};
+    const gonio_material_source source = {.read_slab = read_ggx};
     assert_int_equal(gonio_material_create(NULL, "ggx", "made", source, &material), GONIO_OK);
     gonio_render_options options = small(SIDE, 512);
     options.field_of_view = 0.0;

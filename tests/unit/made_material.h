@@ -33,7 +33,8 @@ static inline gonio_material *made_material(made_constant values)
     made_constant *self = malloc(sizeof *self);
     assert_non_null(self);
     *self = values;
-    const gonio_material_source source = {made_read_slab, free, self};
+    const gonio_material_source source = {
+        .read_slab = made_read_slab, .release = free, .self = self};
     assert_int_equal(gonio_material_create(NULL, "made", "made for a test", source, &material),
                      GONIO_OK);
     return material;

@@ -7,7 +7,7 @@
 
 #include "../../core/core.h"
 
-enum { GONIO_I_HEAD = 16 }; /* bytes of the file's start that a format may look at */
+enum { GONIO_I_HEAD = 1024 }; /* bytes of the file's start that a format may look at */
 
 typedef struct gonio_i_file {
     const char *path;
@@ -27,5 +27,6 @@ typedef struct gonio_i_format_reader {
 
 extern const gonio_i_format_reader gonio_i_merl_reader;
 extern const gonio_i_format_reader gonio_i_neural_reader;
+extern const gonio_i_format_reader gonio_i_rgl_reader;
 
 #endif

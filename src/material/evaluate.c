@@ -1,0 +1,136 @@
+/* A material at any directions: by its own source, or by its table. */
+#include <gonio/material.h>
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "../core/core.h"
+#include "look_up.h"
+#include "source.h"
+
+enum { BLOCK = 4096 /* directions that a thread evaluates at a time */ };
+
+/* ---- by the source ---- */
+
+/* Nothing below the horizon, nor beyond what was measured; a negative value is none. */
+static void take_out(const gonio_material_view *view, const gonio_pair *pair, double *values)
+{
+    const double most = fmax(pair->incident.theta, pair->outgoing.theta);
+    const bool outside =
+        !(most < M_PI / 2.0) || (view->theta_limit > 0.0 && most > view->theta_limit);
+    for (size_t c = 0; c < view->channels; c++) {
+        values[c] = outside || !(values[c] >= 0.0 && isfinite(values[c])) ? NAN : values[c];
+    }
+}
+
+static gonio_status evaluate_blocks(gonio_context *context, const gonio_material *material,
+                                    const gonio_pair *pairs, size_t count, double *values)
+{
+    const gonio_material_source source = gonio_i_material_source(material);
+    const gonio_material_view view = gonio_material_describe(material);
+    gonio_context *team = gonio_i_team_begin(context);
+    gonio_status status = GONIO_OK;
+#pragma omp parallel for schedule(dynamic) num_threads(gonio_context_threads(context))
+    for (size_t first = 0; first < count; first += BLOCK) {
+        const size_t here = count - first < BLOCK ? count - first : BLOCK;
+        double *block = values + first * view.channels;
+        const gonio_status mine = source.evaluate(source.self, team, pairs + first, here, block);
+        for (size_t k = 0; k < here && mine == GONIO_OK; k++) {
+            take_out(&view, &pairs[first + k], block + k * view.channels);
+        }
+        if (mine != GONIO_OK) {
+#pragma omp atomic write
+            status = mine;
+        }
+    }
+    gonio_i_team_end(team, context);
+    return status;
+}
+
+/* ---- by the table ---- */
+
+/* A direction to look up, in the order of the slabs. */
+typedef struct place {
+    size_t index;
+    int first; /* slabs of its stencil */
+    int last;
+    gonio_half_difference at;
+} place;
+
+static int compare_places(const void *a, const void *b)
+{
+    const place *x = a;
+    const place *y = b;
+    return x->first != y->first ? (x->first > y->first) - (x->first < y->first)
+                                : (x->index > y->index) - (x->index < y->index);
+}
+
+/* The slabs that are in memory: the two of a stencil, whose places alternate. */
+typedef struct window {
+    double *buffer[2];
+    int held[2];
+    const double *slab[GONIO_THETA_H_BINS];
+} window;
+
+static gonio_status hold(gonio_context *context, const gonio_material *material, window *w,
+                         int theta_h)
+{
+    const int at = theta_h % 2;
+    if (w->held[at] == theta_h) {
+        return GONIO_OK;
+    }
+    w->held[at] = theta_h;
+    w->slab[theta_h] = w->buffer[at];
+    return gonio_material_read_slab(material, context, theta_h, w->buffer[at]);
+}
+
+static gonio_status look_up_places(gonio_context *context, const gonio_material *material,
+                                   const place *places, size_t count, window *w, double *values)
+{
+    gonio_status status = GONIO_OK;
+    for (size_t k = 0; k < count && status == GONIO_OK; k++) {
+        double *rho = values + places[k].index * GONIO_CHANNELS;
+        status = hold(context, material, w, places[k].first);
+        if (status == GONIO_OK) {
+            status = hold(context, material, w, places[k].last);
+        }
+        if (status == GONIO_OK && !gonio_i_look_up(w->slab, places[k].at, rho)) {
+            rho[0] = rho[1] = rho[2] = NAN;
+        }
+    }
+    return status;
+}
+
+static gonio_status look_up(gonio_context *context, const gonio_material *material,
+                            const gonio_pair *pairs, size_t count, double *values)
+{
+    window w = {.held = {-1, -1}};
+    place *places = gonio_i_allocate(context, count, sizeof *places);
+    for (size_t k = 0; k < 2; k++) {
+        w.buffer[k] = gonio_i_allocate(context, GONIO_SLAB_VALUES, sizeof *w.buffer[k]);
+    }
+    gonio_status status = GONIO_ERROR_MEMORY;
+    if (places != NULL && w.buffer[0] != NULL && w.buffer[1] != NULL) {
+        for (size_t k = 0; k < count; k++) {
+            gonio_i_stencil stencil[GONIO_I_TRILINEAR];
+            places[k].index = k;
+            places[k].at = gonio_half_difference_from_pair(pairs[k]);
+            gonio_i_trilinear(places[k].at, stencil);
+            gonio_i_stencil_slabs(stencil, &places[k].first, &places[k].last);
+        }
+        qsort(places, count, sizeof *places, compare_places);
+        status = look_up_places(context, material, places, count, &w, values);
+    }
+    free(w.buffer[0]);
+    free(w.buffer[1]);
+    free(places);
+    return status;
+}
+
+gonio_status gonio_material_evaluate(gonio_context *context, const gonio_material *material,
+                                     const gonio_pair *pairs, size_t count, double *values)
+{
+    return gonio_i_material_source(material).evaluate != NULL
+               ? evaluate_blocks(context, material, pairs, count, values)
+               : look_up(context, material, pairs, count, values);
+}

@@ -1,0 +1,236 @@
+/* Tensor files: what is well formed is read, what lies is refused; warps and their inverses. */
+#include <gonio/material.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/random.h"
+#include "material/tensor_file.h"
+#include "material/warp.h"
+
+#include "../support.h"
+
+/* A file under construction, little-endian. */
+typedef struct bytes {
+    unsigned char at[4096];
+    size_t count;
+} bytes;
+
+static void add(bytes *b, const void *data, size_t size)
+{
+    memcpy(b->at + b->count, data, size);
+    b->count += size;
+}
+
+static void add_header(bytes *b, uint32_t fields)
+{
+    const unsigned char version[2] = {1, 0};
+    *b = (bytes){.count = 0};
+    add(b, "tensor_file", 12);
+    add(b, version, 2);
+    add(b, &fields, 4);
+}
+
+static void add_field(bytes *b, const char *name, uint8_t type, uint64_t offset,
+                      uint16_t dimensions, const uint64_t *shape)
+{
+    const uint16_t length = (uint16_t)strlen(name);
+    add(b, &length, 2);
+    add(b, name, length);
+    add(b, &dimensions, 2);
+    add(b, &type, 1);
+    add(b, &offset, 8);
+    add(b, shape, dimensions * sizeof *shape);
+}
+
+static void write_file(const char *path, const bytes *b, size_t count)
+{
+    FILE *stream = fopen(path, "wb");
+    assert_non_null(stream);
+    assert_int_equal(fwrite(b->at, 1, count, stream), count);
+    assert_int_equal(fclose(stream), 0);
+}
+
+static gonio_status open_bytes(const bytes *b, size_t count, gonio_i_tensor_file *file)
+{
+    char *folder = support_folder();
+    char path[4096];
+    gonio_context *context = support_context();
+    snprintf(path, sizeof path, "%s/x.bsdf", folder);
+    write_file(path, b, count);
+    const gonio_status status = gonio_i_tensor_open(context, path, file);
+    assert_true(status == GONIO_OK || support_message()[0] != '\0');
+    gonio_context_free(&context);
+    support_remove(folder);
+    return status;
+}
+
+static const uint64_t pair[2] = {2, 3};
+
+static void make_good(bytes *b)
+{
+    const float values[6] = {0.0F, 1.0F, 2.0F, 3.0F, 4.0F, 5.0F};
+    add_header(b, 1);
+    add_field(b, "rgb", GONIO_I_TENSOR_F32, 64, 2, pair);
+    b->count = 64;
+    add(b, values, sizeof values);
+}
+
+static void test_a_good_file(void **state)
+{
+    (void)state;
+    bytes b;
+    gonio_i_tensor_file file;
+    const gonio_i_tensor *field = NULL;
+    make_good(&b);
+    assert_int_equal(open_bytes(&b, b.count, &file), GONIO_OK);
+    assert_int_equal(file.fields, 1);
+    assert_null(gonio_i_tensor_find(&file, "vndf"));
+    assert_int_equal(gonio_i_tensor_expect(NULL, &file, "rgb", GONIO_I_TENSOR_F32, 2, &field),
+                     GONIO_OK);
+    assert_int_equal(field->count, 6);
+    float values[3] = {0.0F};
+    assert_int_equal(gonio_i_tensor_read(NULL, &file, field, 3, 3, values), GONIO_OK);
+    assert_true(values[0] == 3.0F && values[2] == 5.0F);
+    assert_int_equal(gonio_i_tensor_read(NULL, &file, field, 4, 3, values), GONIO_ERROR_FORMAT);
+    assert_int_equal(gonio_i_tensor_expect(NULL, &file, "rgb", GONIO_I_TENSOR_U8, 2, &field),
+                     GONIO_ERROR_FORMAT);
+    assert_int_equal(gonio_i_tensor_expect(NULL, &file, "rgb", GONIO_I_TENSOR_F32, 3, &field),
+                     GONIO_ERROR_FORMAT);
+    gonio_i_tensor_close(&file);
+}
+
+/* Cut anywhere, the header is refused or the numbers are. */
+static void test_truncated_files(void **state)
+{
+    (void)state;
+    bytes b;
+    make_good(&b);
+    for (size_t count = 0; count < b.count; count++) {
+        gonio_i_tensor_file file;
+        const gonio_i_tensor *field = NULL;
+        if (open_bytes(&b, count, &file) == GONIO_OK) {
+            assert_int_equal(
+                gonio_i_tensor_expect(NULL, &file, "rgb", GONIO_I_TENSOR_F32, 2, &field),
+                GONIO_ERROR_FORMAT);
+            gonio_i_tensor_close(&file);
+        }
+    }
+}
+
+/* A header with one field that lies. */
+static gonio_status open_field(uint32_t fields, const char *name, uint8_t type, uint64_t offset,
+                               uint16_t dimensions, const uint64_t *shape)
+{
+    bytes b;
+    gonio_i_tensor_file file;
+    const gonio_i_tensor *field = NULL;
+    add_header(&b, fields);
+    add_field(&b, name, type, offset, dimensions, shape);
+    gonio_status status = open_bytes(&b, b.count, &file);
+    if (status == GONIO_OK) {
+        status = gonio_i_tensor_expect(NULL, &file, name, GONIO_I_TENSOR_F32, dimensions, &field);
+        gonio_i_tensor_close(&file);
+    }
+    return status;
+}
+
+static void test_headers_that_lie(void **state)
+{
+    (void)state;
+    const uint64_t huge[3] = {UINT64_C(1) << 40, UINT64_C(1) << 40, 2};
+    const uint64_t many[1] = {UINT64_MAX / 8};
+    const uint64_t deep[9] = {1, 1, 1, 1, 1, 1, 1, 1, 1};
+    const uint64_t none[1] = {0};
+    char name[80];
+    memset(name, 'x', sizeof name);
+    name[70] = '\0';
+    assert_int_equal(open_field(1, "rgb", 10, 40, 3, huge), GONIO_ERROR_FORMAT);
+    assert_int_equal(open_field(1, "rgb", 10, 40, 1, many), GONIO_ERROR_FORMAT);
+    assert_int_equal(open_field(1, "rgb", 10, UINT64_MAX - 4, 2, pair), GONIO_ERROR_FORMAT);
+    assert_int_equal(open_field(1, "rgb", 10, 40, 9, deep), GONIO_ERROR_FORMAT);
+    assert_int_equal(open_field(1, "rgb", 10, 40, 1, none), GONIO_ERROR_FORMAT);
+    assert_int_equal(open_field(1, "rgb", 12, 40, 2, pair), GONIO_ERROR_FORMAT);
+    assert_int_equal(open_field(1, "rgb", 0, 40, 2, pair), GONIO_ERROR_FORMAT);
+    assert_int_equal(open_field(1, name, 10, 40, 2, pair), GONIO_ERROR_FORMAT);
+    assert_int_equal(open_field(1, "", 10, 40, 2, pair), GONIO_ERROR_FORMAT);
+    assert_int_equal(open_field(2, "rgb", 10, 0, 2, pair), GONIO_ERROR_FORMAT);
+    assert_int_equal(open_field(0, "rgb", 10, 0, 2, pair), GONIO_ERROR_FORMAT);
+    assert_int_equal(open_field(UINT32_MAX, "rgb", 10, 0, 2, pair), GONIO_ERROR_FORMAT);
+}
+
+/* ---- warps ---- */
+
+enum { WIDTH = 9, HEIGHT = 5, SLICES = 2 };
+
+static void make_warp(gonio_i_warp *warp)
+{
+    float values[SLICES * HEIGHT * WIDTH];
+    gonio_i_random random;
+    gonio_i_random_seed(&random, 1, 0);
+    for (size_t k = 0; k < SLICES * HEIGHT * WIDTH; k++) {
+        values[k] = (float)fabs(gonio_i_random_normal(&random)) + 0.01F;
+    }
+    values[3] = 0.0F;
+    values[4] = NAN;
+    assert_int_equal(gonio_i_warp_create(NULL, values, SLICES, HEIGHT, WIDTH, warp), GONIO_OK);
+}
+
+static void test_a_warp_and_its_inverse(void **state)
+{
+    (void)state;
+    gonio_i_warp warp;
+    const gonio_i_blend blend = {2, {0, 1}, {0.3, 0.7}};
+    make_warp(&warp);
+    for (int k = 0; k < 1000; k++) {
+        const double u[2] = {fmod(k * 0.618034, 1.0), (k + 0.5) / 1000.0};
+        double s[2];
+        double back[2];
+        const double there = gonio_i_warp_invert(&warp, &blend, u, s);
+        const double here = gonio_i_warp_sample(&warp, &blend, s, back);
+        assert_true(s[0] >= 0.0 && s[0] <= 1.0 + 1e-12 && s[1] >= 0.0 && s[1] <= 1.0 + 1e-12);
+        assert_true(fabs(back[0] - u[0]) < 1e-9 && fabs(back[1] - u[1]) < 1e-9);
+        assert_true(fabs(there - here) < 1e-9 * there);
+    }
+    gonio_i_warp_free(&warp);
+}
+
+/* The density is that of the map: its Jacobian, and its integral over the square is 1. */
+static void test_the_density_of_a_warp(void **state)
+{
+    (void)state;
+    enum { STEPS = 400 };
+    static const double H = 1e-6;
+    gonio_i_warp warp;
+    const gonio_i_blend blend = {1, {1}, {1.0}};
+    double all = 0.0;
+    make_warp(&warp);
+    for (int k = 0; k < STEPS * STEPS; k++) {
+        const double u[2] = {(k % STEPS + 0.5) / STEPS, (k / STEPS + 0.5) / STEPS};
+        double s[2];
+        const double density = gonio_i_warp_invert(&warp, &blend, u, s);
+        all += density / (STEPS * STEPS);
+        if (k % 1234 == 0) {
+            double x[2];
+            double y[2];
+            gonio_i_warp_invert(&warp, &blend, (double[2]){u[0] + H, u[1]}, x);
+            gonio_i_warp_invert(&warp, &blend, (double[2]){u[0], u[1] + H}, y);
+            const double area = (x[0] - s[0]) * (y[1] - s[1]) - (x[1] - s[1]) * (y[0] - s[0]);
+            assert_true(fabs(area / (H * H) - density) < 1e-3 * density);
+        }
+    }
+    assert_true(fabs(all - 1.0) < 1e-4);
+    gonio_i_warp_free(&warp);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_good_file),           cmocka_unit_test(test_truncated_files),
+        cmocka_unit_test(test_headers_that_lie),      cmocka_unit_test(test_a_warp_and_its_inverse),
+        cmocka_unit_test(test_the_density_of_a_warp),
+    };
+    return cmocka_run_group_tests_name("tensor_file", tests, NULL, NULL);
+}
