@@ -74,7 +74,8 @@ gonio_material *support_load(gonio_context *context, const char *path)
     gonio_material *loaded = NULL;
     assert_int_equal(gonio_material_open(context, path, &file), GONIO_OK);
     assert_int_equal(gonio_table_load(context, file, &table), GONIO_OK);
-    const gonio_material_source source = {read_loaded, release_loaded, table};
+    const gonio_material_source source = {
+        .read_slab = read_loaded, .release = release_loaded, .self = table};
     assert_int_equal(gonio_material_create(context, gonio_material_name(file),
                                            gonio_material_format(file), source, &loaded),
                      GONIO_OK);
