@@ -103,7 +103,7 @@ static int run_step_as_json(const step *s, json_t *done)
 
 static void say_where_the_page_is(const char *folder)
 {
-    if (gonio_report_is_built()) {
+    if (gonio_page_is_built()) {
         printf("Open %s/%s in a browser to see original and reconstruction.\n", folder, page);
     } else {
         printf(
@@ -168,7 +168,7 @@ static int run(tool *t, void *given)
         tool_refuse(t, "no arguments are needed");
         return EXIT_USAGE;
     }
-    const int count = gonio_report_is_built() ? STEPS : STEPS - 1;
+    const int count = gonio_page_is_built() ? STEPS : STEPS - 1;
     const int code = enter(folder);
     if (code != 0) {
         return code;

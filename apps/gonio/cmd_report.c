@@ -51,10 +51,10 @@ static gonio_status write_page(const tool *t, const options *o, const shown *s)
     if (status == GONIO_OK) {
         status = read_readings(t, o->readings, &readings);
     }
-    const gonio_report_content content = {materials[0], materials[1], materials[2], readings,
+    const gonio_page_content content = {materials[0], materials[1], materials[2], readings,
                                           s->folder};
     if (status == GONIO_OK) {
-        status = gonio_report_write(t->context, &content, o->output);
+        status = gonio_page_write(t->context, &content, o->output);
     }
     gonio_readings_free(&readings);
     for (int k = 0; k < 3; k++) {

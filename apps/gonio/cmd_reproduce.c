@@ -2,9 +2,10 @@
 #include "command_line.h"
 #include "json_output.h"
 #include "material_list.h"
-#include "processes.h"
 
 #include <stdio.h>
+
+#include "reproduce.h"
 
 typedef struct options {
     const char *output;
@@ -30,7 +31,7 @@ static int report(const tool *t, const options *o, size_t materials)
 }
 
 static int reproduce(const tool *t, const options *o, const material_list *list,
-                     const gonio_team *team)
+                     const process_group *team)
 {
     const gonio_reproduce_options how = {.splits = o->splits,
                                          .seed = (uint64_t)o->seed,
@@ -55,7 +56,7 @@ static bool check(const tool *t, const options *o)
 }
 
 /* Of what was asked for, the built-in materials by default. */
-static int run(const tool *t, const options *o, const gonio_team *team)
+static int run(const tool *t, const options *o, const process_group *team)
 {
     static const char *const built_in[] = {"atlas:"};
     size_t count = 0;
@@ -77,12 +78,12 @@ static int run(const tool *t, const options *o, const gonio_team *team)
 static int run_in_team(tool *t, void *given)
 {
     const options *o = given;
-    gonio_team team;
-    if (!processes_begin(&team, t->name)) {
+    process_group team;
+    if (!process_group_join(&team, t->name)) {
         return EXIT_DATA;
     }
     tool_quiet = tool_quiet || team.rank != 0;
-    return processes_end(run(t, o, &team));
+    return process_group_leave(run(t, o, &team));
 }
 
 int cmd_reproduce(int argc, const char **argv)

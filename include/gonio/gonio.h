@@ -15,6 +15,6 @@
 #include <gonio/reconstruct.h>
 #include <gonio/evaluate.h>
 #include <gonio/render.h>
-#include <gonio/report.h>
+#include <gonio/page.h>
 
 #endif

@@ -5,8 +5,7 @@
 #include <string.h>
 
 #include "core/core.h"
-#include "report/pieces.h"
-#include "processes.h"
+#include "run/checkpoint.h"
 
 enum { PIECES = 30 };
 
@@ -43,7 +42,8 @@ static void on_message(void *user, gonio_message_level level, const char *text)
     fprintf(stderr, "%s\n", text);
 }
 
-static gonio_status run(gonio_context *context, const char *folder, const gonio_team *team, task *t)
+static gonio_status run(gonio_context *context, const char *folder, const process_group *team,
+                        task *t)
 {
     json_t *results[PIECES] = {0};
     gonio_i_pieces *pieces = NULL;
@@ -68,15 +68,15 @@ static gonio_status run(gonio_context *context, const char *folder, const gonio_
 
 int main(int argc, char **argv)
 {
-    gonio_team team;
+    process_group team;
     int code = 1;
     gonio_context *context = NULL;
     const gonio_context_options options = {.message = on_message, .threads = 1};
-    if (argc > 1 && processes_begin(&team, "team-pieces") &&
+    if (argc > 1 && process_group_join(&team, "team-pieces") &&
         gonio_context_create(&context, &options) == GONIO_OK) {
         task t = {team.rank, argc > 2 ? atoi(argv[2]) : -1};
         code = run(context, argv[1], &team, &t) == GONIO_OK ? 0 : 1;
     }
     gonio_context_free(&context);
-    return processes_end(code);
+    return process_group_leave(code);
 }

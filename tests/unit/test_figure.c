@@ -11,8 +11,8 @@
 
 #include "core/core.h"
 #include "core/random.h"
-#include "report/figure.h"
-#include "report/run_folder.h"
+#include "figures/figure.h"
+#include "run/run_folder.h"
 
 static const char *kept_folder = NULL; /* for the samples */
 

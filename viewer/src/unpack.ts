@@ -1,4 +1,4 @@
-// Unpacks a table: the counterpart of src/report/web_table.c.
+// Unpacks a table: the counterpart of src/page/packed_table.c.
 import { DataUtils } from 'three';
 import {
     BINS,

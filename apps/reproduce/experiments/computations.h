@@ -1,0 +1,26 @@
+/* What each kind of piece computes: the numbers of the experiments. */
+#ifndef GONIO_REPRODUCE_COMPUTATIONS_H
+#define GONIO_REPRODUCE_COMPUTATIONS_H
+
+#include "experiments.h"
+
+/* One piece: what kind it is, and which of them. */
+typedef struct gonio_i_part {
+    int kind; /* in the table of experiments.c */
+    size_t split;
+    size_t index; /* of the grid's components, the method, the chosen size, the left-out material */
+} gonio_i_part;
+
+/* Computes a piece into a JSON object, in the form that experiments.h tells. */
+typedef gonio_status gonio_i_compute(const gonio_i_study *study, gonio_context *context,
+                                     const gonio_i_part *p, json_t *result);
+
+gonio_i_compute gonio_i_compute_spectrum;
+gonio_i_compute gonio_i_compute_convergence;
+gonio_i_compute gonio_i_compute_directions;
+gonio_i_compute gonio_i_compute_grid;
+gonio_i_compute gonio_i_compute_method;
+gonio_i_compute gonio_i_compute_left_out;
+gonio_i_compute gonio_i_compute_quoted;
+
+#endif

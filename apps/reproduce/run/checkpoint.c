@@ -1,0 +1,463 @@
+/* Long work in pieces that are kept: see checkpoint.h. */
+#include "checkpoint.h"
+
+#include <dirent.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <xxhash.h>
+
+#include "run_folder.h"
+
+struct gonio_i_pieces {
+    process_group team;
+    char *folder; /* of the pieces */
+    char run[17]; /* the identity's hash */
+    int lock;     /* of rank 0; -1 for none */
+};
+
+/* What reads back as it was: 17 digits give a double exactly. */
+enum { EXACT = JSON_COMPACT | JSON_ENCODE_ANY | JSON_REAL_PRECISION(17) };
+
+static void put_hash(char hash[17], const char *text)
+{
+    snprintf(hash, 17, "%016" PRIx64, (uint64_t)XXH3_64bits(text, strlen(text)));
+}
+
+/* ---- a piece's file ---- */
+
+static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.";
+
+/* Other names than these could not be files everywhere; they get a hash to stay different. */
+static bool is_plain(const char *name)
+{
+    const size_t length = strlen(name);
+    return length > 0 && length <= 100 && name[0] != '.' && strspn(name, plain) == length;
+}
+
+static char *path_of(const gonio_i_pieces *pieces, const char *name)
+{
+    if (is_plain(name)) {
+        return gonio_i_format("%s/%s.json", pieces->folder, name);
+    }
+    char hash[17];
+    char readable[61];
+    snprintf(readable, sizeof readable, "%s", name);
+    for (char *c = readable; *c != '\0'; c++) {
+        *c = *c == '.' || strchr(plain, *c) == NULL ? '_' : *c;
+    }
+    put_hash(hash, name);
+    return gonio_i_format("%s/%s-%s.json", pieces->folder, readable, hash);
+}
+
+/* What a piece's file must hold; NULL when out of memory or for text that is not UTF-8. */
+static char *text_of(const gonio_i_pieces *pieces, const char *name, const json_t *result)
+{
+    char checksum[17];
+    char *dump = json_dumps(result, EXACT);
+    if (dump == NULL) {
+        return NULL;
+    }
+    put_hash(checksum, dump);
+    json_t *whole = json_pack("{s:s, s:s, s:s, s:O}", "piece", name, "run", pieces->run, "checksum",
+                              checksum, "result", result);
+    free(dump);
+    dump = json_dumps(whole, EXACT);
+    json_decref(whole);
+    char *line = dump != NULL ? gonio_i_format("%s\n", dump) : NULL;
+    free(dump);
+    return line;
+}
+
+static gonio_status write_piece(gonio_context *context, const gonio_i_pieces *pieces,
+                                const char *name, const json_t *result)
+{
+    char *path = path_of(pieces, name);
+    char *text = path != NULL ? text_of(pieces, name, result) : NULL;
+    const gonio_status status =
+        text != NULL ? gonio_i_write_text(context, path, text)
+                     : gonio_i_fail(context, GONIO_ERROR_MEMORY,
+                                    "%s: the result cannot be kept: its name is not UTF-8, or out "
+                                    "of memory",
+                                    name);
+    free(text);
+    free(path);
+    return status;
+}
+
+/* The result in a file of `length` bytes if it is, to the byte, what would be written for it. */
+static json_t *believe(const gonio_i_pieces *pieces, const char *name, const char *text,
+                       size_t length)
+{
+    json_t *whole = json_loadb(text, length, JSON_REJECT_DUPLICATES, NULL);
+    json_t *result = json_incref(json_object_get(whole, "result"));
+    char *expected = result != NULL ? text_of(pieces, name, result) : NULL;
+    if (expected == NULL || strlen(expected) != length || memcmp(expected, text, length) != 0) {
+        json_decref(result);
+        result = NULL;
+    }
+    free(expected);
+    json_decref(whole);
+    return result;
+}
+
+/* A finished piece's result; NULL, with a warning if need be, where there is none to be believed.
+ */
+static json_t *read_piece(gonio_context *context, const gonio_i_pieces *pieces, const char *name)
+{
+    char *path = path_of(pieces, name);
+    FILE *file = path != NULL ? fopen(path, "rbe") : NULL;
+    json_t *result = NULL;
+    if (file != NULL) {
+        char *text = NULL;
+        size_t room = 0;
+        const ssize_t length = getdelim(&text, &room, '\0', file); /* all of it */
+        result = length > 0 ? believe(pieces, name, text, (size_t)length) : NULL;
+        free(text);
+        fclose(file);
+        if (result == NULL) {
+            gonio_i_warn(context, "%s: damaged, or of another run: computed again", path);
+        }
+    }
+    free(path);
+    return result;
+}
+
+/* ---- which pieces there are to do ---- */
+
+typedef struct job {
+    size_t piece;
+    char *name;
+    double cost;
+    bool one_at_a_time;
+    bool begun;
+} job;
+
+typedef struct run {
+    gonio_context *context;
+    const gonio_i_pieces *pieces;
+    const gonio_i_work *work;
+    job *job; /* [work->count], the expensive ones first */
+    job **todo;
+    size_t count;      /* of todo */
+    double cost, done; /* of todo: all, finished */
+    bool occupied;     /* by a piece of which there is one at a time */
+    gonio_status status;
+} run;
+
+static int compare_names(const void *a, const void *b)
+{
+    return strcmp(((const job *)a)->name, ((const job *)b)->name);
+}
+
+static int compare_costs(const void *a, const void *b)
+{
+    const job *p = a;
+    const job *q = b;
+    if (p->cost != q->cost) {
+        return p->cost > q->cost ? -1 : 1;
+    }
+    return p->piece < q->piece ? -1 : p->piece > q->piece;
+}
+
+static gonio_status list_jobs(run *r)
+{
+    const gonio_i_work *work = r->work;
+    for (size_t k = 0; k < work->count; k++) {
+        r->job[k] = (job){k, work->name(work->user, k),
+                          work->cost != NULL ? work->cost(work->user, k) : 1.0,
+                          work->one_at_a_time != NULL && work->one_at_a_time(work->user, k), false};
+        if (r->job[k].name == NULL) {
+            return gonio_i_fail(r->context, GONIO_ERROR_MEMORY, "%s: out of memory", work->title);
+        }
+    }
+    qsort(r->job, work->count, sizeof *r->job, compare_names);
+    for (size_t k = 1; k < work->count; k++) {
+        if (compare_names(&r->job[k - 1], &r->job[k]) == 0) {
+            return gonio_i_fail(r->context, GONIO_ERROR_ARGUMENT, "%s: two pieces are called '%s'",
+                                work->title, r->job[k].name);
+        }
+    }
+    qsort(r->job, work->count, sizeof *r->job, compare_costs);
+    return GONIO_OK;
+}
+
+/* Gives each piece, the expensive ones first, to the rank with the least to do (Graham 1969), so
+ * that every rank knows all shares; adds those of this rank that are not finished. */
+static gonio_status share_out(run *r)
+{
+    const process_group *team = &r->pieces->team;
+    double *load = gonio_i_allocate(r->context, (size_t)team->size, sizeof *load);
+    if (load == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    for (size_t k = 0; k < r->work->count; k++) {
+        int least = 0;
+        for (int rank = 1; rank < team->size; rank++) {
+            least = load[rank] < load[least] ? rank : least;
+        }
+        load[least] += r->job[k].cost;
+        if (least == team->rank) {
+            r->todo[r->count++] = &r->job[k];
+        }
+    }
+    free(load);
+    return GONIO_OK;
+}
+
+/* Leaves the unfinished ones. */
+static void drop_finished(run *r)
+{
+    size_t left = 0;
+    for (size_t k = 0; k < r->count; k++) {
+        json_t *result = read_piece(r->context, r->pieces, r->todo[k]->name);
+        if (result == NULL) {
+            r->cost += r->todo[k]->cost;
+            r->todo[left++] = r->todo[k];
+        }
+        json_decref(result);
+    }
+    if (left < r->count && left > 0 && r->pieces->team.rank == 0) {
+        gonio_i_note(r->context, "%s: going on, %zu of %zu pieces are finished", r->work->title,
+                     r->count - left, r->count);
+    }
+    r->count = left;
+}
+
+/* ---- doing them ---- */
+
+static gonio_status do_job(const run *r, gonio_context *team, const job *j)
+{
+    gonio_context *context = NULL;
+    json_t *result = NULL;
+    gonio_status status = gonio_i_piece_begin(team, j->name, &context);
+    if (status != GONIO_OK) {
+        return status;
+    }
+    status = r->work->compute(r->work->user, context, j->piece, &result);
+    if (status == GONIO_OK) {
+        status = write_piece(context, r->pieces, j->name, result);
+    }
+    json_decref(result);
+    gonio_i_piece_end(context);
+    return status;
+}
+
+/* The share of the cost that is done, which 1 is told of only when all ranks have finished. */
+static gonio_status tell(run *r, gonio_context *team)
+{
+    return gonio_i_progress(team, r->work->title, 0.999 * r->done / r->cost);
+}
+
+static void note_end(run *r, gonio_context *team, const job *j, gonio_status status)
+{
+#pragma omp critical(gonio_pieces)
+    {
+        if (status == GONIO_OK) {
+            r->done += j->cost;
+            status = tell(r, team);
+        }
+        if (r->status == GONIO_OK) {
+            r->status = status;
+        }
+        r->occupied = r->occupied && !j->one_at_a_time;
+    }
+}
+
+/* The next piece for a thread; NULL if there is none. What is left of those of which there is one
+ * at a time falls to the thread that is doing one. */
+static const job *next_job(run *r)
+{
+    job *next = NULL;
+#pragma omp critical(gonio_pieces)
+    {
+        for (size_t k = 0; k < r->count && next == NULL && r->status == GONIO_OK; k++) {
+            job *j = r->todo[k];
+            next = j->begun || (j->one_at_a_time && r->occupied) ? NULL : j;
+        }
+        if (next != NULL) {
+            next->begun = true;
+            r->occupied = r->occupied || next->one_at_a_time;
+        }
+    }
+    return next;
+}
+
+static gonio_status do_jobs(run *r, int threads)
+{
+    gonio_context *team = gonio_i_team_begin(r->context);
+    r->status = r->count > 0 ? tell(r, team) : GONIO_OK;
+#pragma omp parallel num_threads(threads)
+    for (const job *j = next_job(r); j != NULL; j = next_job(r)) {
+        note_end(r, team, j, do_job(r, team, j));
+    }
+    gonio_i_team_end(team, r->context);
+    return r->status;
+}
+
+/* ---- together ---- */
+
+static gonio_status wait_for_all(gonio_context *context, const process_group *team)
+{
+    if (team->size > 1 && !team->barrier(team->user)) {
+        return gonio_i_fail(context, GONIO_ERROR_IO, "the other processes of the team are gone");
+    }
+    return GONIO_OK;
+}
+
+static gonio_status gather(const run *r, json_t **results)
+{
+    memset(results, 0, r->work->count * sizeof *results);
+    for (size_t k = 0; k < r->work->count; k++) {
+        const job *j = &r->job[k];
+        results[j->piece] = read_piece(r->context, r->pieces, j->name);
+        if (results[j->piece] == NULL) {
+            for (size_t i = 0; i < r->work->count; i++) {
+                json_decref(results[i]);
+                results[i] = NULL;
+            }
+            return gonio_i_fail(r->context, GONIO_ERROR_IO,
+                                "%s: the finished piece '%s' cannot be read back",
+                                r->pieces->folder, j->name);
+        }
+    }
+    return GONIO_OK;
+}
+
+static gonio_status do_all(run *r, int threads, json_t **results)
+{
+    gonio_status status = list_jobs(r);
+    if (status == GONIO_OK) {
+        status = share_out(r);
+    }
+    if (status == GONIO_OK) {
+        drop_finished(r);
+        status = do_jobs(r, threads);
+    }
+    if (status == GONIO_OK) {
+        status = wait_for_all(r->context, &r->pieces->team);
+    }
+    if (status == GONIO_OK && r->count > 0) {
+        status = gonio_i_progress(r->context, r->work->title, 1.0);
+    }
+    return status == GONIO_OK && results != NULL ? gather(r, results) : status;
+}
+
+static gonio_status run_pieces(gonio_context *context, const gonio_i_pieces *pieces,
+                               const gonio_i_work *work, int threads, json_t **results)
+{
+    run r = {.context = context, .pieces = pieces, .work = work};
+    r.job = gonio_i_allocate(context, work->count, sizeof *r.job);
+    r.todo = gonio_i_allocate(context, work->count, sizeof(job *));
+    const gonio_status status =
+        r.job != NULL && r.todo != NULL ? do_all(&r, threads, results) : GONIO_ERROR_MEMORY;
+    for (size_t k = 0; r.job != NULL && k < work->count; k++) {
+        free(r.job[k].name);
+    }
+    free(r.todo);
+    free(r.job);
+    return status;
+}
+
+gonio_status gonio_i_pieces_run(gonio_context *context, const gonio_i_pieces *pieces,
+                                const gonio_i_work *work, json_t **results)
+{
+    const int threads = gonio_context_threads(context);
+    if (pieces->team.rank == 0) {
+        return run_pieces(context, pieces, work, threads, results);
+    }
+    /* Of several, rank 0 alone tells its progress. */
+    char name[32];
+    gonio_context *silent = NULL;
+    snprintf(name, sizeof name, "rank %d", pieces->team.rank);
+    gonio_status status = gonio_i_piece_begin(context, name, &silent);
+    if (status == GONIO_OK) {
+        status = run_pieces(silent, pieces, work, threads, results);
+        gonio_i_piece_end(silent);
+    }
+    return status;
+}
+
+/* ---- the folder ---- */
+
+/* What a killed run was writing. */
+static void remove_parts(const char *folder)
+{
+    DIR *entries = opendir(folder);
+    for (const struct dirent *entry = entries != NULL ? readdir(entries) : NULL; entry != NULL;
+         entry = readdir(entries)) {
+        const size_t length = strlen(entry->d_name);
+        if (length > 5 && strcmp(entry->d_name + length - 5, ".part") == 0) {
+            unlinkat(dirfd(entries), entry->d_name, 0);
+        }
+    }
+    if (entries != NULL) {
+        closedir(entries);
+    }
+}
+
+static gonio_status take_folder(gonio_context *context, const char *folder, json_t *identity,
+                                gonio_i_pieces *pieces)
+{
+    json_t *whole = json_pack("{s:s, s:O}", "gonio", gonio_version(), "identity", identity);
+    char *text = json_dumps(whole, EXACT | JSON_SORT_KEYS);
+    gonio_status status = GONIO_OK;
+    if (text == NULL) {
+        status = gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", folder);
+    } else {
+        put_hash(pieces->run, text);
+        if (pieces->team.rank == 0) {
+            status = gonio_i_run_folder_take(context, folder, whole, &pieces->lock);
+        }
+    }
+    if (status == GONIO_OK && pieces->team.rank == 0) {
+        status = gonio_i_make_folder(context, pieces->folder);
+        remove_parts(pieces->folder);
+    }
+    if (status == GONIO_OK) {
+        status = wait_for_all(context, &pieces->team);
+    }
+    if (status == GONIO_OK && pieces->team.rank != 0) {
+        status = gonio_i_run_folder_check(context, folder, whole);
+    }
+    free(text);
+    json_decref(whole);
+    return status;
+}
+
+gonio_status gonio_i_pieces_open(gonio_context *context, const char *folder, json_t *identity,
+                                 const process_group *team, gonio_i_pieces **pieces)
+{
+    gonio_i_pieces *made = gonio_i_allocate(context, 1, sizeof *made);
+    if (made == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    made->lock = -1;
+    made->team = team != NULL ? *team : (process_group){.size = 1};
+    made->folder = gonio_i_format("%s/pieces", folder);
+    const gonio_status status = made->folder != NULL
+                                    ? take_folder(context, folder, identity, made)
+                                    : gonio_i_fail(context, GONIO_ERROR_MEMORY, "out of memory");
+    if (status != GONIO_OK) {
+        gonio_i_pieces_free(&made);
+        return status;
+    }
+    *pieces = made;
+    return GONIO_OK;
+}
+
+void gonio_i_pieces_free(gonio_i_pieces **pieces)
+{
+    if (pieces == NULL || *pieces == NULL) {
+        return;
+    }
+    if ((*pieces)->lock >= 0) {
+        close((*pieces)->lock);
+    }
+    free((*pieces)->folder);
+    free(*pieces);
+    *pieces = NULL;
+}

@@ -1,0 +1,54 @@
+/* Long work cut into independent pieces, of which each finished one is kept in a file, so that a
+ * run that was stopped goes on where it was and ends with the same bytes.
+ *
+ * A run's folder holds
+ *   run.json           its identity: gonio's version and what the caller says (options, materials
+ *                      with fingerprints ...); a folder with another identity is refused
+ *   pieces/NAME.json   a finished piece: its name, the run, a checksum, the result
+ * Pieces run side by side on the context's threads, one thread each, the expensive ones first; a
+ * team's ranks share them out by cost. The results do not depend on any of that. */
+#ifndef GONIO_REPRODUCE_CHECKPOINT_H
+#define GONIO_REPRODUCE_CHECKPOINT_H
+
+#include <jansson.h>
+
+#include "core/core.h"
+#include "process_group.h"
+
+typedef struct gonio_i_pieces gonio_i_pieces;
+
+typedef struct gonio_i_work {
+    const char *title; /* for the progress; must last as long as the context */
+    size_t count;
+    void *user; /* handed to the callbacks, which are called from several threads */
+    /* A piece's name, different from all others of the run; to be released with free(); NULL when
+     * out of memory. */
+    char *(*name)(void *user, size_t piece);
+    /* Its cost relative to the others, > 0; NULL if all cost the same. */
+    double (*cost)(void *user, size_t piece);
+    /* Computes a piece under a context of one thread: a new JSON object or array. It must depend on
+     * the run's identity and the piece's name alone. */
+    gonio_status (*compute)(void *user, gonio_context *context, size_t piece, json_t **result);
+    /* Whether a process does this piece only while it does no other such piece, because they need
+     * much memory. NULL if there are none. */
+    bool (*one_at_a_time)(void *user, size_t piece);
+} gonio_i_work;
+
+/* Makes a run's folder, or takes up an existing one of the same identity (a JSON object; borrowed).
+ * `team` is NULL for a process on its own. Every rank calls this; rank 0 makes the folder, and the
+ * others must see it.
+ * Errors: _MISMATCH if it is another run's; _ARGUMENT if it holds other things or a run is going on
+ * in it; _IO, _FORMAT, _MEMORY. */
+gonio_status gonio_i_pieces_open(gonio_context *context, const char *folder, json_t *identity,
+                                 const process_group *team, gonio_i_pieces **pieces);
+void gonio_i_pieces_free(gonio_i_pieces **pieces);
+
+/* Computes the pieces that are missing. A file that is damaged, or not this run's, counts as
+ * missing and is warned of. After the first failure, or when cancelled, no further piece is begun;
+ * those that were finished stay. Every rank of a team calls this with the same work. Then `results`
+ * [count], where not NULL, is filled with all ranks' results, which the caller owns (json_decref).
+ * Errors: those of the pieces; _ARGUMENT for two pieces of one name; _IO; _CANCELLED. */
+gonio_status gonio_i_pieces_run(gonio_context *context, const gonio_i_pieces *pieces,
+                                const gonio_i_work *work, json_t **results);
+
+#endif

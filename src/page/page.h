@@ -1,0 +1,50 @@
+/* The interactive page: what goes into its template. docs/report-page.md has the format. */
+#ifndef GONIO_PAGE_PAGE_H
+#define GONIO_PAGE_PAGE_H
+
+#include <gonio/page.h>
+#include <jansson.h>
+
+#include "../core/core.h"
+
+/* The template, from viewer/; empty if it was not built. */
+extern const char gonio_i_web_template[];
+extern const char gonio_i_web_template_end[];
+
+/* What the template has where the data go. */
+#define GONIO_I_WEB_PLACE "<!--gonio-data-->"
+
+/* A table packed for the page: text of `size` characters (base64), values in steps of `step`. */
+typedef struct gonio_i_web_table {
+    char *text; /* released with free() */
+    size_t size;
+    double step;
+} gonio_i_web_table;
+
+/* What is packed of a table's numbers. */
+typedef enum gonio_i_web_kind {
+    GONIO_I_WEB_LOG,      /* rho as g = ln(1 + rho/s_c) */
+    GONIO_I_WEB_DEVIATION /* standard deviations of g, as they are */
+} gonio_i_web_kind;
+
+/* Packs values[90][3][90][180] (material.h) into at most `budget` bytes before base64, in the
+ * finest of the steps 1/2048, 1/1024 ... that fits. Errors: _MEMORY, _CANCELLED. */
+gonio_status gonio_i_web_pack(gonio_context *context, const double *values, gonio_i_web_kind kind,
+                              size_t budget, gonio_i_web_table *packed);
+
+/* A material's name, format and values at a few directions, by which the page checks its own
+ * look-ups: rows of [theta_h, theta_d, phi_d, R, G, B]. NULL when out of memory. */
+json_t *gonio_i_web_material(const gonio_material *material, const gonio_table *table, double step);
+
+/* Errors of all channels and of each. */
+json_t *gonio_i_web_comparison(const gonio_comparison *comparison);
+
+/* Readings in measuring order, with what the tables (which may be NULL) hold there. */
+json_t *gonio_i_web_readings(const gonio_readings *readings, const gonio_table *reference,
+                             const gonio_table *reconstruction);
+
+/* The tables of a folder that `gonio reproduce` left: {"fig2a": {"columns": [...], "rows":
+ * [[...]]}, ...}. Errors: _IO, _FORMAT, _DATA (none of them, or columns missing), _MEMORY. */
+gonio_status gonio_i_web_figures(gonio_context *context, const char *folder, json_t **figures);
+
+#endif

@@ -1,0 +1,142 @@
+/* What the page is told about materials, errors and readings, as JSON: see page.h. */
+#include "page.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static json_t *number(double value)
+{
+    return isfinite(value) ? json_real(value) : json_null();
+}
+
+static json_t *numbers(const double *values, int count)
+{
+    json_t *array = json_array();
+    for (int k = 0; k < count; k++) {
+        json_array_append_new(array, number(values[k]));
+    }
+    return array;
+}
+
+/* ---- materials ---- */
+
+enum { CHECKS = 48 };
+
+/* The k-th of directions that fill the grid evenly: multiples of the powers of a cubic root
+ * (Roberts's sequence), folded into the grid's coordinates. */
+static gonio_half_difference check_direction(int k)
+{
+    const double root = 1.2207440846057596;
+    const double u = fmod(0.5 + k / root, 1.0);
+    const double v = fmod(0.5 + k / (root * root), 1.0);
+    const double w = fmod(0.5 + k / (root * root * root), 1.0);
+    return (gonio_half_difference){u * u * M_PI / 2.0, v * M_PI / 2.0, w * M_PI};
+}
+
+/* Directions below the horizon, and those without data, are left out. */
+static json_t *checks(const gonio_table *table)
+{
+    json_t *array = json_array();
+    for (int k = 0; k < CHECKS; k++) {
+        const gonio_half_difference c = check_direction(k);
+        double row[3 + GONIO_CHANNELS] = {c.theta_h, c.theta_d, c.phi_d};
+        if (gonio_table_value(table, c, row + 3)) {
+            json_array_append_new(array, numbers(row, 3 + GONIO_CHANNELS));
+        }
+    }
+    return array;
+}
+
+/* A name that is not UTF-8 is shown without the bytes that are not ASCII. */
+static json_t *text(const char *name)
+{
+    json_t *string = json_string(name);
+    char *plain = string == NULL ? gonio_i_format("%s", name) : NULL;
+    for (char *c = plain; c != NULL && *c != '\0'; c++) {
+        *c = (char)((unsigned char)*c < 128 ? *c : '?');
+    }
+    if (plain != NULL) {
+        string = json_string(plain);
+    }
+    free(plain);
+    return string;
+}
+
+json_t *gonio_i_web_material(const gonio_material *material, const gonio_table *table, double step)
+{
+    return json_pack("{s:o, s:o, s:f, s:o}", "name", text(gonio_material_name(material)), "format",
+                     text(gonio_material_format(material)), "step", step, "checks", checks(table));
+}
+
+/* ---- errors ---- */
+
+static json_t *error_json(const gonio_error *error)
+{
+    return json_pack("{s:o, s:o, s:o}", "e6", number(error->value[GONIO_E6]), "cubeRoot",
+                     number(error->value[GONIO_CUBE_ROOT]), "logRelative",
+                     number(error->value[GONIO_LOG_RELATIVE_ERROR]));
+}
+
+json_t *gonio_i_web_comparison(const gonio_comparison *c)
+{
+    return json_pack("{s:I, s:I, s:o, s:[o,o,o]}", "bins", (json_int_t)c->bins, "missing",
+                     (json_int_t)c->missing, "all", error_json(&c->all), "channels",
+                     error_json(&c->channel[0]), error_json(&c->channel[1]),
+                     error_json(&c->channel[2]));
+}
+
+/* ---- readings ---- */
+
+enum { MOST_READINGS = 4000 }; /* on a page of bounded size; who needs more reads the table */
+
+static json_t *direction(gonio_angles angles)
+{
+    return json_pack("[f,f]", angles.theta, angles.phi);
+}
+
+static json_t *values_at(const gonio_table *table, gonio_pair pair)
+{
+    double rho[GONIO_CHANNELS];
+    return table != NULL && gonio_table_value(table, gonio_half_difference_from_pair(pair), rho)
+               ? numbers(rho, GONIO_CHANNELS)
+               : json_null();
+}
+
+/* The values of R, G, B; NaN of other channels. */
+static void colours_of(const gonio_readings *readings, size_t reading, double value[GONIO_CHANNELS])
+{
+    const bool colours = gonio_readings_are_colours(readings);
+    for (size_t c = 0; c < GONIO_CHANNELS; c++) {
+        value[c] = colours ? gonio_readings_value(readings, reading, c) : NAN;
+    }
+}
+
+static json_t *reading_json(const gonio_readings *readings, size_t reading,
+                            const gonio_table *reference, const gonio_table *reconstruction)
+{
+    const gonio_readings_view view = gonio_readings_describe(readings);
+    const gonio_pair pair = view.pair[reading];
+    double value[GONIO_CHANNELS];
+    colours_of(readings, reading, value);
+    return json_pack("{s:o, s:o, s:i, s:o, s:o, s:o}", "incident", direction(pair.incident),
+                     "outgoing", direction(pair.outgoing), "channel", view.planned[reading],
+                     "value", numbers(value, GONIO_CHANNELS), "reference",
+                     values_at(reference, pair), "reconstruction", values_at(reconstruction, pair));
+}
+
+json_t *gonio_i_web_readings(const gonio_readings *readings, const gonio_table *reference,
+                             const gonio_table *reconstruction)
+{
+    const gonio_readings_view view = gonio_readings_describe(readings);
+    json_t *list = json_array();
+    for (size_t k = 0; k < view.count && k < MOST_READINGS; k++) {
+        json_array_append_new(list, reading_json(readings, k, reference, reconstruction));
+    }
+    char *name = gonio_i_base_name(view.path, true);
+    json_t *json =
+        json_pack("{s:o, s:I, s:I, s:o, s:o}", "file", text(name != NULL ? name : ""), "count",
+                  (json_int_t)view.count, "components", (json_int_t)view.components, "method",
+                  text(view.method), "list", list);
+    free(name);
+    return json;
+}
