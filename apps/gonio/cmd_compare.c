@@ -1,10 +1,11 @@
 /* gonio compare: how far BRDFs are from a reference. */
 #include "command_line.h"
-#include "file_kinds.h"
+#include "inputs.h"
 #include "json_output.h"
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 
 typedef struct options {
     const char *leave_out;
@@ -70,7 +71,7 @@ static gonio_status compare_one(tool *t, const gonio_material *reference,
     gonio_comparison comparison;
     gonio_image_error error;
     const gonio_image_error *rendered = seen != NULL ? &error : NULL;
-    gonio_status status = gonio_material_open(t->context, path, &other);
+    gonio_status status = tool_open_material(t, path, &other);
     if (status == GONIO_OK) {
         status = gonio_compare(t->context, reference, other, &comparison);
     }
@@ -96,9 +97,9 @@ static gonio_status read_like(tool *t, const char *reference, const char *path,
                               gonio_readings **other)
 {
     gonio_readings *known = NULL;
-    gonio_status status = gonio_readings_read(t->context, path, &any_values, &known);
+    gonio_status status = tool_read_readings(t, path, &any_values, &known);
     if (status == GONIO_OK) {
-        status = gonio_readings_read(t->context, reference, &any_values, other);
+        status = tool_read_readings(t, reference, &any_values, other);
     }
     if (status == GONIO_OK) {
         status = gonio_readings_look_up(t->context, *other, known);
@@ -138,7 +139,7 @@ static gonio_status find_left_out(tool *t, const gonio_readings *reference, cons
     *left_out = calloc(gonio_readings_describe(reference).count, sizeof **left_out);
     gonio_status status = *left_out == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
     if (status == GONIO_OK && used_path != NULL) {
-        status = gonio_readings_read(t->context, used_path, &directions, &used);
+        status = tool_read_readings(t, used_path, &directions, &used);
     }
     if (status == GONIO_OK && used != NULL) {
         status = gonio_readings_find(t->context, reference, used, *left_out);
@@ -152,7 +153,7 @@ static gonio_status compare_all_readings(tool *t, const options *o, const char *
 {
     gonio_readings *reference = NULL;
     bool *left_out = NULL;
-    gonio_status status = gonio_readings_read(t->context, paths[0], &any_values, &reference);
+    gonio_status status = tool_read_readings(t, paths[0], &any_values, &reference);
     if (status == GONIO_OK) {
         status = find_left_out(t, reference, o->leave_out, &left_out);
     }
@@ -171,7 +172,7 @@ static gonio_status compare_all_tables(tool *t, const options *o, const char **p
 {
     gonio_material *reference = NULL;
     gonio_reference *seen = NULL;
-    gonio_status status = gonio_material_open(t->context, paths[0], &reference);
+    gonio_status status = tool_open_material(t, paths[0], &reference);
     if (status == GONIO_OK && o->render) {
         status = gonio_reference_create(t->context, reference, NULL, &seen);
     }
@@ -183,17 +184,23 @@ static gonio_status compare_all_tables(tool *t, const options *o, const char **p
     return status;
 }
 
-static bool check(const tool *t, const options *o, const char **arguments, size_t count,
-                  bool readings)
+static bool is_pipe(const char *path)
 {
-    if (count < 2) {
-        return tool_refuse(t, "REFERENCE and at least one OTHER are needed");
+    struct stat status;
+    return stat(path, &status) == 0 && !S_ISREG(status.st_mode);
+}
+
+static bool check(const tool *t, const options *o, const char *reference, bool readings)
+{
+    if (readings && is_pipe(reference)) {
+        return tool_refuse(t, "%s: REFERENCE is read more than once: give a file, not a pipe",
+                           reference);
     }
     if (o->leave_out != NULL && !readings) {
-        return tool_refuse(t, "--leave-out is for readings: %s is none", arguments[0]);
+        return tool_refuse(t, "--leave-out is for readings: %s is none", reference);
     }
     if (o->render && readings) {
-        return tool_refuse(t, "--render is for whole materials: %s is readings", arguments[0]);
+        return tool_refuse(t, "--render is for whole materials: %s is readings", reference);
     }
     return true;
 }
@@ -212,16 +219,26 @@ static int run(tool *t, void *given)
     const options *o = given;
     size_t count = 0;
     const char **arguments = tool_arguments(t, &count);
-    const bool readings = count > 0 && tool_is_readings(arguments[0]);
-    if (!check(t, o, arguments, count, readings)) {
+    gonio_kind kind = GONIO_KIND_UNKNOWN;
+    if (count < 2) {
+        tool_refuse(t, "REFERENCE and at least one OTHER are needed");
+        return EXIT_USAGE;
+    }
+    gonio_status status = gonio_file_expect(t->context, arguments[0],
+                                            GONIO_KIND_MATERIAL | GONIO_KIND_READINGS, &kind);
+    if (status != GONIO_OK) {
+        return tool_exit_code(status);
+    }
+    const bool readings = kind == GONIO_KIND_READINGS;
+    if (!check(t, o, arguments[0], readings)) {
         return EXIT_USAGE;
     }
     json_t *results = json_array();
     if (!tool_json) {
         print_heading(o);
     }
-    const gonio_status status = readings ? compare_all_readings(t, o, arguments, count, results)
-                                         : compare_all_tables(t, o, arguments, count, results);
+    status = readings ? compare_all_readings(t, o, arguments, count, results)
+                      : compare_all_tables(t, o, arguments, count, results);
     if (status == GONIO_OK && tool_json) {
         return tool_print_json(
             t, json_pack("{s:s, s:o}", "reference", arguments[0], "comparisons", results));

@@ -1,5 +1,6 @@
 /* gonio convert: any material to a MERL table. */
 #include "command_line.h"
+#include "inputs.h"
 #include "json_output.h"
 
 /* Silent but for --json. */
@@ -24,7 +25,7 @@ static int run(tool *t, void *given)
         return EXIT_USAGE;
     }
     gonio_material *material = NULL;
-    gonio_status status = gonio_material_open(t->context, arguments[0], &material);
+    gonio_status status = tool_open_material(t, arguments[0], &material);
     if (status == GONIO_OK) {
         status = gonio_material_write_merl(t->context, material, arguments[1]);
     }

@@ -1,7 +1,7 @@
 /* gonio info: what a file is, judged by its content. */
 #include "albedos.h"
 #include "command_line.h"
-#include "file_kinds.h"
+#include "inputs.h"
 #include "json_output.h"
 
 #include <errno.h>
@@ -123,7 +123,7 @@ static int info_material(const tool *t, const char *path, json_t *results)
     gonio_material *material = NULL;
     gonio_table *table = NULL;
     material_facts facts;
-    gonio_status status = gonio_material_open(t->context, path, &material);
+    gonio_status status = tool_open_material(t, path, &material);
     if (status == GONIO_OK) {
         status = gonio_table_load(t->context, material, &table);
     }
@@ -239,7 +239,7 @@ static int info_readings(const tool *t, const char *path, json_t *results)
 {
     const gonio_readings_options how = {.average_repeats = true, .negative_to_zero = true};
     gonio_readings *readings = NULL;
-    const gonio_status status = gonio_readings_read(t->context, path, &how, &readings);
+    const gonio_status status = tool_read_readings(t, path, &how, &readings);
     if (status != GONIO_OK) {
         return tool_exit_code(status);
     }
@@ -277,25 +277,60 @@ static int info_readings(const tool *t, const char *path, json_t *results)
     return 0;
 }
 
+/* ---- meshes and images ---- */
+
+/* What is known of a file whose inside is not looked at. */
+static int info_other(const tool *t, const char *path, json_t *results)
+{
+    gonio_kind kind = GONIO_KIND_UNKNOWN;
+    const char *format = NULL;
+    const gonio_status status = gonio_file_kind(t->context, path, &kind, &format);
+    if (status != GONIO_OK) {
+        return tool_exit_code(status);
+    }
+    if (results != NULL) {
+        json_array_append_new(results, json_pack("{s:s, s:s, s:s}", "file", path, "kind",
+                                                 gonio_kind_name(kind), "format", format));
+    } else {
+        printf("%s: %s, %s\n", path, gonio_kind_name(kind), format);
+    }
+    return 0;
+}
+
 /* ---- which of them a file is ---- */
 
-typedef int info_function(const tool *t, const char *path, json_t *results);
+typedef struct kind_info {
+    gonio_kind kind;
+    int (*info)(const tool *t, const char *path, json_t *results);
+} kind_info;
 
-static info_function *kind_of(const char *path)
+static const kind_info kinds[] = {
+    {GONIO_KIND_MATERIAL, info_material}, {GONIO_KIND_BASIS, info_basis},
+    {GONIO_KIND_READINGS, info_readings}, {GONIO_KIND_MESH, info_other},
+    {GONIO_KIND_IMAGE, info_other},
+};
+
+enum { KINDS = sizeof kinds / sizeof *kinds };
+
+static int info(const tool *t, const char *path, json_t *results)
 {
-    static const char signature[] = "\x89HDF\r\n\x1a\n";
-    static const char basis_mark[] = "gonio basis";
-    char head[8192];
-    FILE *file = strncmp(path, "atlas:", 6) != 0 ? fopen(path, "rbe") : NULL;
-    const size_t size = file != NULL ? fread(head, 1, sizeof head, file) : 0;
-    if (file != NULL) {
-        fclose(file);
+    if (strcmp(path, "atlas:") == 0) {
+        return info_atlas(results);
     }
-    if (size >= 8 && memcmp(head, signature, 8) == 0) {
-        const bool basis = memmem(head, size, basis_mark, sizeof basis_mark - 1) != NULL;
-        return basis ? info_basis : info_material;
+    unsigned any = 0;
+    gonio_kind kind = GONIO_KIND_UNKNOWN;
+    for (int k = 0; k < KINDS; k++) {
+        any |= kinds[k].kind;
     }
-    return tool_is_readings(path) ? info_readings : info_material;
+    const gonio_status status = gonio_file_expect(t->context, path, any, &kind);
+    if (status != GONIO_OK) {
+        return tool_exit_code(status);
+    }
+    int k = 0;
+    while (kinds[k].kind != kind) {
+        k++;
+    }
+    return kinds[k].info(t, path, results);
 }
 
 static int run(tool *t, void *given)
@@ -310,9 +345,7 @@ static int run(tool *t, void *given)
     json_t *results = tool_json ? json_array() : NULL;
     int code = 0;
     for (size_t k = 0; k < count; k++) {
-        const int one = strcmp(arguments[k], "atlas:") == 0
-                            ? info_atlas(results)
-                            : kind_of(arguments[k])(t, arguments[k], results);
+        const int one = info(t, arguments[k], results);
         code = one != 0 ? one : code;
     }
     if (results != NULL && code == 0) {
@@ -328,7 +361,8 @@ int cmd_info(int argc, const char **argv)
     const tool_command_line line = {
         .table = table,
         .usage = "[OPTION...] FILE...",
-        .text = "FILE is a material, a basis, a plan or readings, told apart by content.\n"
+        .text = "FILE is a material, a basis, a plan, readings, a mesh or an image, told apart by\n"
+                "content.\n"
                 "'gonio info atlas:' lists the built-in materials.",
         .work = run};
     return tool_run(argc, argv, &line);

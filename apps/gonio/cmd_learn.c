@@ -137,6 +137,16 @@ static bool check(const tool *t, const options *o, size_t count, gonio_database_
            choose_kind(t, o, how);
 }
 
+static gonio_status expect_materials(const tool *t, const material_list *list)
+{
+    gonio_status status = GONIO_OK;
+    gonio_kind kind = GONIO_KIND_UNKNOWN;
+    for (size_t k = 0; k < list->count && status == GONIO_OK; k++) {
+        status = gonio_file_expect(t->context, list->path[k], GONIO_KIND_MATERIAL, &kind);
+    }
+    return status;
+}
+
 static int run(tool *t, void *given)
 {
     const options *o = given;
@@ -152,6 +162,9 @@ static int run(tool *t, void *given)
         !(leave_out(t, &list, o->without) &&
           tool_check_output(t, o->output, (const char *const *)list.path, list.count))) {
         code = EXIT_USAGE;
+    }
+    if (code == 0) {
+        code = tool_exit_code(expect_materials(t, &list));
     }
     if (code == 0) {
         code = learn(t, o, &list, &how);

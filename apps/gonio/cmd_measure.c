@@ -1,6 +1,6 @@
 /* gonio measure: a simulated instrument reads a known material. */
 #include "command_line.h"
-#include "file_kinds.h"
+#include "inputs.h"
 #include "json_output.h"
 
 #include <stdio.h>
@@ -38,7 +38,7 @@ static gonio_status look_up(const tool *t, const char *path, gonio_readings *pla
     const gonio_readings_options any = {
         .values_needed = true, .average_repeats = true, .negative_to_zero = true};
     gonio_readings *known = NULL;
-    gonio_status status = gonio_readings_read(t->context, path, &any, &known);
+    gonio_status status = tool_read_readings(t, path, &any, &known);
     if (status == GONIO_OK) {
         status = gonio_readings_look_up(t->context, plan, known);
     }
@@ -54,7 +54,7 @@ static gonio_status read_material(const tool *t, const options *o, const char *p
                                                  o->outliers / 100.0};
     gonio_material *material = NULL;
     gonio_table *table = NULL;
-    gonio_status status = gonio_material_open(t->context, path, &material);
+    gonio_status status = tool_open_material(t, path, &material);
     if (status == GONIO_OK) {
         status = gonio_table_load(t->context, material, &table);
     }
@@ -75,10 +75,15 @@ static int measure(const tool *t, const options *o, const char *plan, const char
     const gonio_readings_options how = {.values_needed = false, .negative_to_zero = true};
     gonio_readings *readings = NULL;
     char *name = NULL;
-    gonio_status status = gonio_readings_read(t->context, plan, &how, &readings);
+    gonio_kind kind = GONIO_KIND_UNKNOWN;
+    gonio_status status = tool_read_readings(t, plan, &how, &readings);
     if (status == GONIO_OK) {
-        status = tool_is_readings(path) ? look_up(t, path, readings)
-                                        : read_material(t, o, path, readings, &name);
+        status =
+            gonio_file_expect(t->context, path, GONIO_KIND_MATERIAL | GONIO_KIND_READINGS, &kind);
+    }
+    if (status == GONIO_OK) {
+        status = kind == GONIO_KIND_READINGS ? look_up(t, path, readings)
+                                             : read_material(t, o, path, readings, &name);
     }
     if (status == GONIO_OK) {
         status = gonio_readings_write(t->context, readings, t->command_line, o->output);

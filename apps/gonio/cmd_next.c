@@ -1,6 +1,7 @@
 /* gonio next: where to measure next, given what was read. */
 #include "builtin_basis.h"
 #include "command_line.h"
+#include "inputs.h"
 #include "json_output.h"
 #include "planning_options.h"
 #include "posterior_options.h"
@@ -67,7 +68,7 @@ static int next(tool *t, const options *o, const char *basis_path, const char *p
     gonio_readings *readings = NULL;
     gonio_basis *basis = NULL;
     answer a = {0};
-    gonio_status status = gonio_readings_read(t->context, path, &any, &readings);
+    gonio_status status = tool_read_readings(t, path, &any, &readings);
     if (status == GONIO_OK) {
         status = tool_basis(t, basis_path, NULL, &basis);
     }

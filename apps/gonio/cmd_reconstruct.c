@@ -2,6 +2,7 @@
 #include "albedos.h"
 #include "builtin_basis.h"
 #include "command_line.h"
+#include "inputs.h"
 #include "json_output.h"
 #include "posterior_options.h"
 
@@ -169,7 +170,7 @@ static gonio_status write_more(tool *t, const options *o, const gonio_basis *bas
         status = gonio_reconstruction_deviation_material(t->context, basis, made, &deviation);
     }
     if (status == GONIO_OK && o->predict_at != NULL) {
-        status = gonio_readings_read(t->context, o->predict_at, &any, &at);
+        status = tool_read_readings(t, o->predict_at, &any, &at);
     }
     if (status == GONIO_OK && at != NULL) {
         status = gonio_reconstruction_predict_readings(t->context, basis, made, at);
@@ -266,7 +267,7 @@ static int reconstruct_all(tool *t, const options *o, const char *basis_path,
     gonio_basis *basis = NULL;
     gonio_status status = readings == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
     for (size_t k = 0; k < count && status == GONIO_OK; k++) {
-        status = gonio_readings_read(t->context, paths[k], &how, &readings[k]);
+        status = tool_read_readings(t, paths[k], &how, &readings[k]);
     }
     if (status == GONIO_OK) {
         const char *planned = gonio_readings_describe(readings[0]).method;

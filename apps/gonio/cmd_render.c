@@ -1,5 +1,6 @@
 /* gonio render: a material on a sphere or a mesh, and comparison pictures of several. */
 #include "command_line.h"
+#include "inputs.h"
 #include "json_output.h"
 
 #include <ctype.h>
@@ -176,7 +177,7 @@ static gonio_status load_scene(const tool *t, const options *o, scene *s)
         status = gonio_environment_open(t->context, name, o->repair != 0, &s->environment);
     }
     if (status == GONIO_OK && o->mesh != NULL) {
-        status = gonio_mesh_read(t->context, o->mesh, &s->mesh);
+        status = tool_read_mesh(t, o->mesh, &s->mesh);
     }
     s->how.environment = s->environment;
     s->how.mesh = s->mesh;
@@ -220,7 +221,7 @@ static int render_one(const tool *t, const options *o, const scene *s, const cha
 {
     gonio_material *material = NULL;
     gonio_image *image = NULL;
-    gonio_status status = gonio_material_open(t->context, path, &material);
+    gonio_status status = tool_open_material(t, path, &material);
     if (status == GONIO_OK) {
         status = gonio_render(t->context, material, &s->how, &image);
     }
@@ -281,7 +282,7 @@ static gonio_status compare_cell(const tool *t, const gonio_reference *reference
 {
     gonio_material *material = NULL;
     gonio_comparison comparison;
-    gonio_status status = gonio_material_open(t->context, path, &material);
+    gonio_status status = tool_open_material(t, path, &material);
     if (status == GONIO_OK) {
         status = gonio_reference_render(t->context, reference, material, &p->image[at]);
     }
@@ -315,7 +316,7 @@ static gonio_status compare_row(const tool *t, const scene *s, const char *const
     const size_t first = row * p->columns;
     gonio_material *original = NULL;
     gonio_reference *reference = NULL;
-    gonio_status status = gonio_material_open(t->context, paths[0], &original);
+    gonio_status status = tool_open_material(t, paths[0], &original);
     if (status == GONIO_OK) {
         p->row_name[row] = strdup(gonio_material_name(original));
         status = gonio_reference_create(t->context, original, &s->how, &reference);

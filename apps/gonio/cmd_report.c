@@ -1,5 +1,6 @@
 /* gonio report: a page for a browser. */
 #include "command_line.h"
+#include "inputs.h"
 #include "json_output.h"
 
 #include <stdio.h>
@@ -20,14 +21,14 @@ static bool is_folder(const char *path)
 /* Opens a material if there is a path. */
 static gonio_status open_material(const tool *t, const char *path, gonio_material **material)
 {
-    return path == NULL ? GONIO_OK : gonio_material_open(t->context, path, material);
+    return path == NULL ? GONIO_OK : tool_open_material(t, path, material);
 }
 
 static gonio_status read_readings(const tool *t, const char *path, gonio_readings **readings)
 {
     const gonio_readings_options how = {
         .values_needed = false, .average_repeats = true, .negative_to_zero = true};
-    return path == NULL ? GONIO_OK : gonio_readings_read(t->context, path, &how, readings);
+    return path == NULL ? GONIO_OK : tool_read_readings(t, path, &how, readings);
 }
 
 /* What is on the page; NULL for what there is not. */

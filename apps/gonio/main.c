@@ -10,7 +10,7 @@
 #include <string.h>
 
 static const tool_command commands[] = {
-    {"info", "what a file is: materials, bases, plans, readings", cmd_info},
+    {"info", "what a file is: materials, bases, plans, readings, meshes, images", cmd_info},
     {"convert", "a material to a MERL table", cmd_convert},
     {"learn", "a basis from measured materials", cmd_learn},
     {"plan", "where to measure", cmd_plan},

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "inputs.h"
+
 /* In the order of gonio_metric. */
 static const char *const metrics[] = {"e6", "cube-root", "log-relative", NULL};
 
@@ -32,7 +34,7 @@ static gonio_status read_directions(const tool *t, const char *path, gonio_pair 
 {
     const gonio_readings_options how = {.average_repeats = true, .negative_to_zero = true};
     gonio_readings *readings = NULL;
-    gonio_status status = gonio_readings_read(t->context, path, &how, &readings);
+    gonio_status status = tool_read_readings(t, path, &how, &readings);
     if (status != GONIO_OK) {
         return status;
     }

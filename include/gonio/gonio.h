@@ -15,6 +15,7 @@
 #include <gonio/reconstruct.h>
 #include <gonio/evaluate.h>
 #include <gonio/render.h>
+#include <gonio/file.h>
 #include <gonio/page.h>
 
 #endif

@@ -4,7 +4,7 @@
 
 #include <gonio/basis.h>
 
-#include "../core/core.h"
+#include "../core/file_head.h"
 
 struct gonio_basis {
     gonio_representation representation;
@@ -33,6 +33,15 @@ struct gonio_basis {
     char *command;
     int32_t *position; /* of the whole grid: which of `cell` stands for it */
 };
+
+/* The name of the format that a file is of; NULL if it is no basis. */
+const char *gonio_i_basis_format_of(const gonio_i_file *file);
+
+/* Whether a file that is not recognised may be a basis all the same, one that is damaged. */
+bool gonio_i_basis_may_be(const gonio_i_file *file);
+
+/* The names of the formats that are read; NULL past the last. */
+const char *gonio_i_basis_format_name(int index);
 
 /* Allocates everything of a basis with no contents; NULL after a message. */
 gonio_basis *gonio_i_basis_allocate(gonio_context *context, size_t materials, size_t mixtures,

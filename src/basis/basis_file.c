@@ -609,6 +609,23 @@ static gonio_status check_file(gonio_context *context, const char *path)
     return GONIO_OK;
 }
 
+bool gonio_i_basis_may_be(const gonio_i_file *file)
+{
+    return gonio_i_file_begins(file, "\x89HDF\r\n\x1a\n", 8);
+}
+
+const char *gonio_i_basis_format_of(const gonio_i_file *file)
+{
+    const bool marked =
+        memmem(file->head, file->head_size, format_name, sizeof format_name - 1) != NULL;
+    return gonio_i_basis_may_be(file) && marked ? format_name : NULL;
+}
+
+const char *gonio_i_basis_format_name(int index)
+{
+    return index == 0 ? format_name : NULL;
+}
+
 gonio_status gonio_basis_read(gonio_context *context, const char *path, gonio_basis **basis)
 {
     gonio_status status = check_file(context, path);

@@ -2,11 +2,9 @@
 #include <gonio/atlas.h>
 #include <gonio/material.h>
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include <xxhash.h>
 
@@ -196,25 +194,25 @@ static gonio_status open_atlas(gonio_context *context, const char *name, gonio_m
     return status;
 }
 
-static gonio_status look_at(gonio_context *context, const char *path, gonio_i_file *file)
+static const gonio_i_format_reader *find_reader(const gonio_i_file *file)
 {
-    struct stat status;
-    if (stat(path, &status) != 0) {
-        return gonio_i_fail(context, GONIO_ERROR_IO, "%s: cannot read: %s", path, strerror(errno));
+    for (int k = 0; k < READERS; k++) {
+        if (readers[k]->probe(file)) {
+            return readers[k];
+        }
     }
-    if (!S_ISREG(status.st_mode)) { /* a pipe cannot be read in any order */
-        return gonio_i_fail(context, GONIO_ERROR_IO, "%s: cannot read: %s", path,
-                            S_ISDIR(status.st_mode) ? strerror(EISDIR) : "not a regular file");
-    }
-    FILE *stream = fopen(path, "rbe");
-    if (stream == NULL) {
-        return gonio_i_fail(context, GONIO_ERROR_IO, "%s: cannot read: %s", path, strerror(errno));
-    }
-    file->path = path;
-    file->size = (uint64_t)status.st_size;
-    file->head_size = fread(file->head, 1, sizeof file->head, stream);
-    fclose(stream);
-    return GONIO_OK;
+    return NULL;
+}
+
+const char *gonio_i_material_format_of(const gonio_i_file *file)
+{
+    const gonio_i_format_reader *reader = find_reader(file);
+    return reader != NULL ? reader->name : NULL;
+}
+
+const char *gonio_i_material_format_name(int index)
+{
+    return index < READERS ? readers[index]->name : NULL;
 }
 
 static gonio_status not_recognised(gonio_context *context, const gonio_i_file *file)
@@ -236,16 +234,13 @@ static gonio_status not_recognised(gonio_context *context, const gonio_i_file *f
 static gonio_status open_file(gonio_context *context, const gonio_i_file *file,
                               gonio_material **material)
 {
-    int k = 0;
-    while (k < READERS && !readers[k]->probe(file)) {
-        k++;
-    }
-    if (k == READERS) {
+    const gonio_i_format_reader *reader = find_reader(file);
+    if (reader == NULL) {
         return not_recognised(context, file);
     }
     gonio_material_source source = {0};
     char *description = NULL;
-    gonio_status status = readers[k]->open(context, file, &source, &description);
+    gonio_status status = reader->open(context, file, &source, &description);
     if (status != GONIO_OK) {
         return status;
     }
@@ -268,7 +263,7 @@ gonio_status gonio_material_open(gonio_context *context, const char *path,
         return open_atlas(context, path + sizeof atlas - 1, material);
     }
     gonio_i_file file = {0};
-    const gonio_status status = look_at(context, path, &file);
+    const gonio_status status = gonio_i_file_look(context, path, &file);
     return status != GONIO_OK ? status : open_file(context, &file, material);
 }
 

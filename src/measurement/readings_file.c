@@ -21,10 +21,27 @@ static const char grid_name[] = "half/difference 90 x 90 x 180";
 
 /* ---- reading ---- */
 
+enum { FORMATS = sizeof formats / sizeof *formats };
+
+const char *gonio_i_readings_format_of(const gonio_i_file *file)
+{
+    for (int k = 0; k < FORMATS && file->size > 0; k++) {
+        if (formats[k]->probe(file->head, file->head_size)) {
+            return formats[k]->name;
+        }
+    }
+    return NULL;
+}
+
+const char *gonio_i_readings_format_name(int index)
+{
+    return index < FORMATS ? formats[index]->name : NULL;
+}
+
 static const gonio_i_readings_format *find_format(const char *text, size_t size)
 {
     size_t k = 0;
-    while (k + 1 < sizeof formats / sizeof *formats && !formats[k]->probe(text, size)) {
+    while (k + 1 < FORMATS && !formats[k]->probe(text, size)) {
         k++;
     }
     return formats[k];

@@ -95,8 +95,3 @@ void gonio_i_free_bytes(gonio_i_bytes *bytes)
     free(bytes->data);
     *bytes = (gonio_i_bytes){0};
 }
-
-bool gonio_i_begins_with(const gonio_i_bytes *bytes, const char *text, size_t length)
-{
-    return bytes->size >= length && memcmp(bytes->data, text, length) == 0;
-}

@@ -15,8 +15,6 @@ typedef struct gonio_i_bytes {
 gonio_status gonio_i_read_bytes(gonio_context *context, const char *path, gonio_i_bytes *bytes);
 void gonio_i_free_bytes(gonio_i_bytes *bytes);
 
-bool gonio_i_begins_with(const gonio_i_bytes *bytes, const char *text, size_t length);
-
 /* OpenEXR and Radiance .hdr from memory; `path` is for messages. */
 gonio_status gonio_i_read_exr(gonio_context *context, const char *path, const gonio_i_bytes *bytes,
                               gonio_image **image);

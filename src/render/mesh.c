@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "file_formats.h"
 #include "geometry.h"
 
 void gonio_mesh_free(gonio_mesh **mesh)
@@ -167,38 +168,15 @@ static void fit(gonio_mesh *mesh)
 
 /* ---- reading ---- */
 
-/* Words that begin the lines of an OBJ file. */
-static bool looks_like_obj(const gonio_i_bytes *bytes)
-{
-    static const char *const words[] = {"v", "vn", "vt", "vp", "f",      "l",     "p",
-                                        "o", "g",  "s",  "#",  "mtllib", "usemtl"};
-    if (memchr(bytes->data, '\0', bytes->size) != NULL) {
-        return false;
-    }
-    const char *text = (const char *)bytes->data;
-    text += strspn(text, " \t\r\n");
-    const size_t length = text[0] == '#' ? 1 : strcspn(text, " \t\r\n");
-    for (size_t k = 0; k < sizeof words / sizeof *words; k++) {
-        if (strlen(words[k]) == length && strncmp(words[k], text, length) == 0) {
-            return true;
-        }
-    }
-    return false;
-}
+typedef gonio_status mesh_reader(gonio_i_mesh_making *making, const gonio_i_bytes *bytes);
 
-/* The reader for what the content is; NULL for anything else. */
-static gonio_status (*reader_of(const gonio_i_bytes *bytes))(gonio_i_mesh_making *,
-                                                             const gonio_i_bytes *)
-{
-    if (gonio_i_begins_with(bytes, "ply\n", 4) || gonio_i_begins_with(bytes, "ply\r", 4)) {
-        return gonio_i_read_ply;
-    }
-    return looks_like_obj(bytes) ? gonio_i_read_obj : NULL;
-}
+/* Of gonio_i_mesh_format. */
+static mesh_reader *const readers[] = {gonio_i_read_obj, gonio_i_read_ply, NULL};
 
 static gonio_status read_bytes(gonio_i_mesh_making *making, const gonio_i_bytes *bytes)
 {
-    gonio_status (*reader)(gonio_i_mesh_making *, const gonio_i_bytes *) = reader_of(bytes);
+    mesh_reader *const reader =
+        readers[gonio_i_mesh_format_find((const char *)bytes->data, bytes->size)];
     if (reader == NULL || bytes->size > INT_MAX) {
         return gonio_i_fail(making->context, GONIO_ERROR_FORMAT,
                             "%s: not a mesh that gonio reads (OBJ, PLY, below 2 GiB), judged by "

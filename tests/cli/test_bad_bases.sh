@@ -28,10 +28,10 @@ mkdir folder
 head -c 100 /dev/zero >zeros.gonio
 every_reader 1 'missing.gonio: cannot read: No such file' missing.gonio
 every_reader 1 'folder: cannot read: Is a directory' folder
-every_reader 1 'empty.gonio: not a gonio basis' empty.gonio
-every_reader 1 'zeros.gonio: not a gonio basis' zeros.gonio
-every_reader 1 'good.binary: not a gonio basis' good.binary
-every_reader 1 'p.csv: not a gonio basis' p.csv
+every_reader 1 'empty.gonio: the file is empty' empty.gonio
+every_reader 1 'zeros.gonio: not a basis that gonio reads (gonio basis)' zeros.gonio
+every_reader 1 'good.binary: a material (MERL .binary table), not a basis' good.binary
+every_reader 1 'p.csv: readings (CSV), not a basis' p.csv
 if permissions_apply; then
     cp good.gonio secret.gonio
     chmod 000 secret.gonio

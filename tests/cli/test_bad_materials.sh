@@ -8,7 +8,11 @@ expect_ok convert atlas:red-cotton good.binary
 
 # every_reader CODE PART FILE: what each command says of a material.
 every_reader() {
-    [[ $3 == *.csv || $3 == *.gonio ]] || expect_fail "$1" "$2" info "$3"
+    case $2 in
+        *'not a material that gonio reads') expect_fail "$1" "$3: not a basis that gonio reads" info "$3" ;;
+        *', not a material') ;; # but something else that info knows
+        *) expect_fail "$1" "$2" info "$3" ;;
+    esac
     expect_fail "$1" "$2" convert "$3" x.binary
     expect_fail "$1" "$2" learn "$3" atlas:oak-sawn atlas:plaster-cast -o x.gonio
     expect_fail "$1" "$2" measure p.csv "$3" -o x.csv
@@ -53,19 +57,22 @@ printf 'just some text\n' >text.csv
 head -c 4096 /dev/zero | tr '\0' '\1' >noise.binary
 every_reader 1 'empty.binary: the file is empty' empty.binary
 every_reader 1 'start.binary: not a material that gonio reads' start.binary
-# every_text PART FILE: what is said of a text, which where readings will do is taken for some.
-every_text() {
-    expect_fail 1 "$2: not a material that gonio reads" convert "$2" x.binary
-    expect_fail 1 "$2: not a material that gonio reads" \
+every_reader 1 'text.csv: not a material that gonio reads' text.csv
+every_reader 1 'noise.binary: not a material that gonio reads' noise.binary
+expect_fail 1 "noise.binary: not a basis that gonio reads (gonio basis), nor a material (MERL .binary table, neural BRDF .h5, \
+RGL .bsdf), nor an image (OpenEXR, Radiance .hdr), nor a mesh (OBJ, PLY), nor readings (" info noise.binary
+# every_table PART FILE: what is said of readings, which will do where the part is.
+every_table() {
+    expect_fail 1 "$2: readings (CSV), not a material" convert "$2" x.binary
+    expect_fail 1 "$2: readings (CSV), not a material" \
         learn "$2" atlas:oak-sawn atlas:plaster-cast -o x.gonio
-    expect_fail 1 "$2: not a material that gonio reads" compare atlas:oak-sawn "$2"
+    expect_fail 1 "$2: readings (CSV), not a material" compare atlas:oak-sawn "$2"
     expect_fail 1 "$2: $1" measure p.csv "$2" -o x.csv
     expect_fail 1 "$2: $1" compare "$2" atlas:oak-sawn
 }
-every_text 'no lines below the column names' text.csv
-expect_fail 1 'noise.binary: not a material that gonio reads' convert noise.binary x.binary
-expect_fail 1 'noise.binary:1: binary data' info noise.binary
-every_text 'no column of values (R_per_sr, G_per_sr, B_per_sr, or 400nm_per_sr ...)' p.csv
+printf 'theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,R_per_sr\n' >table.csv
+every_table 'no lines below the column names' table.csv
+every_table 'no column of values (R_per_sr, G_per_sr, B_per_sr, or 400nm_per_sr ...)' p.csv
 
 # ---- MERL tables of the wrong size ----
 
@@ -153,7 +160,7 @@ rm copy.binary
 
 # ---- HDF5 of another kind, and neural BRDFs ----
 
-every_reader 1 "b.gonio: an HDF5 file, but not a neural BRDF: it has no attribute" b.gonio
+every_reader 1 'b.gonio: a basis (gonio basis), not a material' b.gonio
 printf '\x89HDF\r\n\x1a\n' >signature.h5
 every_reader 1 'signature.h5: cannot be opened as HDF5: damaged or truncated' signature.h5
 

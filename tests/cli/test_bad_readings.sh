@@ -41,9 +41,9 @@ expect_fail 1 'empty.csv: the file is empty' measure empty.csv atlas:oak-sawn -o
 expect_fail 1 'empty.csv: the file is empty' reconstruct b.gonio empty.csv -o x.binary
 every_reader 1 'blank.csv: no line of column names' blank.csv
 every_reader 1 'comments.csv: no line of column names' comments.csv
-expect_fail 1 'material.binary:1: binary data; a text table (CSV) is expected' \
+expect_fail 1 'material.binary: a material (MERL .binary table), not readings' \
     measure material.binary atlas:oak-sawn -o x.csv
-expect_fail 1 'binary data' reconstruct b.gonio b.gonio -o x.binary
+expect_fail 1 'b.gonio: a basis (gonio basis), not readings' reconstruct b.gonio b.gonio -o x.binary
 table noise.csv "$header" "$first"
 printf '10,0,20,\0018,R,1,1,1\n' >>noise.csv
 every_reader 1 'noise.csv:12: binary data' noise.csv

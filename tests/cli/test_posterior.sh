@@ -194,7 +194,7 @@ planned='plan b.gonio -n 4 -o x.csv'
     expect_fail 2 'above the target of 0.01 %' $planned --target-error 0.01
     expect_fail 2 'expected-error uses all 64 components' $planned --components 10
     expect_fail 1 'missing.csv: cannot read' $planned --candidates missing.csv
-    expect_fail 1 'binary data' $planned --candidates out.binary
+    expect_fail 1 'out.binary: a material (MERL .binary table), not readings' $planned --candidates out.binary
     expect_fail 2 'is an input' plan b.gonio -n 4 --candidates all.csv -o all.csv
     expect_fail 2 '41 readings asked for, but there are only 40 directions' \
         plan b.gonio -n 41 --candidates all.csv -o x.csv

@@ -5,16 +5,7 @@
 
 #include <gonio/material.h>
 
-#include "../../core/core.h"
-
-enum { GONIO_I_HEAD = 1024 }; /* bytes of the file's start that a format may look at */
-
-typedef struct gonio_i_file {
-    const char *path;
-    unsigned char head[GONIO_I_HEAD];
-    size_t head_size; /* bytes of head that the file has */
-    uint64_t size;    /* of the whole file */
-} gonio_i_file;
+#include "../../core/file_head.h"
 
 typedef struct gonio_i_format_reader {
     const char *name; /* for "this file is not one of: ..." */
@@ -28,5 +19,11 @@ typedef struct gonio_i_format_reader {
 extern const gonio_i_format_reader gonio_i_merl_reader;
 extern const gonio_i_format_reader gonio_i_neural_reader;
 extern const gonio_i_format_reader gonio_i_rgl_reader;
+
+/* The name of the format that a file is of; NULL if of none. */
+const char *gonio_i_material_format_of(const gonio_i_file *file);
+
+/* The names of the formats; NULL past the last. */
+const char *gonio_i_material_format_name(int index);
 
 #endif

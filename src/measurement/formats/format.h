@@ -10,6 +10,7 @@
 
 #include <stdio.h>
 
+#include "../../core/file_head.h"
 #include "../readings.h"
 
 /* A file that is read. */
@@ -37,5 +38,11 @@ typedef struct gonio_i_readings_format {
 
 extern const gonio_i_readings_format gonio_i_readings_csv;
 extern const gonio_i_readings_format gonio_i_readings_scattered;
+
+/* The name of the format that a file is of, told by its beginning; NULL if of none. */
+const char *gonio_i_readings_format_of(const gonio_i_file *file);
+
+/* The names of the formats; NULL past the last. */
+const char *gonio_i_readings_format_name(int index);
 
 #endif

@@ -1,0 +1,204 @@
+/* What a file is: every stage's formats, asked in turn. */
+#include <gonio/file.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "../basis/basis.h"
+#include "../core/file_head.h"
+#include "../material/formats/format.h"
+#include "../measurement/formats/format.h"
+#include "../render/file_formats.h"
+
+typedef struct kind_row {
+    gonio_kind kind;
+    const char *name;
+    const char *article; /* of the name in a sentence */
+    /* The name of the format that a file is of; NULL if of none. */
+    const char *(*format_of)(const gonio_i_file *file);
+    /* The names of the formats that are read; NULL past the last. */
+    const char *(*format_name)(int index);
+} kind_row;
+
+/* In the order in which they are asked. A basis may be an HDF5 file, as a material may be. Texts
+ * come last, because anything may look like one. */
+static const kind_row kinds[] = {
+    {GONIO_KIND_BASIS, "basis", "a ", gonio_i_basis_format_of, gonio_i_basis_format_name},
+    {GONIO_KIND_MATERIAL, "material", "a ", gonio_i_material_format_of,
+     gonio_i_material_format_name},
+    {GONIO_KIND_IMAGE, "image", "an ", gonio_i_image_format_of, gonio_i_image_format_name},
+    {GONIO_KIND_MESH, "mesh", "a ", gonio_i_mesh_format_of, gonio_i_mesh_format_name},
+    {GONIO_KIND_READINGS, "readings", "", gonio_i_readings_format_of, gonio_i_readings_format_name},
+};
+
+enum { KINDS = sizeof kinds / sizeof *kinds };
+
+static const kind_row *row_of(gonio_kind kind)
+{
+    for (int k = 0; k < KINDS; k++) {
+        if (kinds[k].kind == kind) {
+            return &kinds[k];
+        }
+    }
+    return NULL;
+}
+
+const char *gonio_kind_name(gonio_kind kind)
+{
+    const kind_row *row = row_of(kind);
+    return row != NULL ? row->name : NULL;
+}
+
+const char *gonio_kind_format(gonio_kind kind, int index)
+{
+    const kind_row *row = row_of(kind);
+    return row != NULL && index >= 0 ? row->format_name(index) : NULL;
+}
+
+static gonio_kind kind_of(const gonio_i_file *file, const char **format)
+{
+    for (int k = 0; k < KINDS; k++) {
+        *format = kinds[k].format_of(file);
+        if (*format != NULL) {
+            return kinds[k].kind;
+        }
+    }
+    return GONIO_KIND_UNKNOWN;
+}
+
+static bool is_built_in(const char *path)
+{
+    return strncmp(path, "atlas:", 6) == 0;
+}
+
+/* What can be read only once. */
+static bool is_pipe(const char *path)
+{
+    struct stat status;
+    return stat(path, &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
+}
+
+/* Looks at a file, and says what it is. The file of a built-in material or a pipe stays empty. */
+static gonio_status look(gonio_context *context, const char *path, gonio_i_file *file,
+                         gonio_kind *kind, const char **format)
+{
+    if (is_built_in(path)) {
+        *kind = GONIO_KIND_MATERIAL;
+        *format = "built-in";
+        return GONIO_OK;
+    }
+    if (is_pipe(path)) {
+        *kind = GONIO_KIND_READINGS;
+        *format = NULL;
+        return GONIO_OK;
+    }
+    const gonio_status status = gonio_i_file_look(context, path, file);
+    if (status == GONIO_OK) {
+        *kind = kind_of(file, format);
+    }
+    return status;
+}
+
+gonio_status gonio_file_kind(gonio_context *context, const char *path, gonio_kind *kind,
+                             const char **format)
+{
+    gonio_i_file file = {0};
+    const char *found = NULL;
+    const gonio_status status = look(context, path, &file, kind, &found);
+    if (status == GONIO_OK && format != NULL) {
+        *format = found;
+    }
+    return status;
+}
+
+/* ---- a file of certain kinds ---- */
+
+/* "a mesh (OBJ), not a material or readings". */
+static void print_other(FILE *stream, unsigned wanted, const kind_row *is, const char *format)
+{
+    const char *between = ", not ";
+    fprintf(stream, "%s%s (%s)", is->article, is->name, format);
+    for (int k = 0; k < KINDS; k++) {
+        if ((kinds[k].kind & wanted) != 0) {
+            fprintf(stream, "%s%s%s", between, kinds[k].article, kinds[k].name);
+            between = " or ";
+        }
+    }
+}
+
+/* "not a material that gonio reads (MERL ...), nor readings (CSV, ...), judged by its content". */
+static void print_unknown(FILE *stream, unsigned wanted)
+{
+    const char *begin = "not ";
+    const char *end = " that gonio reads (";
+    for (int k = 0; k < KINDS; k++) {
+        if ((kinds[k].kind & wanted) == 0) {
+            continue;
+        }
+        fprintf(stream, "%s%s%s%s", begin, kinds[k].article, kinds[k].name, end);
+        for (int j = 0; kinds[k].format_name(j) != NULL; j++) {
+            fprintf(stream, "%s%s", j > 0 ? ", " : "", kinds[k].format_name(j));
+        }
+        begin = "), nor ";
+        end = " (";
+    }
+    fputs("), judged by its content", stream);
+}
+
+static char *explain(unsigned wanted, gonio_kind kind, const char *format)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *stream = open_memstream(&text, &size);
+    if (stream == NULL) {
+        return NULL;
+    }
+    if (kind == GONIO_KIND_UNKNOWN) {
+        print_unknown(stream, wanted);
+    } else {
+        print_other(stream, wanted, row_of(kind), format);
+    }
+    fclose(stream);
+    return text;
+}
+
+static gonio_status refuse(gonio_context *context, const char *path, unsigned wanted,
+                           gonio_kind kind, const char *format)
+{
+    char *text = explain(wanted, kind, format);
+    const gonio_status status =
+        text == NULL ? gonio_i_fail(context, GONIO_ERROR_MEMORY, "out of memory")
+                     : gonio_i_fail(context, GONIO_ERROR_FORMAT, "%s: %s", path, text);
+    free(text);
+    return status;
+}
+
+gonio_status gonio_file_expect(gonio_context *context, const char *path, unsigned wanted,
+                               gonio_kind *kind)
+{
+    gonio_i_file file = {0};
+    gonio_kind found = GONIO_KIND_UNKNOWN;
+    const char *format = NULL;
+    const gonio_status status = look(context, path, &file, &found, &format);
+    if (status != GONIO_OK) {
+        return status;
+    }
+    if (found == GONIO_KIND_READINGS && format == NULL && (wanted & found) == 0) {
+        return gonio_i_fail(context, GONIO_ERROR_IO, "%s: cannot read: not a regular file", path);
+    }
+    if (file.path != NULL && file.size == 0) {
+        return gonio_i_fail(context, GONIO_ERROR_FORMAT, "%s: the file is empty", path);
+    }
+    /* An HDF5 file may be a basis that is cut short: its reader says more. */
+    if ((wanted & GONIO_KIND_BASIS) != 0 && (wanted & GONIO_KIND_MATERIAL) == 0 &&
+        gonio_i_basis_may_be(&file)) {
+        found = GONIO_KIND_BASIS;
+    }
+    if ((wanted & found) == 0) {
+        return refuse(context, path, wanted, found, format);
+    }
+    *kind = found;
+    return GONIO_OK;
+}
