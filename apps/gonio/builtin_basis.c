@@ -75,10 +75,9 @@ static gonio_status make_builtin(tool *t, const char *path, bool paper)
 {
     gonio_basis *basis = NULL;
     if (!tool_quiet) {
-        tool_on_message(
-            t, GONIO_MESSAGE_NOTE,
-            "no BASIS given: learning one from the built-in materials (once; kept in the "
-            "cache)");
+        tool_say(&t->messages, GONIO_MESSAGE_NOTE,
+                 "no BASIS given: learning one from the built-in materials (once; kept in the "
+                 "cache)");
     }
     gonio_status status = learn_atlas(t, paper, &basis);
     if (status == GONIO_OK) {
@@ -98,10 +97,9 @@ gonio_status tool_builtin_basis(tool *t, bool paper, char **path)
 {
     char *folder = cache_folder();
     if (folder == NULL) {
-        tool_on_message(
-            t, GONIO_MESSAGE_ERROR,
-            "no cache folder for the built-in basis: set XDG_CACHE_HOME, or make a basis "
-            "with 'gonio learn atlas: -o FILE' and give it as BASIS");
+        tool_say(&t->messages, GONIO_MESSAGE_ERROR,
+                 "no cache folder for the built-in basis: set XDG_CACHE_HOME, or make a basis "
+                 "with 'gonio learn atlas: -o FILE' and give it as BASIS");
         return GONIO_ERROR_IO;
     }
     const int length = asprintf(path, "%s/atlas-%s-%d%s.gonio", folder, gonio_version(), RECIPE,
@@ -127,7 +125,9 @@ static bool is_papers(const char *method)
 gonio_status tool_basis(tool *t, const char *path, const char *method, gonio_basis **basis)
 {
     if (path != NULL) {
-        return gonio_basis_read(t->context, path, basis);
+        gonio_kind kind = GONIO_KIND_UNKNOWN;
+        const gonio_status known = gonio_file_expect(t->context, path, GONIO_KIND_BASIS, &kind);
+        return known == GONIO_OK ? gonio_basis_read(t->context, path, basis) : known;
     }
     char *builtin = NULL;
     gonio_status status = tool_builtin_basis(t, is_papers(method), &builtin);

@@ -42,9 +42,8 @@ void tool_clear_progress(tool_messages *m)
     }
 }
 
-void tool_on_message(void *user, gonio_message_level level, const char *text)
+void tool_say(tool_messages *m, gonio_message_level level, const char *text)
 {
-    tool_messages *m = user;
     if (level != GONIO_MESSAGE_ERROR && tool_quiet) {
         return;
     }
@@ -53,6 +52,11 @@ void tool_on_message(void *user, gonio_message_level level, const char *text)
                        : level == GONIO_MESSAGE_WARNING ? "warning: "
                                                         : "note: ";
     fprintf(stderr, "gonio %s: %s%s\n", m->command, kind, text);
+}
+
+void tool_on_message(void *user, gonio_message_level level, const char *text)
+{
+    tool_say(user, level, text);
 }
 
 /* In minutes when there is no need for more. */

@@ -21,6 +21,9 @@ typedef struct tool_messages {
     bool progress_visible;
 } tool_messages;
 
+/* Says a line on standard error; anything but errors only if it is wanted. */
+void tool_say(tool_messages *m, gonio_message_level level, const char *text);
+
 /* The callbacks of a context whose user is a tool_messages. */
 void tool_on_message(void *user, gonio_message_level level, const char *text);
 int tool_on_progress(void *user, const char *task, double fraction);

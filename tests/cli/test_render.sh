@@ -128,6 +128,54 @@ radiance short.hdr 2000 '\200'
     expect_fail 1 'wide.hdr: ' $r $small -e wide.hdr -o x.png
 }
 
+# openexr FILE WIDTH BLUE GREEN RED: one line of pixels, uncompressed; a channel is WIDTH floats as printf has them.
+openexr() {
+    local box one='\x00\x00\x80\x3f'
+    box=$(int32 0 0 $(($2 - 1)) 0 | xxd -p | sed 's/../\\x&/g')
+    {
+        printf '\x76\x2f\x31\x01\x02\x00\x00\x00channels\x00chlist\x00'
+        int32 55
+        for name in B G R; do
+            printf '%s\x00' $name
+            int32 2 0 1 1
+        done
+        printf '\x00compression\x00compression\x00\x01\x00\x00\x00\x00'
+        printf "dataWindow\\x00box2i\\x00\\x10\\x00\\x00\\x00$box"
+        printf "displayWindow\\x00box2i\\x00\\x10\\x00\\x00\\x00$box"
+        printf 'lineOrder\x00lineOrder\x00\x01\x00\x00\x00\x00'
+        printf "pixelAspectRatio\\x00float\\x00\\x04\\x00\\x00\\x00$one"
+        printf 'screenWindowCenter\x00v2f\x00\x08\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00'
+        printf "screenWindowWidth\\x00float\\x00\\x04\\x00\\x00\\x00$one\\x00"
+    } >"$1"
+    int32 $(($(stat -c %s "$1") + 8)) 0 >"$root/work/offset"
+    {
+        cat "$root/work/offset"
+        int32 0 $((12 * $2))
+        printf "$3$4$5"
+    } >>"$1"
+}
+
+# --repair takes pixels that cannot be light as black, all of their channels.
+one='\x00\x00\x80\x3f' minus_one='\x00\x00\x80\xbf' zero='\x00\x00\x00\x00' nan='\x00\x00\xc0\x7f' infinity='\x00\x00\x80\x7f'
+# shellcheck disable=SC2086
+{
+    openexr dark.exr 2 $one$zero $one$zero $one$zero
+    openexr light.exr 2 $one$one $one$one $one$one
+    expect_ok $r $small -e dark.exr -o dark-lit.exr
+    expect_ok $r $small -e light.exr -o light-lit.exr
+    expect_true 'the second pixel lights' test "$(cmp -s dark-lit.exr light-lit.exr; echo $?)" -eq 1
+    for bad in $minus_one $nan $infinity; do
+        openexr bad.exr 2 $one$bad $one$one $one$one
+        expect_fail 1 '--repair takes such pixels as black' $r $small -e bad.exr -o x.png
+        run $r $small -e bad.exr --repair -o repaired.exr || failed '--repair' "$(cat "$root/work/stderr")"
+        expect_true 'repaired pixels are told' \
+            grep -qx 'gonio render: warning: bad.exr: 1 of 2 pixels are no light and are taken as black' "$root/work/stderr"
+        expect_same repaired.exr dark-lit.exr
+    done
+    expect_ok $r $small -e light.exr --repair -o untouched.exr
+    expect_same untouched.exr light-lit.exr
+}
+
 # ---- materials, memory, places to write ----
 
 expect_ok convert atlas:oak-sawn holes.binary

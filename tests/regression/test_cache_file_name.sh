@@ -1,0 +1,21 @@
+#!/bin/bash
+# Man pages named files in the cache that were never made.
+source=$(cd "$(dirname "$0")/../.." && pwd)
+. "$(dirname "$0")/../cli/lib.sh"
+
+expect_ok plan -n 2 -o default.csv
+expect_ok plan --method condition --components 3 -n 5 --restarts 1 -o paper.csv
+version=$(gonio --version | cut -d ' ' -f 2)
+expect_true 'two bases are kept' test "$(find "$XDG_CACHE_HOME/gonio" -type f | wc -l)" -eq 2
+pages=0
+for page in "$source"/docs/man/*.1; do
+    for name in $(grep -o 'atlas-VERSION[-A-Za-z]*\.gonio' "$page"); do
+        pattern=$(sed "s/VERSION/$version/; s/RECIPE/[0-9]/" <<<"$name")
+        expect_true "$(basename "$page"): $name is made" \
+            test "$(find "$XDG_CACHE_HOME/gonio" -name "$pattern" | wc -l)" -eq 1
+        pages=$((pages + 1))
+    done
+done
+expect_true 'the pages of plan, next, reconstruct and gonio name them' test $pages -ge 7
+
+finish
