@@ -7,7 +7,10 @@ WERROR ?= OFF
 INSTALL ?= yes
 JOBS ?= $(shell nproc)
 
-.PHONY: all demo check test sanitize style bench coverage install clean
+# What the tests of a build left, by which their times are shown.
+RESULTS = build/release/tests.xml build/sanitize/tests.xml
+
+.PHONY: all demo check test sanitize style times bench coverage install clean
 
 all:
 	scripts/install-dependencies.sh $(INSTALL) build
@@ -17,23 +20,34 @@ all:
 demo: all
 	build/release/apps/gonio/gonio demo -o gonio-demo
 
-check: style test sanitize
+# The style is checked beside the tests, which leave a processor free at times. How many tests passed is said last.
+check:
+	$(MAKE) -j 2 test style
+	$(MAKE) sanitize
 	@echo "All checks passed."
+	@scripts/test-times.sh $(RESULTS)
 
-test: check-tools
-	cmake --preset release -DGONIO_WERROR=$(WERROR) -DBUILD_TESTING=ON >/dev/null
+test: release-configured
 	cmake --build --preset release -j $(JOBS)
-	ctest --preset release
+	ctest --preset release -j $(JOBS) --output-junit $(CURDIR)/build/release/tests.xml
 
 sanitize: check-tools
 	cmake --preset sanitize -DGONIO_WERROR=$(WERROR) -DBUILD_TESTING=ON >/dev/null
 	cmake --build --preset sanitize -j $(JOBS)
-	ctest --preset sanitize
+	ctest --preset sanitize -j $(JOBS) --output-junit $(CURDIR)/build/sanitize/tests.xml
 
-style: check-tools
+style: release-configured
+	scripts/check-style.sh build/release
+
+# The page, as its packages have to be there before its style is checked.
+.PHONY: release-configured
+release-configured: check-tools
 	cmake --preset release -DGONIO_WERROR=$(WERROR) -DBUILD_TESTING=ON >/dev/null
 	cmake --build --preset release --target gonio-viewer
-	scripts/check-style.sh build/release
+
+# After `make check` on a quiet machine: keeps the times that it showed.
+times:
+	scripts/test-times.sh $(RESULTS) docs/test-times.md
 
 .PHONY: check-tools
 check-tools:

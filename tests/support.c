@@ -21,6 +21,12 @@ void support_need_shared(void)
     }
 }
 
+bool support_small(void)
+{
+    const char *size = getenv("GONIO_TESTS");
+    return size != NULL && strcmp(size, "small") == 0;
+}
+
 char *support_folder(void)
 {
     char *folder = strdup("/tmp/gonio-test-XXXXXX");

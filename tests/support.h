@@ -5,6 +5,7 @@
 
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -25,6 +26,10 @@ const char *support_shared(void);
 
 /* Skips the running test, saying so, where that folder is not there. */
 void support_need_shared(void);
+
+/* Whether fewer repeats and smaller grids will do, as everything is run by another build:
+ * $GONIO_TESTS is "small". */
+bool support_small(void);
 
 /* The names of the MERL database's materials. */
 enum { SUPPORT_MERL = 100 };

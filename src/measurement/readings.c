@@ -195,8 +195,11 @@ gonio_status gonio_i_readings_set_channels(gonio_context *context, gonio_reading
 static void *enlarge(void *block, size_t room, size_t size, bool *done)
 {
     void *more = reallocarray(block, room, size);
-    *done = *done && more != NULL;
-    return more != NULL ? more : block;
+    if (more == NULL) {
+        *done = false;
+        return block;
+    }
+    return more;
 }
 
 static gonio_status make_room(gonio_context *context, gonio_readings *r, bool deviations)

@@ -91,6 +91,9 @@ expect_true() {
     "$@" || failed "$what" "$*"
 }
 
+# Whether everything is to be run, not the smaller sizes that do for the sanitizers.
+full() { [ "${GONIO_TESTS:-}" != small ]; }
+
 skip() { printf 'not tested: %s\n' "$1"; }
 
 # Runs the program as a user who is not root, to whom permissions apply.
