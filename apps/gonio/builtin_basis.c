@@ -118,8 +118,11 @@ gonio_status tool_builtin_basis(tool *t, bool paper, char **path)
 /* Whether a method of planning or reconstructing works on the paper's kind of basis. */
 static bool is_papers(const char *method)
 {
-    return method != NULL && *method != '\0' && strcmp(method, "expected-error") != 0 &&
-           strcmp(method, "posterior") != 0;
+    if (method == NULL || *method == '\0') {
+        return false;
+    }
+    const char *planned = gonio_plan_method_reconstruction(method);
+    return !gonio_reconstruct_method_suits_mixtures(planned != NULL ? planned : method);
 }
 
 gonio_status tool_basis(tool *t, const char *path, const char *method, gonio_basis **basis)

@@ -23,7 +23,8 @@ typedef struct gonio_reconstruct_options {
     bool all_channels;  /* use all that was read, not only the planned channel of each direction */
     bool other_basis;   /* accept readings planned with another basis */
     const char *method; /* gonio_reconstruct_method_name; NULL for what belongs to the plan
-                         * (gonio_plan_method_reconstruction), least-squares if it states none */
+                         * (gonio_plan_method_reconstruction); if it states none, posterior for a
+                         * basis with mixtures and least-squares for any other */
     double eta;         /* of ridge, > 0; 0 for 40 */
     /* Of posterior only: */
     double noise;      /* standard deviation of a reading relative to its value; default 0.01 */
@@ -41,6 +42,9 @@ GONIO_API void gonio_reconstruct_options_default(gonio_reconstruct_options *opti
 /* Names and one-line descriptions of the methods; NULL past the last. */
 GONIO_API const char *gonio_reconstruct_method_name(int index);
 GONIO_API const char *gonio_reconstruct_method_summary(int index);
+
+/* Whether a method is the usual one for a basis with mixtures; false for unknown names. */
+GONIO_API bool gonio_reconstruct_method_suits_mixtures(const char *name);
 
 typedef struct gonio_reconstruction {
     size_t components;

@@ -1,11 +1,26 @@
-/* A reconstruction method: to add one, write a file like least_squares.c and add a line to the
- * table in reconstruct.c. */
+/* A reconstruction method is a row of a table: what it wants, and the functions by which it
+ * differs.
+ *
+ * To add one that finds coefficients from equations, copy least_squares.c; to add one that finds a
+ * field from directions and values, copy posterior_method.c. Then add a line to the table in
+ * reconstruct.c. */
 #ifndef GONIO_RECONSTRUCT_METHOD_H
 #define GONIO_RECONSTRUCT_METHOD_H
 
 #include <gonio/reconstruct.h>
 
 #include "../core/core.h"
+
+typedef struct gonio_i_reconstruct_method gonio_i_reconstruct_method;
+
+/* What is asked for. The options are never NULL, and the basis is as the method wants it. */
+typedef struct gonio_i_reconstruct_task {
+    gonio_context *context;
+    const gonio_i_reconstruct_method *method;
+    const gonio_basis *basis;
+    const gonio_reconstruct_options *options;
+    double eta; /* of the options, or the default */
+} gonio_i_reconstruct_task;
 
 /* Coefficients c of one column from X c = b. */
 typedef struct gonio_i_equations {
@@ -23,17 +38,41 @@ typedef struct gonio_i_solution {
     double condition_number;
 } gonio_i_solution;
 
-typedef struct gonio_i_reconstruct_method {
+/* What a method wants; false: it takes any. */
+typedef struct gonio_i_reconstruct_wants {
+    bool log_mapping;       /* a basis of the log mapping */
+    bool all_components;    /* of the basis */
+    bool noise;             /* valid noise, floor and saturation in the options */
+    bool colours;           /* readings of R, G, B */
+    bool full_rank;         /* as many independent readings as coefficients */
+    bool basis_of_mixtures; /* is the usual method for such a basis */
+} gonio_i_reconstruct_wants;
+
+struct gonio_i_reconstruct_method {
     const char *name;
     const char *summary;
-    bool needs_full_rank; /* as many independent readings as coefficients */
-    /* NULL: not equation by equation, see estimate.h */
+    gonio_i_reconstruct_wants wants;
+    /* From readings at directions. */
+    gonio_status (*from_readings)(const gonio_i_reconstruct_task *task,
+                                  const gonio_readings *readings,
+                                  gonio_reconstruction **reconstruction);
+    /* From rows of the basis: b[columns][count] in its space. */
+    gonio_status (*from_rows)(const gonio_i_reconstruct_task *task, const size_t *rows,
+                              size_t count, const double *b, gonio_reconstruction **reconstruction);
+    /* For the functions of equations.h; NULL for methods with functions of their own. */
     gonio_status (*solve)(gonio_context *context, const gonio_i_equations *equations,
                           gonio_i_solution *solution);
-} gonio_i_reconstruct_method;
+};
 
 extern const gonio_i_reconstruct_method gonio_i_least_squares_method;
 extern const gonio_i_reconstruct_method gonio_i_ridge_method;
 extern const gonio_i_reconstruct_method gonio_i_posterior_method;
+
+/* Whether basis and options are what the method wants, and so are readings, unless they are NULL.
+ * Errors: _ARGUMENT; _MISMATCH (spectra and a joint basis). */
+gonio_status gonio_i_reconstruct_check(gonio_context *context,
+                                       const gonio_i_reconstruct_method *method,
+                                       const gonio_basis *basis, const gonio_readings *readings,
+                                       const gonio_reconstruct_options *options);
 
 #endif

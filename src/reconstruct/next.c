@@ -8,7 +8,8 @@
 #include "../measurement/readings.h"
 #include "../plan/expected_error_plan.h"
 #include "../posterior/interpret.h"
-#include "estimate.h"
+#include "method.h"
+#include "posterior_method.h"
 
 typedef struct next {
     gonio_context *context;
@@ -50,10 +51,11 @@ static void release(next *n)
 
 static gonio_status find_posterior(next *n, const gonio_reconstruct_options *options)
 {
-    const gonio_i_noise noise = gonio_i_estimate_noise(options);
+    const gonio_i_noise noise = gonio_i_posterior_noise(options);
     const gonio_i_posterior_options how = {.smoothness = -1.0};
     double *dark = NULL;
-    gonio_status status = gonio_i_estimate_check(n->context, n->basis, n->readings, options);
+    gonio_status status = gonio_i_reconstruct_check(n->context, &gonio_i_posterior_method, n->basis,
+                                                    n->readings, options);
     if (status == GONIO_OK) {
         status = gonio_i_columns_create(n->context, &n->view, n->readings, &noise, &n->columns);
     }

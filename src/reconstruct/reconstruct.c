@@ -1,4 +1,4 @@
-/* Coefficients from readings: the table of methods, and the equations that they solve. */
+/* Reconstruction: the table of methods, and which one does it. */
 #include <gonio/reconstruct.h>
 
 #include <inttypes.h>
@@ -6,10 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../basis/basis.h"
-#include "../linalg/linalg.h"
-#include "../measurement/readings.h"
-#include "estimate.h"
+#include "equations.h"
 #include "method.h"
 
 void gonio_reconstruct_options_default(gonio_reconstruct_options *options)
@@ -29,108 +26,6 @@ void gonio_reconstruction_free(gonio_reconstruction **reconstruction)
     free((*reconstruction)->dark);
     free(*reconstruction);
     *reconstruction = NULL;
-}
-
-static gonio_reconstruction *allocate(gonio_context *context, const gonio_basis_view *basis,
-                                      size_t components)
-{
-    gonio_reconstruction *made = gonio_i_allocate(context, 1, sizeof *made);
-    if (made == NULL) {
-        return NULL;
-    }
-    made->components = components;
-    made->columns = basis->channels == GONIO_JOINT ? 1 : GONIO_CHANNELS;
-    made->coefficients =
-        gonio_i_allocate(context, made->columns * components, sizeof *made->coefficients);
-    if (made->coefficients == NULL) {
-        gonio_reconstruction_free(&made);
-    }
-    return made;
-}
-
-/* Equations that are being gathered. */
-typedef struct gathered {
-    const char *origin; /* the file of the readings and ": ", for messages; "" if there is none */
-    size_t count;
-    double *x; /* [count][components] */
-    double *b; /* [count]: readings in log space less m */
-} gathered;
-
-static bool allocate_equations(gonio_context *context, size_t most, size_t components, gathered *e)
-{
-    e->origin = "";
-    e->x = gonio_i_allocate(context, most * components, sizeof *e->x);
-    e->b = gonio_i_allocate(context, most, sizeof *e->b);
-    return e->x != NULL && e->b != NULL;
-}
-
-static void free_equations(gathered *e)
-{
-    free(e->x);
-    free(e->b);
-}
-
-static gonio_status undetermined(gonio_context *context, const gathered *e, size_t rank,
-                                 size_t needed, const char *channel)
-{
-    if (rank == 0) {
-        return gonio_i_fail(context, GONIO_ERROR_UNDETERMINED,
-                            "%sno usable reading%s to determine %zu coefficients from: are the "
-                            "cells of the values empty?",
-                            e->origin, channel, needed);
-    }
-    return gonio_i_fail(
-        context, GONIO_ERROR_UNDETERMINED,
-        "%s%zu readings%s of which %zu are independent cannot determine %zu "
-        "coefficients: measure at least %zu more directions, or use fewer components "
-        "(--components %zu)",
-        e->origin, e->count, channel, rank, needed, needed - rank, rank);
-}
-
-/* Root mean square of X c - b. */
-static double residual_of(const gathered *e, size_t components, const double *c)
-{
-    double sum = 0.0;
-    for (size_t i = 0; i < e->count; i++) {
-        double difference = -e->b[i];
-        for (size_t k = 0; k < components; k++) {
-            difference += e->x[i * components + k] * c[k];
-        }
-        sum += difference * difference;
-    }
-    return sqrt(sum / (double)e->count);
-}
-
-/* How to solve them. */
-typedef struct solver {
-    gonio_context *context;
-    const gonio_i_reconstruct_method *method;
-    double eta;
-    double *singular; /* [components] */
-} solver;
-
-static gonio_status solve_column(const solver *s, const gathered *e, size_t column,
-                                 gonio_reconstruction *r)
-{
-    static const char *const channels[GONIO_CHANNELS] = {" in R", " in G", " in B"};
-    const size_t k = r->components;
-    gonio_i_solution solution = {r->coefficients + column * k, 0, INFINITY};
-    if (e->count > 0) {
-        const gonio_i_equations equations = {e->count, k, e->x, e->b, s->singular, s->eta};
-        const gonio_status status = s->method->solve(s->context, &equations, &solution);
-        if (status != GONIO_OK) {
-            return status;
-        }
-    }
-    if (solution.rank < k) {
-        return undetermined(s->context, e, solution.rank, k,
-                            r->columns > 1 ? channels[column] : "");
-    }
-    const double residual = residual_of(e, k, solution.coefficients);
-    r->readings = e->count;
-    r->condition_number = fmax(r->condition_number, solution.condition_number);
-    r->residual = hypot(r->residual, residual / sqrt((double)r->columns));
-    return GONIO_OK;
 }
 
 /* ---- methods ---- */
@@ -155,157 +50,147 @@ const char *gonio_reconstruct_method_summary(int index)
     return index >= 0 && index < METHODS ? methods[index]->summary : NULL;
 }
 
-/* The method asked for, or that of the plan, or the first. */
-static const gonio_i_reconstruct_method *find_method(const gonio_basis_view *basis,
-                                                     const char *asked, const char *plan)
+/* NULL if there is none of that name. */
+static const gonio_i_reconstruct_method *find_method(const char *name)
 {
-    const char *planned = plan != NULL ? gonio_plan_method_reconstruction(plan) : NULL;
-    const char *usual = basis->mixtures > 0 ? "posterior" : NULL;
-    const char *name = asked != NULL ? asked : planned != NULL ? planned : usual;
-    for (int k = 0; k < METHODS && name != NULL; k++) {
+    for (int k = 0; k < METHODS; k++) {
         if (strcmp(methods[k]->name, name) == 0) {
             return methods[k];
         }
     }
-    return name == NULL ? methods[0] : NULL;
+    return NULL;
 }
 
-/* All but the singular values; plan: the name of its method, or NULL. */
-static gonio_status choose_solver(gonio_context *context, const gonio_basis_view *basis,
-                                  const gonio_reconstruct_options *options, const char *plan,
-                                  solver *s)
+bool gonio_reconstruct_method_suits_mixtures(const char *name)
 {
-    s->context = context;
-    s->method = find_method(basis, options->method, plan);
-    s->eta = options->eta != 0.0 ? options->eta : default_eta;
-    if (s->method == NULL) {
-        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                            "no reconstruction method is called '%s'", options->method);
+    const gonio_i_reconstruct_method *method = find_method(name);
+    return method != NULL && method->wants.basis_of_mixtures;
+}
+
+/* The one for a basis that nobody planned with. */
+static const gonio_i_reconstruct_method *usual_method(const gonio_basis_view *basis)
+{
+    for (int k = 0; k < METHODS; k++) {
+        if (methods[k]->wants.basis_of_mixtures && basis->mixtures > 0) {
+            return methods[k];
+        }
     }
-    if (!(s->eta > 0.0 && isfinite(s->eta))) {
-        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "eta has to be a number above 0, not %g",
-                            s->eta);
+    return methods[0];
+}
+
+/* The first that takes readings of any channels. */
+static const char *method_of_any_channels(void)
+{
+    int k = 0;
+    while (k < METHODS - 1 && methods[k]->wants.colours) {
+        k++;
+    }
+    return methods[k]->name;
+}
+
+/* ---- what a method wants ---- */
+
+static bool is_noise(const gonio_reconstruct_options *options)
+{
+    return options->noise >= 0.0 && isfinite(options->noise) && options->floor >= 0.0 &&
+           isfinite(options->floor) && options->saturation >= 0.0;
+}
+
+static gonio_status check_basis(gonio_context *context, const gonio_i_reconstruct_method *method,
+                                const gonio_basis_view *basis,
+                                const gonio_reconstruct_options *options)
+{
+    if (method->wants.log_mapping && basis->mapping != GONIO_LOG) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "%s works on a basis of the log mapping (gonio learn without "
+                            "--mapping relative)",
+                            method->name);
+    }
+    if (method->wants.all_components && options->components != 0 &&
+        options->components != basis->components) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "%s uses all %zu components of the basis, not %zu; learn one of fewer",
+                            method->name, basis->components, options->components);
+    }
+    if (method->wants.noise && !is_noise(options)) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "noise, floor and saturation are numbers from 0");
     }
     return GONIO_OK;
 }
 
-/* As many components as the method takes where nobody says how many. */
-static size_t default_components(const solver *s, size_t readings, size_t available)
+static gonio_status check_readings(gonio_context *context, const gonio_i_reconstruct_method *method,
+                                   const gonio_basis_view *basis, const gonio_readings *readings)
 {
-    return s->method->needs_full_rank || available < readings ? available : readings;
-}
-
-static gonio_status find_singular(solver *s, const gonio_basis_view *basis, size_t components)
-{
-    s->singular = gonio_i_allocate(s->context, components, sizeof *s->singular);
-    for (size_t k = 0; s->singular != NULL && k < components; k++) {
-        s->singular[k] = gonio_basis_singular_value(basis, k);
-    }
-    return s->singular != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
-}
-
-/* ---- from readings at directions ---- */
-
-typedef struct task {
-    gonio_context *context;
-    const gonio_basis *basis;
-    const gonio_readings *readings;
-    const gonio_reconstruct_options *options;
-    gonio_mapping mapping;
-    solver solver;
-} task;
-
-/* Whether a reading's channel makes an equation, given what was planned. A direction that is listed
- * once for each channel was read once: with all channels, a line that says again what the first
- * line of the same directions says does not count again. */
-static bool is_used(const task *t, size_t index, int channel)
-{
-    const gonio_readings *r = t->readings;
-    if (!t->options->all_channels || r->planned[index] == GONIO_ALL_CHANNELS) {
-        return r->planned[index] == GONIO_ALL_CHANNELS || r->planned[index] == channel;
-    }
-    const size_t first = r->first_same[index];
-    return first == index || r->value[index * GONIO_CHANNELS + (size_t)channel] !=
-                                 r->value[first * GONIO_CHANNELS + (size_t)channel];
-}
-
-static gonio_status add_reading(const task *t, size_t reading, int channel, size_t components,
-                                gathered *e)
-{
-    const double value = gonio_readings_value(t->readings, reading, (size_t)channel);
-    if (isnan(value) && channel == t->readings->planned[reading]) {
-        return gonio_i_fail(
-            t->context, GONIO_ERROR_DATA,
-            "%s:%zu: channel %c was planned here but not read; read it, or delete the "
-            "line",
-            t->readings->path, t->readings->line[reading], "RGB"[channel]);
-    }
-    if (isnan(value)) {
+    if (gonio_readings_are_colours(readings)) {
         return GONIO_OK;
     }
-    const gonio_half_difference at = gonio_half_difference_from_pair(t->readings->pair[reading]);
-    double mean = 0.0;
-    gonio_basis_row_at(t->basis, at, channel, components, &mean, e->x + e->count * components);
-    e->b[e->count++] = gonio_mapped_from_brdf(t->mapping, value, channel, at) - mean;
+    if (method->wants.colours) {
+        const gonio_readings_view view = gonio_readings_describe(readings);
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "%s: %s are for --method %s", view.path,
+                            view.wavelength != NULL ? "spectral readings"
+                                                    : "readings other than of R, G, B",
+                            method_of_any_channels());
+    }
+    if (basis->channels == GONIO_JOINT) {
+        return gonio_i_fail(context, GONIO_ERROR_MISMATCH,
+                            "spectral readings need a basis of separate channels (gonio learn "
+                            "--channels separate)");
+    }
     return GONIO_OK;
 }
 
-static gonio_status collect(const task *t, size_t column, bool joint, size_t components,
-                            gathered *e)
+gonio_status gonio_i_reconstruct_check(gonio_context *context,
+                                       const gonio_i_reconstruct_method *method,
+                                       const gonio_basis *basis, const gonio_readings *readings,
+                                       const gonio_reconstruct_options *options)
 {
-    gonio_status status = GONIO_OK;
-    const int first = joint ? 0 : (int)column;
-    const int last = joint ? GONIO_CHANNELS - 1 : (int)column;
-    e->count = 0;
-    for (size_t k = 0; k < t->readings->count; k++) {
-        for (int channel = first; channel <= last && status == GONIO_OK; channel++) {
-            if (is_used(t, k, channel)) {
-                status = add_reading(t, k, channel, components, e);
-            }
-        }
-    }
-    return status;
+    const gonio_basis_view view = gonio_basis_describe(basis);
+    const gonio_status status = check_basis(context, method, &view, options);
+    return status == GONIO_OK && readings != NULL ? check_readings(context, method, &view, readings)
+                                                  : status;
 }
 
-static gonio_status solve_readings(const task *t, gonio_reconstruction *r)
+/* ---- a task ---- */
+
+/* The method asked for, or that of the plan (its method's name, or NULL), or the usual one. */
+static gonio_status begin(gonio_context *context, const gonio_basis *basis,
+                          const gonio_reconstruct_options *options, const char *plan,
+                          gonio_i_reconstruct_task *task)
 {
-    gathered e = {0};
-    gonio_status status = GONIO_ERROR_MEMORY;
-    char *origin = gonio_i_format("%s: ", t->readings->path);
-    if (allocate_equations(t->context, GONIO_CHANNELS * t->readings->count, r->components, &e) &&
-        origin != NULL) {
-        e.origin = origin;
-        status = GONIO_OK;
+    const gonio_basis_view view = gonio_basis_describe(basis);
+    const char *planned = plan != NULL ? gonio_plan_method_reconstruction(plan) : NULL;
+    const char *name = options->method != NULL ? options->method : planned;
+    *task = (gonio_i_reconstruct_task){
+        .context = context,
+        .method = name != NULL ? find_method(name) : usual_method(&view),
+        .basis = basis,
+        .options = options,
+        .eta = options->eta != 0.0 ? options->eta : default_eta,
+    };
+    if (task->method == NULL) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "no reconstruction method is called '%s'", name);
     }
-    for (size_t column = 0; column < r->columns && status == GONIO_OK; column++) {
-        status = collect(t, column, r->columns == 1, r->components, &e);
-        if (status == GONIO_OK) {
-            status = solve_column(&t->solver, &e, column, r);
-        }
+    if (!(task->eta > 0.0 && isfinite(task->eta))) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "eta has to be a number above 0, not %g",
+                            task->eta);
     }
-    free_equations(&e);
-    free(origin);
-    return status;
+    return GONIO_OK;
 }
 
-/* K: as asked, or as planned, or all. */
-static gonio_status choose_components(const task *t, size_t available, size_t *components)
+static gonio_status check_fingerprint(gonio_context *context, const gonio_basis *basis,
+                                      const gonio_readings_view *readings,
+                                      const gonio_reconstruct_options *options)
 {
-    const size_t planned = t->readings->components;
-    size_t k = t->options->components;
-    k = k > 0 ? k : planned;
-    k = k > 0 ? k : default_components(&t->solver, t->readings->count, available);
-    if (t->options->components > available) {
-        return gonio_i_fail(t->context, GONIO_ERROR_ARGUMENT,
-                            "%zu components asked for, but the basis has %zu", k, available);
+    const uint64_t fingerprint = gonio_basis_describe(basis).fingerprint;
+    if (readings->basis != 0 && readings->basis != fingerprint && !options->other_basis) {
+        return gonio_i_fail(context, GONIO_ERROR_MISMATCH,
+                            "%s: planned with another basis (%016" PRIx64
+                            ", this one is %016" PRIx64
+                            "); give that basis, or accept this one with --other-basis",
+                            readings->path, readings->basis, fingerprint);
     }
-    if (k > available) {
-        return gonio_i_fail(t->context, GONIO_ERROR_MISMATCH,
-                            "%s: planned for %zu components, but the basis has %zu; give the basis "
-                            "of the plan, or use fewer components (--components %zu)",
-                            t->readings->path, k, available, available);
-    }
-    *components = k;
     return GONIO_OK;
 }
 
@@ -315,111 +200,30 @@ gonio_status gonio_reconstruct(gonio_context *context, const gonio_basis *basis,
                                gonio_reconstruction **reconstruction)
 {
     gonio_reconstruct_options defaults;
+    gonio_i_reconstruct_task task;
+    const gonio_readings_view view = gonio_readings_describe(readings);
     gonio_reconstruct_options_default(&defaults);
-    const gonio_basis_view view = gonio_basis_describe(basis);
-    task t = {.context = context,
-              .basis = basis,
-              .readings = readings,
-              .options = options != NULL ? options : &defaults,
-              .mapping = view.mapping};
-    if (readings->basis != 0 && readings->basis != view.fingerprint && !t.options->other_basis) {
-        return gonio_i_fail(context, GONIO_ERROR_MISMATCH,
-                            "%s: planned with another basis (%016" PRIx64
-                            ", this one is %016" PRIx64
-                            "); give that basis, or accept this one with --other-basis",
-                            readings->path, readings->basis, view.fingerprint);
-    }
-    size_t components = 0;
-    gonio_status status = choose_solver(context, &view, t.options,
-                                        gonio_readings_describe(readings).method, &t.solver);
-    if (status == GONIO_OK && t.solver.method->solve == NULL) {
-        return gonio_i_estimate_readings(context, basis, readings, t.options, reconstruction);
-    }
-    if (status == GONIO_OK && !gonio_readings_are_colours(readings)) {
-        return gonio_i_fail(
-            context, GONIO_ERROR_ARGUMENT, "%s: %s are for --method posterior", readings->path,
-            readings->wavelength != NULL ? "spectral readings" : "readings other than of R, G, B");
+    options = options != NULL ? options : &defaults;
+    gonio_status status = check_fingerprint(context, basis, &view, options);
+    if (status == GONIO_OK) {
+        status = begin(context, basis, options, view.method, &task);
     }
     if (status == GONIO_OK) {
-        status = choose_components(&t, view.components, &components);
+        status = gonio_i_reconstruct_check(context, task.method, basis, readings, options);
     }
-    if (status != GONIO_OK) {
-        return status;
-    }
-    gonio_reconstruction *made = allocate(context, &view, components);
-    if (made == NULL) {
-        return GONIO_ERROR_MEMORY;
-    }
-    status = find_singular(&t.solver, &view, components);
-    if (status == GONIO_OK) {
-        status = solve_readings(&t, made);
-    }
-    free(t.solver.singular);
-    if (status != GONIO_OK) {
-        gonio_reconstruction_free(&made);
-        return status;
-    }
-    *reconstruction = made;
-    return GONIO_OK;
-}
-
-/* ---- from rows of the basis ---- */
-
-static gonio_status solve_rows(const solver *s, const gonio_basis *basis, const size_t *rows,
-                               size_t count, const double *b, gonio_reconstruction *r)
-{
-    const double *mean = gonio_basis_describe(basis).mean;
-    gathered e = {0};
-    const size_t k = r->components;
-    gonio_status status = GONIO_ERROR_MEMORY;
-    if (allocate_equations(s->context, count, k, &e)) {
-        status = GONIO_OK;
-    }
-    for (size_t column = 0; column < r->columns && status == GONIO_OK; column++) {
-        e.count = count;
-        for (size_t i = 0; i < count; i++) {
-            gonio_i_basis_rows(basis, rows[i], 1, k, e.x + i * k);
-            e.b[i] = b[column * count + i] - mean[rows[i]];
-        }
-        status = solve_column(s, &e, column, r);
-    }
-    free_equations(&e);
-    return status;
-}
-
-static gonio_status reconstruct_rows(solver *s, const gonio_basis *basis, size_t components,
-                                     const size_t *rows, size_t count, const double *b,
-                                     gonio_reconstruction **reconstruction)
-{
-    const gonio_basis_view view = gonio_basis_describe(basis);
-    if (components == 0 || components > view.components) {
-        return gonio_i_fail(s->context, GONIO_ERROR_ARGUMENT,
-                            "%zu components asked for, but the basis has %zu", components,
-                            view.components);
-    }
-    gonio_reconstruction *made = allocate(s->context, &view, components);
-    if (made == NULL) {
-        return GONIO_ERROR_MEMORY;
-    }
-    gonio_status status = find_singular(s, &view, components);
-    if (status == GONIO_OK) {
-        status = solve_rows(s, basis, rows, count, b, made);
-    }
-    free(s->singular);
-    if (status != GONIO_OK) {
-        gonio_reconstruction_free(&made);
-        return status;
-    }
-    *reconstruction = made;
-    return GONIO_OK;
+    return status == GONIO_OK ? task.method->from_readings(&task, readings, reconstruction)
+                              : status;
 }
 
 gonio_status gonio_reconstruct_rows(gonio_context *context, const gonio_basis *basis,
                                     size_t components, const size_t *rows, size_t count,
                                     const double *b, gonio_reconstruction **reconstruction)
 {
-    solver s = {.context = context, .method = methods[0]};
-    return reconstruct_rows(&s, basis, components, rows, count, b, reconstruction);
+    gonio_reconstruct_options options;
+    gonio_reconstruct_options_default(&options);
+    const gonio_i_reconstruct_task task = {context, &gonio_i_least_squares_method, basis, &options,
+                                           default_eta};
+    return gonio_i_equations_of_rows(&task, components, rows, count, b, reconstruction);
 }
 
 gonio_status gonio_reconstruct_rows_with(gonio_context *context, const gonio_basis *basis,
@@ -428,19 +232,13 @@ gonio_status gonio_reconstruct_rows_with(gonio_context *context, const gonio_bas
                                          gonio_reconstruction **reconstruction)
 {
     gonio_reconstruct_options defaults;
+    gonio_i_reconstruct_task task;
     gonio_reconstruct_options_default(&defaults);
     options = options != NULL ? options : &defaults;
-    solver s = {0};
-    const gonio_basis_view view = gonio_basis_describe(basis);
-    const gonio_status status = choose_solver(context, &view, options, NULL, &s);
-    if (status != GONIO_OK) {
-        return status;
+    gonio_status status = begin(context, basis, options, NULL, &task);
+    if (status == GONIO_OK) {
+        status = gonio_i_reconstruct_check(context, task.method, basis, NULL, options);
     }
-    if (s.method->solve == NULL) {
-        return gonio_i_estimate_rows(context, basis, options, rows, count, b, reconstruction);
-    }
-    const size_t available = view.components;
-    const size_t components =
-        options->components > 0 ? options->components : default_components(&s, count, available);
-    return reconstruct_rows(&s, basis, components, rows, count, b, reconstruction);
+    return status == GONIO_OK ? task.method->from_rows(&task, rows, count, b, reconstruction)
+                              : status;
 }

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "../linalg/linalg.h"
-#include "method.h"
+#include "equations.h"
 
 /* Q on top of sqrt(eta) I, and b on top of 0. */
 static void stack(const gonio_i_equations *e, double *a, double *right)
@@ -47,4 +47,10 @@ static gonio_status solve(gonio_context *context, const gonio_i_equations *equat
 }
 
 const gonio_i_reconstruct_method gonio_i_ridge_method = {
-    "ridge", "with a penalty on large coefficients (Nielsen et al.)", false, solve};
+    .name = "ridge",
+    .summary = "with a penalty on large coefficients (Nielsen et al.)",
+    .wants = {.colours = true},
+    .from_readings = gonio_i_equations_from_readings,
+    .from_rows = gonio_i_equations_from_rows,
+    .solve = solve,
+};

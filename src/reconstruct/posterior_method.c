@@ -1,5 +1,6 @@
-/* Reconstruction by posterior: see estimate.h. */
-#include "estimate.h"
+/* The method posterior: from readings to columns (src/posterior), and from those to a
+ * reconstruction. */
+#include "posterior_method.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -8,46 +9,9 @@
 #include "../posterior/interpret.h"
 #include "method.h"
 
-static gonio_status check(gonio_context *context, const gonio_basis_view *view,
-                          const gonio_reconstruct_options *options)
-{
-    if (view->mapping != GONIO_LOG) {
-        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                            "posterior works on a basis of the log mapping (gonio learn without "
-                            "--mapping relative)");
-    }
-    if (options->components != 0 && options->components != view->components) {
-        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                            "posterior uses all %zu components of the basis, not %zu; learn one of "
-                            "fewer",
-                            view->components, options->components);
-    }
-    if (!(options->noise >= 0.0 && isfinite(options->noise)) ||
-        !(options->floor >= 0.0 && isfinite(options->floor)) || !(options->saturation >= 0.0)) {
-        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                            "noise, floor and saturation are numbers from 0");
-    }
-    return GONIO_OK;
-}
-
-gonio_i_noise gonio_i_estimate_noise(const gonio_reconstruct_options *options)
+gonio_i_noise gonio_i_posterior_noise(const gonio_reconstruct_options *options)
 {
     return (gonio_i_noise){options->noise, options->floor, options->saturation};
-}
-
-gonio_status gonio_i_estimate_check(gonio_context *context, const gonio_basis *basis,
-                                    const gonio_readings *readings,
-                                    const gonio_reconstruct_options *options)
-{
-    const gonio_basis_view view = gonio_basis_describe(basis);
-    const gonio_status status = check(context, &view, options);
-    if (status == GONIO_OK && view.channels == GONIO_JOINT &&
-        !gonio_readings_are_colours(readings)) {
-        return gonio_i_fail(context, GONIO_ERROR_MISMATCH,
-                            "spectral readings need a basis of separate channels (gonio learn "
-                            "--channels separate)");
-    }
-    return status;
 }
 
 static gonio_status allocate(gonio_context *context, const gonio_basis_view *view, size_t columns,
@@ -115,7 +79,7 @@ static gonio_status estimate(gonio_context *context, const gonio_i_prior *prior,
                              const gonio_reconstruct_options *options, gonio_reconstruction *r,
                              gonio_i_columns *columns)
 {
-    const gonio_i_noise noise = gonio_i_estimate_noise(options);
+    const gonio_i_noise noise = gonio_i_posterior_noise(options);
     gonio_status status = keep_wavelengths(context, readings, r);
     if (status == GONIO_OK && !options->no_checks) {
         status =
@@ -124,21 +88,19 @@ static gonio_status estimate(gonio_context *context, const gonio_i_prior *prior,
     return status == GONIO_OK ? find(context, prior, columns, options, r) : status;
 }
 
-gonio_status gonio_i_estimate_readings(gonio_context *context, const gonio_basis *basis,
-                                       const gonio_readings *readings,
-                                       const gonio_reconstruct_options *options,
-                                       gonio_reconstruction **reconstruction)
+static gonio_status from_readings(const gonio_i_reconstruct_task *task,
+                                  const gonio_readings *readings,
+                                  gonio_reconstruction **reconstruction)
 {
+    gonio_context *context = task->context;
+    const gonio_basis *basis = task->basis;
+    const gonio_reconstruct_options *options = task->options;
     const gonio_basis_view view = gonio_basis_describe(basis);
-    gonio_status status = gonio_i_estimate_check(context, basis, readings, options);
-    if (status != GONIO_OK) {
-        return status;
-    }
-    const gonio_i_noise noise = gonio_i_estimate_noise(options);
+    const gonio_i_noise noise = gonio_i_posterior_noise(options);
     gonio_i_columns columns;
     gonio_i_prior *prior = NULL;
     gonio_reconstruction *made = NULL;
-    status = gonio_i_columns_create(context, &view, readings, &noise, &columns);
+    gonio_status status = gonio_i_columns_create(context, &view, readings, &noise, &columns);
     if (status == GONIO_OK) {
         status = gonio_i_columns_check(context, &columns, gonio_readings_describe(readings).path);
     }
@@ -188,19 +150,17 @@ static gonio_status observe_rows(gonio_context *context, const gonio_basis_view 
     return columns->column != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
 }
 
-gonio_status gonio_i_estimate_rows(gonio_context *context, const gonio_basis *basis,
-                                   const gonio_reconstruct_options *options, const size_t *rows,
-                                   size_t count, const double *b,
-                                   gonio_reconstruction **reconstruction)
+static gonio_status from_rows(const gonio_i_reconstruct_task *task, const size_t *rows,
+                              size_t count, const double *b, gonio_reconstruction **reconstruction)
 {
+    gonio_context *context = task->context;
+    const gonio_basis *basis = task->basis;
+    const gonio_reconstruct_options *options = task->options;
     const gonio_basis_view view = gonio_basis_describe(basis);
     gonio_i_columns columns = {0};
     gonio_i_prior *prior = NULL;
     gonio_reconstruction *made = NULL;
-    gonio_status status = check(context, &view, options);
-    if (status == GONIO_OK) {
-        status = observe_rows(context, &view, rows, count, b, &columns);
-    }
+    gonio_status status = observe_rows(context, &view, rows, count, b, &columns);
     if (status == GONIO_OK) {
         status = gonio_i_columns_check(context, &columns, NULL);
     }
@@ -224,5 +184,12 @@ gonio_status gonio_i_estimate_rows(gonio_context *context, const gonio_basis *ba
 }
 
 const gonio_i_reconstruct_method gonio_i_posterior_method = {
-    "posterior", "what the database and the readings say together, with its uncertainty", false,
-    NULL};
+    .name = "posterior",
+    .summary = "what the database and the readings say together, with its uncertainty",
+    .wants = {.log_mapping = true,
+              .all_components = true,
+              .noise = true,
+              .basis_of_mixtures = true},
+    .from_readings = from_readings,
+    .from_rows = from_rows,
+};

@@ -1,0 +1,11 @@
+/* What the method posterior and choosing what to read next (next.c) have in common. */
+#ifndef GONIO_POSTERIOR_METHOD_H
+#define GONIO_POSTERIOR_METHOD_H
+
+#include <gonio/reconstruct.h>
+
+#include "../posterior/observations.h"
+
+gonio_i_noise gonio_i_posterior_noise(const gonio_reconstruct_options *options);
+
+#endif
