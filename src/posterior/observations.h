@@ -6,7 +6,7 @@
 
 #include "posterior.h"
 
-/* The noise of an instrument. */
+/* The noise of an instrument, where the readings state no standard deviation of a value. */
 typedef struct gonio_i_noise {
     double relative;   /* standard deviation relative to the value */
     double floor;      /* standard deviation of a reading of zero, 1/sr */

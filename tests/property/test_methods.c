@@ -646,6 +646,9 @@ static void test_what_ridge_refuses(void **state)
     assert_string_equal(gonio_reconstruct_method_name(1), "ridge");
     assert_string_equal(gonio_reconstruct_method_name(2), "posterior");
     assert_null(gonio_reconstruct_method_name(3));
+    assert_true(gonio_reconstruct_method_suits_mixtures("posterior"));
+    assert_false(gonio_reconstruct_method_suits_mixtures("ridge"));
+    assert_false(gonio_reconstruct_method_suits_mixtures("none"));
     assert_null(gonio_reconstruct_method_summary(-1));
 }
 
