@@ -26,8 +26,7 @@ typedef struct gonio_reconstruct_options {
                          * (gonio_plan_method_reconstruction); if it states none, posterior for a
                          * basis with mixtures and least-squares for any other */
     double eta;         /* of ridge, > 0; 0 for 40 */
-    /* Of posterior only. Standard deviations that the readings state come before noise and floor.
-     */
+    /* Of posterior only: */
     double noise;      /* standard deviation of a reading relative to its value; default 0.01 */
     double floor;      /* standard deviation of the additive noise, 1/sr; default 1e-5. Where a
                         * reading has a standard deviation of its own (measurement.h), that counts

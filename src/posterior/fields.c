@@ -13,7 +13,11 @@ enum {
     WIDE = 8,   /* columns of a panel */
     HIGH = 4,   /* rows that are summed at the same time */
     BLOCK = 32, /* rows whose terms are made at a time */
+    LANES = 4,
+    VECTORS = WIDE / LANES,
 };
+
+typedef double lanes __attribute__((vector_size(LANES * sizeof(double))));
 
 typedef struct filler {
     const gonio_i_sites *sites;
@@ -59,23 +63,29 @@ static void fill_terms(const filler *f, size_t row, double *terms)
     }
 }
 
-/* sum[HIGH][WIDE] += terms[HIGH][count] (`size` apart) times panel[count][WIDE]. */
+/* sum[HIGH][WIDE] += terms[HIGH][count] (`size` apart) times panel[count][WIDE]. Each lane adds up
+ * one sum: compilers left alone change the order of the loops. */
 GONIO_I_VECTORISED static void add_terms(const double *restrict terms, size_t size,
                                          const double *restrict panel, size_t count,
                                          double *restrict sum)
 {
-    double part[HIGH][WIDE] = {{0.0}};
+    lanes part[HIGH][VECTORS] = {{{0.0}}};
     for (size_t k = 0; k < count; k++) {
+        lanes weight[VECTORS];
+        memcpy(weight, panel + k * WIDE, sizeof weight);
         for (size_t h = 0; h < HIGH; h++) {
-            for (size_t w = 0; w < WIDE; w++) {
-                part[h][w] += terms[h * size + k] * panel[k * WIDE + w];
+            for (size_t v = 0; v < VECTORS; v++) {
+                part[h][v] += terms[h * size + k] * weight[v];
             }
         }
     }
     for (size_t h = 0; h < HIGH; h++) {
-        for (size_t w = 0; w < WIDE; w++) {
-            sum[h * WIDE + w] += part[h][w];
+        lanes whole[VECTORS];
+        memcpy(whole, sum + h * WIDE, sizeof whole);
+        for (size_t v = 0; v < VECTORS; v++) {
+            whole[v] += part[h][v];
         }
+        memcpy(sum + h * WIDE, whole, sizeof whole);
     }
 }
 
