@@ -39,6 +39,10 @@ GONIO_API double gonio_brdf_from_log(double g, int channel);
 
 typedef enum gonio_mapping { GONIO_LOG = 0, GONIO_LOG_RELATIVE = 1 } gonio_mapping;
 
+/* "log" and "relative"; NULL for any other value. And back: false for any other name. */
+GONIO_API const char *gonio_mapping_name(gonio_mapping mapping);
+GONIO_API bool gonio_mapping_parse(const char *name, gonio_mapping *mapping);
+
 /* s of a mapping at a direction, 1/sr. */
 GONIO_API double gonio_mapping_scale(gonio_mapping mapping, int channel, gonio_half_difference at);
 
@@ -57,6 +61,11 @@ typedef enum gonio_representation {
     GONIO_SECTORED = 2
 } gonio_representation;
 
+/* "bivariate", "full" and "sectored"; NULL for any other value. And back: false for any other name.
+ */
+GONIO_API const char *gonio_representation_name(gonio_representation representation);
+GONIO_API bool gonio_representation_parse(const char *name, gonio_representation *representation);
+
 /* Cells of the whole grid in a representation, those that can hold no data included. */
 GONIO_API int32_t gonio_grid_cells(gonio_representation representation);
 
@@ -65,7 +74,12 @@ GONIO_API gonio_bin gonio_cell_bin(gonio_representation representation, int32_t 
 
 /* The cell that a bin lies in. */
 GONIO_API int32_t gonio_cell_of_bin(gonio_representation representation, gonio_bin bin);
+
 typedef enum gonio_channel_model { GONIO_JOINT = 0, GONIO_SEPARATE = 1 } gonio_channel_model;
+
+/* "joint" and "separate"; NULL for any other value. And back: false for any other name. */
+GONIO_API const char *gonio_channel_model_name(gonio_channel_model channels);
+GONIO_API bool gonio_channel_model_parse(const char *name, gonio_channel_model *channels);
 
 /* Bivariate statistics of one slab in log space, by theta_d. */
 typedef struct gonio_slab_statistics {

@@ -11,13 +11,12 @@
 
 size_t gonio_i_basis_row_count(size_t cells, gonio_channel_model channels)
 {
-    return channels == GONIO_JOINT ? GONIO_CHANNELS * cells : cells;
+    return gonio_i_rows_per_cell(channels) * cells;
 }
 
 size_t gonio_i_basis_columns(const gonio_basis *basis)
 {
-    const size_t each = basis->channels == GONIO_JOINT ? 1 : GONIO_CHANNELS;
-    return each * basis->materials + basis->mixtures;
+    return gonio_i_columns_per_material(basis->channels) * basis->materials + basis->mixtures;
 }
 
 gonio_basis *gonio_i_basis_allocate(gonio_context *context, size_t materials, size_t mixtures,
@@ -139,7 +138,7 @@ static void search_axis(gonio_context *context, const axis *a, nearest *cells, s
 gonio_status gonio_i_basis_map_cells(gonio_context *context, gonio_basis *basis)
 {
     const size_t all = (size_t)gonio_grid_cells(basis->representation);
-    const size_t depth = all > GONIO_CELLS ? all / GONIO_CELLS : 1;
+    const size_t depth = (size_t)gonio_i_phi_cells(basis->representation);
     const axis axes[] = {{depth, 1, true},
                          {GONIO_THETA_D_BINS, depth, false},
                          {GONIO_THETA_H_BINS, GONIO_THETA_D_BINS * depth, false}};
@@ -331,29 +330,43 @@ size_t gonio_basis_position(const gonio_basis *basis, int32_t cell)
     return (size_t)basis->position[cell];
 }
 
+int gonio_i_row_bins(const gonio_basis_view *view, size_t row)
+{
+    return gonio_i_valid_bin_count(view->representation, gonio_i_row_cell(view, row));
+}
+
+gonio_half_difference gonio_i_row_coordinates(const gonio_basis_view *view, size_t row,
+                                              int *channel)
+{
+    *channel = gonio_i_channel_of(view->channels, row);
+    return gonio_i_cell_direction(view->representation, gonio_i_row_cell(view, row), M_PI / 2.0);
+}
+
+int gonio_i_rows_around(const gonio_basis *basis, gonio_half_difference at, int channel,
+                        gonio_i_row_weight around[GONIO_I_TRILINEAR])
+{
+    gonio_i_cell_weight cells[GONIO_I_TRILINEAR];
+    const int points = gonio_i_cells_around(basis->representation, at, cells);
+    for (int k = 0; k < points; k++) {
+        const size_t position = gonio_basis_position(basis, cells[k].cell);
+        around[k] = (gonio_i_row_weight){gonio_i_row_of(basis->channels, position, channel),
+                                         cells[k].weight};
+    }
+    return points;
+}
+
 void gonio_basis_row_at(const gonio_basis *basis, gonio_half_difference coordinates, int channel,
                         size_t components, double *mean, double *row)
 {
-    gonio_i_stencil stencil[GONIO_I_TRILINEAR];
-    const bool bivariate = basis->representation == GONIO_BIVARIATE;
-    const int points = bivariate ? GONIO_I_BILINEAR : GONIO_I_TRILINEAR;
-    if (bivariate) {
-        gonio_i_bilinear(coordinates, stencil);
-    } else if (basis->representation == GONIO_SECTORED) {
-        gonio_i_trilinear_sectors(coordinates, stencil);
-    } else {
-        gonio_i_trilinear(coordinates, stencil);
-    }
+    gonio_i_row_weight around[GONIO_I_TRILINEAR];
+    const int points = gonio_i_rows_around(basis, coordinates, channel, around);
     *mean = 0.0;
     memset(row, 0, components * sizeof *row);
     for (int k = 0; k < points; k++) {
-        const size_t position =
-            gonio_basis_position(basis, gonio_cell_of_bin(basis->representation, stencil[k].bin));
-        const size_t source =
-            basis->channels == GONIO_JOINT ? GONIO_CHANNELS * position + (size_t)channel : position;
-        *mean += stencil[k].weight * basis->mean[source];
+        const double *source = basis->vectors + around[k].row * basis->components;
+        *mean += around[k].weight * basis->mean[around[k].row];
         for (size_t j = 0; j < components; j++) {
-            row[j] += stencil[k].weight * basis->vectors[source * basis->components + j];
+            row[j] += around[k].weight * source[j];
         }
     }
 }

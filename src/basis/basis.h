@@ -5,6 +5,7 @@
 #include <gonio/basis.h>
 
 #include "../core/file_head.h"
+#include "../database/layout.h"
 
 struct gonio_basis {
     gonio_representation representation;
@@ -60,6 +61,30 @@ void gonio_i_basis_rows(const gonio_basis *basis, size_t first, size_t count, si
 
 /* The first `components` values of a row of V times c. */
 double gonio_i_basis_dot(const gonio_basis *basis, size_t row, const double *c, size_t components);
+
+/* The cell that a row is of. */
+static inline int32_t gonio_i_row_cell(const gonio_basis_view *view, size_t row)
+{
+    return view->cell[gonio_i_position_of(view->channels, row)];
+}
+
+/* How many valid bins of the grid a row stands for. */
+int gonio_i_row_bins(const gonio_basis_view *view, size_t row);
+
+/* The direction that a row stands for, of a bivariate one that at phi_d = 90 degrees, and its
+ * channel (joint) or 0. */
+gonio_half_difference gonio_i_row_coordinates(const gonio_basis_view *view, size_t row,
+                                              int *channel);
+
+/* A row and its weight in an interpolation. */
+typedef struct gonio_i_row_weight {
+    size_t row;
+    double weight; /* >= 0; the weights add up to 1 */
+} gonio_i_row_weight;
+
+/* The rows that a reading in one channel at a direction sees; returns how many. */
+int gonio_i_rows_around(const gonio_basis *basis, gonio_half_difference at, int channel,
+                        gonio_i_row_weight around[GONIO_I_TRILINEAR]);
 
 /* Finds the cell that stands for each one of the grid: part of _finish, of use before. */
 gonio_status gonio_i_basis_map_cells(gonio_context *context, gonio_basis *basis);

@@ -210,7 +210,7 @@ static gonio_status read_mixtures(contents *c)
 
 static size_t measured_of(const contents *c)
 {
-    return (c->channels == GONIO_JOINT ? 1 : GONIO_CHANNELS) * c->materials;
+    return gonio_i_columns_per_material((gonio_channel_model)c->channels) * c->materials;
 }
 
 static size_t columns_of(const contents *c)

@@ -154,22 +154,24 @@ void gonio_i_mixtures_parents(const gonio_i_mixtures *mixtures, int32_t *parents
     }
 }
 
-/* A row of a column that is varied: between four cells. run: cells of a pair of bins. */
-static double stretched(const gonio_i_mixtures *m, const half *h, size_t row, int32_t run)
+/* A row of a column that is varied: between four cells. */
+static double stretched(const gonio_i_mixtures *m, const half *h, size_t row, int32_t phi_cells)
 {
-    const size_t each = m->basis->channels == GONIO_JOINT ? GONIO_CHANNELS : 1;
-    const int32_t cell = m->basis->cell[row / each];
-    const between at_h = h->theta_h[cell / run / GONIO_THETA_D_BINS];
-    const between at_d = h->theta_d[cell / run % GONIO_THETA_D_BINS];
+    const gonio_channel_model channels = m->basis->channels;
+    const int channel = gonio_i_channel_of(channels, row);
+    const int32_t cell = m->basis->cell[gonio_i_position_of(channels, row)];
+    const gonio_i_cell_indices at = gonio_i_indices_of_cell(phi_cells, cell);
+    const between at_h = h->theta_h[at.theta_h];
+    const between at_d = h->theta_d[at.theta_d];
     const float *column = m->measured + h->column * m->basis->rows;
     double sum = 0.0;
     for (int k = 0; k < 4; k++) {
-        const int32_t other_h = at_h.low + k / 2;
-        const int32_t other_d = at_d.low + k % 2;
-        const int32_t other = (other_h * GONIO_THETA_D_BINS + other_d) * run + cell % run;
+        const int32_t other = gonio_i_cell_at(
+            phi_cells, (gonio_i_cell_indices){at_h.low + k / 2, at_d.low + k % 2, at.phi});
+        const size_t position = (size_t)m->basis->position[other];
         sum += (k / 2 == 0 ? 1.0 - at_h.share : at_h.share) *
                (k % 2 == 0 ? 1.0 - at_d.share : at_d.share) *
-               (double)column[(size_t)m->basis->position[other] * each + row % each];
+               (double)column[gonio_i_row_of(channels, position, channel)];
     }
     return sum;
 }
@@ -178,9 +180,9 @@ static double stretched(const gonio_i_mixtures *m, const half *h, size_t row, in
 static void reflectance(const gonio_i_mixtures *m, const half *h, size_t first, size_t count,
                         double *x)
 {
-    const int32_t run = gonio_grid_cells(m->basis->representation) / GONIO_CELLS;
+    const int32_t phi_cells = gonio_i_phi_cells(m->basis->representation);
     for (size_t i = 0; i < count; i++) {
-        x[i] = stretched(m, h, first + i, run);
+        x[i] = stretched(m, h, first + i, phi_cells);
     }
     gonio_i_expm1(count, x, x);
     for (size_t i = 0; i < count; i++) {

@@ -16,6 +16,7 @@
 #include "../core/core.h"
 #include "../core/vector_math.h"
 #include "../direction/grid.h"
+#include "layout.h"
 #include "scratch.h"
 #include "slab_mean.h"
 #include "tiles.h"
@@ -58,12 +59,7 @@ void gonio_database_options_default(gonio_database_options *options)
 
 static size_t per_cell(const gonio_database *database)
 {
-    return database->options.channels == GONIO_JOINT ? GONIO_CHANNELS : 1;
-}
-
-static size_t per_material(const gonio_database *database)
-{
-    return GONIO_CHANNELS / per_cell(database);
+    return gonio_i_rows_per_cell(database->options.channels);
 }
 
 static size_t tile_cells(const gonio_database *database)
@@ -84,34 +80,23 @@ static void find_scales(gonio_database *database)
 static void find_valid_bins(gonio_database *database)
 {
     for (int cell = 0; cell < GONIO_CELLS; cell++) {
-        database->first_phi[cell] =
-            (uint8_t)gonio_i_first_valid_phi(cell / GONIO_THETA_D_BINS, cell % GONIO_THETA_D_BINS);
+        const gonio_bin bin = gonio_cell_bin(GONIO_BIVARIATE, cell);
+        database->first_phi[cell] = (uint8_t)gonio_i_first_valid_phi(bin.theta_h, bin.theta_d);
     }
 }
 
-/* Lists the stored cells of one slab; returns how many. */
+/* Lists the stored cells of one slab: those with valid bins, and all bivariate ones. Returns how
+ * many. */
 static size_t list_cells(const gonio_database *database, int theta_h, int32_t *stored)
 {
+    const gonio_representation representation = database->options.representation;
+    const int32_t slab = gonio_grid_cells(representation) / GONIO_THETA_H_BINS;
     size_t count = 0;
-    for (int d = 0; d < GONIO_THETA_D_BINS; d++) {
-        const int32_t cell = theta_h * GONIO_THETA_D_BINS + d;
-        if (database->options.representation == GONIO_BIVARIATE) {
-            stored[count++] = cell;
-            continue;
-        }
-        const int first = database->first_phi[cell];
-        if (database->options.representation == GONIO_SECTORED) {
-            for (int s = first / GONIO_SECTOR_BINS; s < GONIO_SECTORS - first / GONIO_SECTOR_BINS;
-                 s++) {
-                if (first < GONIO_PHI_D_BINS - first) {
-                    stored[count++] = cell * GONIO_SECTORS + s;
-                }
-            }
-            continue;
-        }
-        for (int p = first; p < GONIO_PHI_D_BINS - first; p++) {
-            stored[count++] = cell * GONIO_PHI_D_BINS + p;
-        }
+    for (int32_t cell = theta_h * slab; cell < (theta_h + 1) * slab; cell++) {
+        const gonio_i_bin_run all = gonio_i_cell_bins(representation, cell);
+        const int first = database->first_phi[theta_h * GONIO_THETA_D_BINS + all.first.theta_d];
+        stored[count] = cell;
+        count += all.count == GONIO_PHI_D_BINS || gonio_i_valid_bins(all, first).count > 0;
     }
     return count;
 }
@@ -622,7 +607,7 @@ gonio_database_view gonio_database_describe(const gonio_database *database)
         .materials = database->materials,
         .names = (const char *const *)database->names,
         .fingerprints = database->fingerprints,
-        .columns = per_material(database) * database->materials,
+        .columns = gonio_i_columns_per_material(database->options.channels) * database->materials,
         .cells = database->cells,
         .cell = database->cell,
         .rows = per_cell(database) * database->cells,
@@ -684,7 +669,8 @@ gonio_status gonio_i_database_read_tile(const gonio_database *database, gonio_co
                                       tile_offset(database, t, subset != NULL ? subset[k] : 0));
     }
     if (status == GONIO_OK && t[1].kept - t->kept < t->count) {
-        drop_rows(database, tile, materials * per_material(database), block);
+        drop_rows(database, tile,
+                  materials * gonio_i_columns_per_material(database->options.channels), block);
     }
     return status;
 }
@@ -731,7 +717,7 @@ gonio_status gonio_database_read_rows(const gonio_database *database, gonio_cont
         return status;
     }
     const size_t materials = subset != NULL ? subset_count : view.materials;
-    const size_t columns = per_material(database) * materials;
+    const size_t columns = gonio_i_columns_per_material(database->options.channels) * materials;
     float *values =
         gonio_i_allocate(context, columns * gonio_i_database_tile_room(database), sizeof *values);
     status = values == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;

@@ -2,6 +2,7 @@
 #include <gonio/database.h>
 
 #include <math.h>
+#include <string.h>
 
 #include "../core/core.h"
 #include "../core/vector_math.h"
@@ -15,6 +16,26 @@ double gonio_log_scale(int channel)
 {
     static const double scale[GONIO_CHANNELS] = {1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0};
     return channel >= 0 && channel < GONIO_CHANNELS ? scale[channel] : 1.0 / 1500.0;
+}
+
+static const char *const names[] = {[GONIO_LOG] = "log", [GONIO_LOG_RELATIVE] = "relative"};
+
+enum { MAPPINGS = sizeof names / sizeof *names };
+
+const char *gonio_mapping_name(gonio_mapping mapping)
+{
+    return (size_t)mapping < MAPPINGS ? names[mapping] : NULL;
+}
+
+bool gonio_mapping_parse(const char *name, gonio_mapping *mapping)
+{
+    for (int k = 0; k < MAPPINGS; k++) {
+        if (strcmp(name, names[k]) == 0) {
+            *mapping = (gonio_mapping)k;
+            return true;
+        }
+    }
+    return false;
 }
 
 static double relative_scale(double product_of_cosines)

@@ -100,9 +100,8 @@ static double metric_weight(gonio_metric metric, gonio_half_difference at, doubl
 static void list_row(place_list *p, gonio_metric metric, size_t row, double *f)
 {
     const gonio_basis_view *view = &p->prior->view;
-    const size_t each = view->channels == GONIO_JOINT ? GONIO_CHANNELS : 1;
     int channel = 0;
-    const double bins = gonio_i_cell_bins(view->representation, view->cell[row / each]);
+    const double bins = gonio_i_row_bins(view, row);
     p->at[row] = gonio_i_row_coordinates(view, row, &channel);
     gonio_i_prior_row(p->prior, row, f);
     to_float(f, p->components, p->f + row * p->components);
@@ -263,10 +262,7 @@ static void fill_entry(const place_list *p, const gonio_plan_options *options, s
                                     GONIO_ALL_CHANNELS, options->candidates[row]};
         return;
     }
-    const bool joint = view->channels == GONIO_JOINT;
-    const int32_t cell = view->cell[joint ? row / GONIO_CHANNELS : row];
-    *entry = (gonio_plan_entry){cell, joint ? (int)(row % GONIO_CHANNELS) : GONIO_ALL_CHANNELS,
-                                gonio_i_pair_of(view, cell, options->phi_d)};
+    *entry = gonio_i_plan_entry(view, row, options->phi_d);
 }
 
 static gonio_status check(gonio_context *context, const place_list *p,

@@ -27,9 +27,9 @@ gonio_status gonio_i_expected_error_next(gonio_context *context, const gonio_bas
                                          const gonio_plan_options *options,
                                          const gonio_i_known *known, gonio_plan **plan);
 
-/* What plan.c and expected_error_plan.c share: a plan with room for its entries, NULL after a
- * message; and where to measure a cell. */
+/* What plan.c and this file share: a plan with room for its entries, NULL after a message; and the
+ * entry that reads a row of the basis, of a bivariate one at phi_d. */
 gonio_plan *gonio_i_allocate_plan(gonio_context *context, size_t count);
-gonio_pair gonio_i_pair_of(const gonio_basis_view *basis, int32_t cell, double phi_d);
+gonio_plan_entry gonio_i_plan_entry(const gonio_basis_view *basis, size_t row, double phi_d);
 
 #endif

@@ -7,13 +7,14 @@
 
 #include <omp.h>
 
+#include "../basis/basis.h"
 #include "../core/random.h"
 #include "../linalg/linalg.h"
 #include "method.h"
 
 enum { CANDIDATES = 500, MOST_ROUNDS = 100, STEPS = 2, MOVES = 6 };
 
-static const int step_length[STEPS] = {3, 1}; /* bins */
+static const int step_length[STEPS] = {3, 1}; /* cells */
 
 /* A move has to lower the condition number by more than this share: less is rounding. */
 static const double least_gain = 1e-10;
@@ -187,16 +188,16 @@ static gonio_status grow(search *s)
 
 /* ---- moves ---- */
 
-/* A cell and its neighbour; false if it would leave the grid. phi_d is periodic. */
-static bool move_bin(gonio_bin *bin, int move, int length)
+/* Moves a cell; false if it would leave the grid. phi_d is periodic. */
+static bool move_cell(int32_t phi_cells, int move, int length, gonio_i_cell_indices *at)
 {
     const int by = move % 2 == 0 ? length : -length;
-    bin->theta_h += move / 2 == 0 ? by : 0;
-    bin->theta_d += move / 2 == 1 ? by : 0;
-    bin->phi_d += move / 2 == 2 ? by : 0;
-    bin->phi_d = (bin->phi_d + GONIO_PHI_D_BINS) % GONIO_PHI_D_BINS;
-    return bin->theta_h >= 0 && bin->theta_h < GONIO_THETA_H_BINS && bin->theta_d >= 0 &&
-           bin->theta_d < GONIO_THETA_D_BINS;
+    at->theta_h += move / 2 == 0 ? by : 0;
+    at->theta_d += move / 2 == 1 ? by : 0;
+    at->phi += move / 2 == 2 ? by : 0;
+    at->phi = (at->phi % phi_cells + phi_cells) % phi_cells;
+    return at->theta_h >= 0 && at->theta_h < GONIO_THETA_H_BINS && at->theta_d >= 0 &&
+           at->theta_d < GONIO_THETA_D_BINS;
 }
 
 static int compare_cells(const void *a, const void *b)
@@ -210,17 +211,17 @@ static int compare_cells(const void *a, const void *b)
 static bool neighbour(const gonio_basis_view *basis, size_t row, int move, int length,
                       size_t *moved)
 {
-    const size_t per_cell = basis->rows / basis->cells;
-    const int32_t bins = basis->representation == GONIO_FULL ? 1 : GONIO_PHI_D_BINS;
-    gonio_bin bin = gonio_bin_from_index(basis->cell[row / per_cell] * bins);
-    if (!move_bin(&bin, move, length)) {
+    const int32_t phi_cells = gonio_i_phi_cells(basis->representation);
+    gonio_i_cell_indices at = gonio_i_indices_of_cell(phi_cells, gonio_i_row_cell(basis, row));
+    if (!move_cell(phi_cells, move, length, &at)) {
         return false;
     }
-    const int32_t cell = gonio_bin_index(bin) / bins;
+    const int32_t cell = gonio_i_cell_at(phi_cells, at);
     const int32_t *found =
         bsearch(&cell, basis->cell, basis->cells, sizeof *basis->cell, compare_cells);
     if (found != NULL) {
-        *moved = (size_t)(found - basis->cell) * per_cell + row % per_cell;
+        *moved = gonio_i_row_of(basis->channels, (size_t)(found - basis->cell),
+                                gonio_i_channel_of(basis->channels, row));
     }
     return found != NULL;
 }

@@ -8,7 +8,6 @@
 #include <string.h>
 
 #include "../basis/basis.h"
-#include "../direction/grid.h"
 #include "../linalg/linalg.h"
 #include "expected_error_plan.h"
 #include "method.h"
@@ -288,40 +287,23 @@ gonio_status gonio_condition_number(gonio_context *context, const double *vector
 
 /* ---- plans ---- */
 
-/* The pair to measure a cell at. */
-gonio_pair gonio_i_pair_of(const gonio_basis_view *basis, int32_t cell, double phi_d)
+gonio_plan_entry gonio_i_plan_entry(const gonio_basis_view *basis, size_t row, double phi_d)
 {
-    const gonio_bin bin = gonio_cell_bin(basis->representation, cell);
-    gonio_half_difference c = gonio_bin_centre(bin);
-    const int first = gonio_i_first_valid_phi(bin.theta_h, bin.theta_d);
-    const double low = (first + 0.5) / GONIO_PHI_D_BINS * M_PI;
-    c.phi_d = basis->representation == GONIO_BIVARIATE ? phi_d : c.phi_d;
-    if (first > 0) {
-        c.phi_d = fmin(fmax(c.phi_d, low), M_PI - low);
-    }
-    return gonio_pair_from_half_difference(c);
-}
-
-static void fill_entries(const gonio_basis_view *basis, const size_t *chosen, double phi_d,
-                         gonio_plan *plan)
-{
+    const int32_t cell = gonio_i_row_cell(basis, row);
     const bool joint = basis->channels == GONIO_JOINT;
-    for (size_t j = 0; j < plan->count; j++) {
-        const size_t position = joint ? chosen[j] / GONIO_CHANNELS : chosen[j];
-        const int32_t cell = basis->cell[position];
-        plan->entries[j] =
-            (gonio_plan_entry){cell, joint ? (int)(chosen[j] % GONIO_CHANNELS) : GONIO_ALL_CHANNELS,
-                               gonio_i_pair_of(basis, cell, phi_d)};
-    }
+    return (gonio_plan_entry){cell,
+                              joint ? gonio_i_channel_of(basis->channels, row) : GONIO_ALL_CHANNELS,
+                              gonio_pair_from_half_difference(
+                                  gonio_i_cell_direction(basis->representation, cell, phi_d))};
 }
 
 void gonio_plan_rows(const gonio_plan *plan, const gonio_basis *basis, size_t *rows)
 {
-    const bool joint = gonio_basis_describe(basis).channels == GONIO_JOINT;
+    const gonio_channel_model channels = gonio_basis_describe(basis).channels;
     for (size_t j = 0; j < plan->count; j++) {
         const gonio_plan_entry *entry = &plan->entries[j];
         const size_t position = gonio_basis_position(basis, entry->cell);
-        rows[j] = joint ? GONIO_CHANNELS * position + (size_t)entry->channel : position;
+        rows[j] = gonio_i_row_of(channels, position, entry->channel);
     }
 }
 
@@ -362,7 +344,9 @@ static gonio_status choose(gonio_context *context, const gonio_basis *basis,
         plan->tests = report.tests;
         plan->history = report.history;
         plan->steps = report.steps;
-        fill_entries(&view, chosen, options->phi_d, plan);
+        for (size_t j = 0; j < plan->count; j++) {
+            plan->entries[j] = gonio_i_plan_entry(&view, chosen[j], options->phi_d);
+        }
     }
     free(vectors);
     free(chosen);

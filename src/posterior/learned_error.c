@@ -64,7 +64,6 @@ static bool can_tell(const gonio_i_prior *prior)
 static gonio_status find_metric(gonio_context *context, gonio_i_learned_error *x)
 {
     const gonio_basis_view *view = &x->prior->view;
-    const size_t channels = view->channels == GONIO_JOINT ? GONIO_CHANNELS : 1;
     const size_t step = gonio_i_sample_step(view->rows);
     const size_t count = (view->rows + step - 1) / step;
     double *rows = gonio_i_allocate(context, count * x->components, sizeof *rows);
@@ -74,8 +73,7 @@ static gonio_status find_metric(gonio_context *context, gonio_i_learned_error *x
     double all = 0.0;
     for (size_t i = 0; i < count; i++) {
         double *row = rows + i * x->components;
-        const double bins =
-            gonio_i_cell_bins(view->representation, view->cell[i * step / channels]);
+        const double bins = gonio_i_row_bins(view, i * step);
         gonio_i_prior_row(x->prior, i * step, row);
         for (size_t k = 0; k < x->components; k++) {
             row[k] *= sqrt(bins);

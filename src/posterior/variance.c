@@ -68,10 +68,9 @@ static void fill_t(const gonio_i_rows *r, size_t number, double *t)
 static void fill_row(gonio_i_rows *r, size_t number)
 {
     const gonio_basis_view *view = &r->sites->prior->view;
-    const size_t each = view->channels == GONIO_JOINT ? GONIO_CHANNELS : 1;
     const size_t row = number * r->step;
     int channel = 0;
-    r->bins[number] = gonio_i_cell_bins(view->representation, view->cell[row / each]);
+    r->bins[number] = gonio_i_row_bins(view, row);
     if (r->n > 0) {
         const gonio_i_place here = gonio_i_place_of(gonio_i_row_coordinates(view, row, &channel));
         r->itself[number] = gonio_i_remainder(&here, &here, r->peak);

@@ -130,22 +130,6 @@ double gonio_i_remainder(const gonio_i_place *a, const gonio_i_place *b, double 
     return peak > 0.0 ? smooth + peak * peak * gonio_i_peaked(a, b) : smooth;
 }
 
-gonio_half_difference gonio_i_row_coordinates(const gonio_basis_view *view, size_t row,
-                                              int *channel)
-{
-    const size_t each = view->channels == GONIO_JOINT ? GONIO_CHANNELS : 1;
-    const int32_t cell = view->cell[row / each];
-    *channel = (int)(row % each);
-    const gonio_bin bin = gonio_cell_bin(view->representation, cell);
-    gonio_half_difference at = gonio_bin_centre(bin);
-    const double low =
-        (gonio_i_first_valid_phi(bin.theta_h, bin.theta_d) + 0.5) * M_PI / GONIO_PHI_D_BINS;
-    at.phi_d = view->representation == GONIO_BIVARIATE
-                   ? M_PI / 2.0
-                   : fmin(fmax(at.phi_d, low), fmax(M_PI - low, low));
-    return at;
-}
-
 size_t gonio_i_sample_step(size_t rows)
 {
     /* Without a divisor of 3 channels and 12 sectors. */
@@ -154,15 +138,4 @@ size_t gonio_i_sample_step(size_t rows)
         step--;
     }
     return step;
-}
-
-double gonio_i_cell_bins(gonio_representation representation, int32_t cell)
-{
-    const int depth = GONIO_BINS / gonio_grid_cells(representation);
-    const gonio_bin bin = gonio_bin_from_index(cell * depth);
-    const int first = gonio_i_first_valid_phi(bin.theta_h, bin.theta_d);
-    const int low = bin.phi_d > first ? bin.phi_d : first;
-    const int end = bin.phi_d + depth;
-    const int high = end < GONIO_PHI_D_BINS - first ? end : GONIO_PHI_D_BINS - first;
-    return high > low ? high - low : 0.0;
 }

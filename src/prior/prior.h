@@ -61,15 +61,7 @@ double gonio_i_smooth(const gonio_i_place *a, const gonio_i_place *b);
 double gonio_i_peaked(const gonio_i_place *a, const gonio_i_place *b);
 double gonio_i_remainder(const gonio_i_place *a, const gonio_i_place *b, double peak);
 
-/* The coordinates that a row of the basis stands for, above the horizon where its cell has any such
- * bin, and its channel (joint) or 0. */
-gonio_half_difference gonio_i_row_coordinates(const gonio_basis_view *view, size_t row,
-                                              int *channel);
-
 /* Every so manieth row makes a sample of some 4,096 rows, of all channels and sectors alike. */
 size_t gonio_i_sample_step(size_t rows);
-
-/* Valid bins of the grid that a cell stands for. */
-double gonio_i_cell_bins(gonio_representation representation, int32_t cell);
 
 #endif

@@ -3,42 +3,21 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../basis/basis.h"
 #include "../core/vector_math.h"
-#include "../direction/grid.h"
 #include "../measurement/readings.h"
 #include "../posterior/observations.h"
 #include "field.h"
 #include "spectrum.h"
 
-/* Weights of the rows around directions, as gonio_basis_row_at has them. */
-static int stencil_at(const gonio_basis_view *view, gonio_half_difference at,
-                      gonio_i_stencil stencil[GONIO_I_TRILINEAR])
-{
-    if (view->representation == GONIO_BIVARIATE) {
-        gonio_i_bilinear(at, stencil);
-        return GONIO_I_BILINEAR;
-    }
-    if (view->representation == GONIO_SECTORED) {
-        gonio_i_trilinear_sectors(at, stencil);
-    } else {
-        gonio_i_trilinear(at, stencil);
-    }
-    return GONIO_I_TRILINEAR;
-}
-
 double gonio_i_field_at(const gonio_basis *basis, const double *field, int channel,
                         gonio_half_difference at)
 {
-    gonio_i_stencil stencil[GONIO_I_TRILINEAR];
-    const gonio_basis_view view = gonio_basis_describe(basis);
-    const bool joint = view.channels == GONIO_JOINT;
-    const int points = stencil_at(&view, at, stencil);
+    gonio_i_row_weight around[GONIO_I_TRILINEAR];
+    const int points = gonio_i_rows_around(basis, at, channel, around);
     double value = 0.0;
     for (int k = 0; k < points; k++) {
-        const size_t position =
-            gonio_basis_position(basis, gonio_cell_of_bin(view.representation, stencil[k].bin));
-        value += stencil[k].weight *
-                 field[joint ? position * GONIO_CHANNELS + (size_t)channel : position];
+        value += around[k].weight * field[around[k].row];
     }
     return value;
 }
@@ -128,14 +107,14 @@ static void fill_row(const spread_field *f, int theta_h, int theta_d, size_t cha
                      double *row)
 {
     const double *g = f->g + channel * f->view.cells;
-    const int32_t cell = theta_h * GONIO_THETA_D_BINS + theta_d;
-    const int depth = GONIO_BINS / gonio_grid_cells(f->view.representation);
-    const int runs = GONIO_PHI_D_BINS / depth;
+    const int depth = gonio_i_phi_bins(f->view.representation);
+    const int runs = gonio_i_phi_cells(f->view.representation);
+    const int32_t cell = gonio_i_cell_at(runs, (gonio_i_cell_indices){theta_h, theta_d, 0});
     for (int p = first; p < GONIO_PHI_D_BINS - first; p++) {
         const double at = (p + 0.5) / depth - 0.5 + runs;
         const int low = (int)at;
-        const size_t a = gonio_basis_position(f->basis, cell * runs + low % runs);
-        const size_t b = gonio_basis_position(f->basis, cell * runs + (low + 1) % runs);
+        const size_t a = gonio_basis_position(f->basis, cell + low % runs);
+        const size_t b = gonio_basis_position(f->basis, cell + (low + 1) % runs);
         row[p] = g[a] + (at - low) * (g[b] - g[a]);
     }
 }
@@ -179,7 +158,8 @@ static void copy_colours(const double *from, spread_field *f)
     for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
         for (size_t k = 0; k < f->view.cells; k++) {
             f->g[channel * f->view.cells + k] =
-                joint ? from[k * GONIO_CHANNELS + channel] : from[channel * f->view.rows + k];
+                from[gonio_i_row_of(f->view.channels, k, (int)channel) +
+                     (joint ? 0 : channel * f->view.rows)];
         }
     }
 }

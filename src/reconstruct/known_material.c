@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../basis/basis.h"
 #include "../core/core.h"
 
 /* A cell to read. */
@@ -33,9 +34,7 @@ static int compare_places(const void *a, const void *b)
 
 static int slab_of(const reader *r, int32_t cell)
 {
-    const int32_t slab =
-        r->basis.representation == GONIO_BIVARIATE ? GONIO_THETA_D_BINS : GONIO_SLAB_BINS;
-    return cell / slab;
+    return gonio_cell_bin(r->basis.representation, cell).theta_h;
 }
 
 static gonio_status read_slab(reader *r, int theta_h)
@@ -51,23 +50,32 @@ static gonio_status read_slab(reader *r, int theta_h)
     return status;
 }
 
-/* The value of a cell of the slab that was read; false if there is none. */
+/* The value of a cell of the slab that was read, the mean of its bins with data; false if there are
+ * none. */
 static bool value_at(const reader *r, int32_t cell, int channel, double *value)
 {
+    const gonio_i_bin_run bins = gonio_i_cell_bins(r->basis.representation, cell);
+    const int theta_d = bins.first.theta_d;
     if (r->basis.representation == GONIO_BIVARIATE) {
-        const int32_t theta_d = cell % GONIO_THETA_D_BINS;
         *value = r->statistics.mean[theta_d][channel];
         return r->statistics.count[theta_d] > 0;
     }
-    const size_t bin = (size_t)(cell % GONIO_SLAB_BINS);
-    *value = r->g[(size_t)channel * GONIO_SLAB_BINS + bin];
-    return r->data[bin];
+    const size_t first = (size_t)(theta_d * GONIO_PHI_D_BINS + bins.first.phi_d);
+    const double *g = r->g + (size_t)channel * GONIO_SLAB_BINS;
+    int count = 0;
+    double sum = 0.0;
+    for (size_t k = first; k < first + (size_t)bins.count; k++) {
+        sum += r->data[k] ? g[k] : 0.0;
+        count += r->data[k];
+    }
+    *value = count > 0 ? sum / count : 0.0;
+    return count > 0;
 }
 
 /* All columns of one row. */
 static gonio_status read_place(const reader *r, const place *at, double *b)
 {
-    const int columns = r->basis.channels == GONIO_JOINT ? 1 : GONIO_CHANNELS;
+    const int columns = (int)gonio_i_columns_per_material(r->basis.channels);
     for (int column = 0; column < columns; column++) {
         if (!value_at(r, at->cell, at->channel + column,
                       &b[(size_t)column * r->count + at->index])) {
@@ -108,9 +116,9 @@ gonio_status gonio_material_rows(gonio_context *context, const gonio_basis *basi
     place *places = gonio_i_allocate(context, count, sizeof *places);
     gonio_status status = GONIO_ERROR_MEMORY;
     if (r.g != NULL && r.data != NULL && places != NULL) {
-        const size_t per_cell = r.basis.rows / r.basis.cells;
         for (size_t k = 0; k < count; k++) {
-            places[k] = (place){r.basis.cell[rows[k] / per_cell], (int)(rows[k] % per_cell), k};
+            places[k] = (place){gonio_i_row_cell(&r.basis, rows[k]),
+                                gonio_i_channel_of(r.basis.channels, rows[k]), k};
         }
         qsort(places, count, sizeof *places, compare_places);
         status = read_places(&r, places, b);
@@ -128,12 +136,13 @@ static int compare_rows(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* The rows of all channels of the cells of `rows`, each once, into all[3 x count]; how many. */
+/* The rows of all channels of the cells of `rows` (joint), each once, into all[3 x count]; how
+ * many. */
 static size_t all_channels(const size_t *rows, size_t count, size_t *all)
 {
     size_t cells = 0;
     for (size_t k = 0; k < count; k++) {
-        all[k] = rows[k] / GONIO_CHANNELS;
+        all[k] = gonio_i_position_of(GONIO_JOINT, rows[k]);
     }
     qsort(all, count, sizeof *all, compare_rows);
     for (size_t k = 0; k < count; k++) {
@@ -142,7 +151,7 @@ static size_t all_channels(const size_t *rows, size_t count, size_t *all)
         }
     }
     for (size_t k = GONIO_CHANNELS * cells; k-- > 0;) {
-        all[k] = GONIO_CHANNELS * all[k / GONIO_CHANNELS] + k % GONIO_CHANNELS;
+        all[k] = gonio_i_row_of(GONIO_JOINT, all[k / GONIO_CHANNELS], (int)(k % GONIO_CHANNELS));
     }
     return GONIO_CHANNELS * cells;
 }

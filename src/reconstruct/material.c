@@ -6,7 +6,7 @@
 
 #include "../basis/basis.h"
 #include "../core/vector_math.h"
-#include "../direction/grid.h"
+#include "../database/layout.h"
 #include "field.h"
 
 typedef struct reconstructed {
@@ -22,7 +22,7 @@ static double log_value(const reconstructed *r, int32_t cell, size_t channel)
 {
     const bool joint = r->columns == 1;
     const size_t position = gonio_basis_position(r->basis, cell);
-    const size_t row = joint ? GONIO_CHANNELS * position + channel : position;
+    const size_t row = gonio_i_row_of(r->view.channels, position, (int)channel);
     const double *c = r->coefficients + (joint ? 0 : channel * r->components);
     return r->view.mean[row] + gonio_i_basis_dot(r->basis, row, c, r->components);
 }
@@ -72,7 +72,9 @@ static void spread_cells(const reconstructed *r, int theta_h, const int *first, 
     for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
         double value[GONIO_THETA_D_BINS];
         for (int theta_d = 0; theta_d < GONIO_THETA_D_BINS; theta_d++) {
-            value[theta_d] = log_value(r, theta_d + GONIO_THETA_D_BINS * theta_h, (size_t)channel);
+            value[theta_d] =
+                log_value(r, gonio_i_cell_at(1, (gonio_i_cell_indices){theta_h, theta_d, 0}),
+                          (size_t)channel);
         }
         exponentiate(GONIO_THETA_D_BINS, value, scale_of(r, channel));
         for (int theta_d = 0; theta_d < GONIO_THETA_D_BINS; theta_d++) {
@@ -86,12 +88,12 @@ static void spread_cells(const reconstructed *r, int theta_h, const int *first, 
 static void fill_bins(const reconstructed *r, int theta_h, const int *first, double *rho)
 {
     for (int theta_d = 0; theta_d < GONIO_THETA_D_BINS; theta_d++) {
-        const int32_t cell = theta_d + GONIO_THETA_D_BINS * theta_h;
         const int last = GONIO_PHI_D_BINS - first[theta_d];
         for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
             double *row = row_of(rho, channel, theta_d);
             for (int p = first[theta_d]; p < last; p++) {
-                row[p] = log_value(r, cell * GONIO_PHI_D_BINS + p, (size_t)channel);
+                row[p] = log_value(r, gonio_bin_index((gonio_bin){theta_h, theta_d, p}),
+                                   (size_t)channel);
             }
             exponentiate((size_t)(last - first[theta_d]), row + first[theta_d],
                          scale_of(r, channel));

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../database/layout.h"
 #include "../posterior/interpret.h"
 #include "method.h"
 
@@ -129,7 +130,7 @@ static gonio_status observe_rows(gonio_context *context, const gonio_basis_view 
                                  const size_t *rows, size_t count, const double *b,
                                  gonio_i_columns *columns)
 {
-    *columns = (gonio_i_columns){.count = view->channels == GONIO_JOINT ? 1 : GONIO_CHANNELS};
+    *columns = (gonio_i_columns){.count = gonio_i_columns_per_material(view->channels)};
     columns->column = gonio_i_allocate(context, columns->count, sizeof *columns->column);
     for (size_t k = 0; columns->column != NULL && k < columns->count; k++) {
         gonio_i_column *column = &columns->column[k];

@@ -267,7 +267,7 @@ static double square_of(const kept *k, const double *values, const double *rows,
         }
     }
     for (size_t row = 0; row < prior->view.rows; row++) {
-        const double bins = gonio_i_cell_bins(GONIO_BIVARIATE, prior->view.cell[row]);
+        const double bins = gonio_i_row_bins(&prior->view, row);
         const double *g = rows + row * prior->samples;
         double middle = 0.0;
         double made = 0.0;
