@@ -78,7 +78,20 @@ GONIO_API const char *gonio_plan_method_summary(int index);
  * no such method. */
 GONIO_API const char *gonio_plan_method_reconstruction(const char *method);
 
-/* The same of the starts that the condition method's swaps may begin with. */
+/* The kind of basis that a method is meant for. */
+typedef struct gonio_plan_basis {
+    gonio_representation representation;
+    gonio_channel_model channels;
+    gonio_mapping mapping;
+    bool without_mean;
+    bool mixtures; /* whether it is learned from mixtures too */
+} gonio_plan_basis;
+
+/* Of a method; false if there is none of that name. */
+GONIO_API bool gonio_plan_method_basis(const char *method, gonio_plan_basis *basis);
+
+/* Names and one-line descriptions of the starts that the condition method's swaps may begin with;
+ * NULL past the last. */
 GONIO_API const char *gonio_plan_start_name(int index);
 GONIO_API const char *gonio_plan_start_summary(int index);
 

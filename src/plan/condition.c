@@ -6,19 +6,22 @@
 #include <string.h>
 
 #include "method.h"
+#include "shortlist.h"
 #include "swap_search.h"
 #include "starting_rows.h"
 
-/* The choice to begin with, by name or given. */
-static gonio_status begin_with(gonio_i_swap_search *s, const char *name, int restart)
+static gonio_i_selector select_by_condition;
+
+/* The choice to begin with: by a start, or (NULL) the one that is given. */
+static gonio_status begin_with(gonio_i_swap_search *s, const gonio_i_start *by, int restart)
 {
     const gonio_i_selection_problem *p = s->problem;
     size_t *chosen = gonio_i_allocate(p->context, p->count, sizeof *chosen);
     gonio_status status = chosen == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
-    if (status == GONIO_OK && name == NULL) {
+    if (status == GONIO_OK && by == NULL) {
         memcpy(chosen, p->given, p->count * sizeof *chosen);
     } else if (status == GONIO_OK) {
-        status = gonio_i_find_start(name)->choose(p, restart, chosen);
+        status = by->choose(p, restart, chosen);
     }
     if (status == GONIO_OK) {
         status = gonio_i_swap_search_begin(s, chosen);
@@ -35,7 +38,7 @@ static gonio_status start(gonio_i_swap_search *s, int restart)
     gonio_status status =
         begin_with(s, s->problem->given != NULL ? NULL : s->problem->start, restart);
     if (status == GONIO_OK && isinf(s->condition_number)) {
-        status = begin_with(s, "qr", restart);
+        status = begin_with(s, gonio_i_spanning_start(), restart);
     }
     if (status == GONIO_OK && isinf(s->condition_number)) {
         status = gonio_i_fail(s->problem->context, GONIO_ERROR_DATA,
@@ -43,13 +46,6 @@ static gonio_status start(gonio_i_swap_search *s, int restart)
                               s->problem->components);
     }
     return status;
-}
-
-static int compare_rows(const void *a, const void *b)
-{
-    const size_t x = *(const size_t *)a;
-    const size_t y = *(const size_t *)b;
-    return (x > y) - (x < y);
 }
 
 /* All starts, with what they share. */
@@ -81,6 +77,19 @@ static void keep_best(starts *all, const gonio_i_swap_search *s, int restart)
     }
 }
 
+/* The swaps of a start. */
+static gonio_status descend(gonio_i_swap_search *s, int restart, gonio_i_selection *selection)
+{
+    const gonio_i_selection_problem *p = s->problem;
+    int swaps = 0;
+    gonio_i_swap_search_watch(s);
+    gonio_status status = gonio_i_selection_record(p, selection, restart, 0, s->condition_number);
+    if (status == GONIO_OK && p->components > 1 && p->rows >= GONIO_I_MANY_ROWS) {
+        status = gonio_i_search_shortlists(s, restart, select_by_condition, &swaps, selection);
+    }
+    return status == GONIO_OK ? gonio_i_swap_search_descend(s, restart, swaps, selection) : status;
+}
+
 /* One start and its descent. */
 static void run(starts *all, int restart)
 {
@@ -93,7 +102,7 @@ static void run(starts *all, int restart)
         status = start(&s, restart);
     }
     if (status == GONIO_OK) {
-        status = gonio_i_swap_search_descend(&s, restart, &all->histories[restart]);
+        status = descend(&s, restart, &all->histories[restart]);
     }
     if (status == GONIO_OK) {
         keep_best(all, &s, restart);
@@ -163,7 +172,7 @@ static gonio_status select_by_condition(const gonio_i_selection_problem *problem
         status = all.status;
     }
     if (status == GONIO_OK) {
-        qsort(selection->chosen, problem->count, sizeof *selection->chosen, compare_rows);
+        gonio_i_sort_rows(selection->chosen, problem->count);
         status = join_histories(&all);
     }
     if (status == GONIO_OK && !problem->part) {
@@ -178,4 +187,10 @@ static gonio_status select_by_condition(const gonio_i_selection_problem *problem
 }
 
 const gonio_i_method gonio_i_condition_method = {
-    "condition", "lowest condition number by swaps (Ali et al.)", true, select_by_condition};
+    .name = "condition",
+    .summary = "lowest condition number by swaps (Ali et al.)",
+    .reconstruction = "least-squares",
+    .basis = GONIO_I_PAPERS_BASIS,
+    .needs_full_rank = true,
+    .select = select_by_condition,
+};

@@ -9,6 +9,8 @@
 #include "../linalg/linalg.h"
 #include "../metric/metric.h"
 #include "expected_error_search.h"
+#include "method.h"
+#include "plan.h"
 
 /* Deviation of a reading, log units: noise, and what the model leaves open around it; by errors of
  * left-out materials: with 0.03 or 0.05 plans trust single readings too much. Less where a
@@ -433,26 +435,18 @@ static gonio_status make_plan(gonio_context *context, const gonio_basis *basis,
         status = check(context, &p, options);
     }
     if (status == GONIO_OK) {
-        made = gonio_i_allocate_plan(context, options->count);
+        made = gonio_i_allocate_plan(context, &p.prior->view, gonio_i_expected_error_method.name,
+                                     p.prior->components, options->count);
         status = made == NULL ? GONIO_ERROR_MEMORY : fill_plan(&p, options, made);
     }
     if (status == GONIO_OK) {
-        made->components = p.prior->components;
-        made->basis = p.prior->view.fingerprint;
         made->condition_number = INFINITY;
-        snprintf(made->method, sizeof made->method, "%s", gonio_i_expected_error_method.name);
         *plan = made;
     } else {
         gonio_plan_free(&made);
     }
     free_places(&p);
     return status;
-}
-
-gonio_status gonio_i_expected_error_plan(gonio_context *context, const gonio_basis *basis,
-                                         const gonio_plan_options *options, gonio_plan **plan)
-{
-    return make_plan(context, basis, options, NULL, plan);
 }
 
 gonio_status gonio_i_expected_error_next(gonio_context *context, const gonio_basis *basis,
@@ -462,13 +456,17 @@ gonio_status gonio_i_expected_error_next(gonio_context *context, const gonio_bas
     return make_plan(context, basis, options, known, plan);
 }
 
-/* It needs to know the basis: gonio_plan_select refuses it. */
-static gonio_status refuse(const gonio_i_selection_problem *problem, gonio_i_selection *selection)
+static gonio_status plan_least_error(gonio_context *context, const gonio_basis *basis,
+                                     const gonio_plan_options *options, gonio_plan **plan)
 {
-    (void)selection;
-    return gonio_i_fail(problem->context, GONIO_ERROR_ARGUMENT,
-                        "expected-error works on a basis, not on bare rows");
+    return make_plan(context, basis, options, NULL, plan);
 }
 
 const gonio_i_method gonio_i_expected_error_method = {
-    "expected-error", "the readings that leave the least expected error", false, refuse};
+    .name = "expected-error",
+    .summary = "the readings that leave the least expected error",
+    .reconstruction = "posterior",
+    .basis = {.representation = GONIO_SECTORED, .channels = GONIO_SEPARATE, .mixtures = true},
+    .needs = GONIO_I_NEEDS_A_BASIS,
+    .plan = plan_least_error,
+};

@@ -7,10 +7,6 @@
 
 #include "../prior/prior.h"
 
-/* As gonio_plan_create for the method expected-error. */
-gonio_status gonio_i_expected_error_plan(gonio_context *context, const gonio_basis *basis,
-                                         const gonio_plan_options *options, gonio_plan **plan);
-
 /* What is known of a material already, for the readings that come next. */
 typedef struct gonio_i_known {
     const double *covariance;          /* [K][K]: of z */
@@ -21,15 +17,11 @@ typedef struct gonio_i_known {
     double norm;     /* root of the sum of g^2 over the bins of the grid, which E6 is relative to */
 } gonio_i_known;
 
-/* The same for a material of which something is known; options->count readings of those that were
- * not made. The plan's expected[] are per cent of the material itself. */
+/* As gonio_plan_create by expected-error, for a material of which something is known;
+ * options->count readings of those that were not made. The plan's expected[] are per cent of the
+ * material itself. */
 gonio_status gonio_i_expected_error_next(gonio_context *context, const gonio_basis *basis,
                                          const gonio_plan_options *options,
                                          const gonio_i_known *known, gonio_plan **plan);
-
-/* What plan.c and this file share: a plan with room for its entries, NULL after a message; and the
- * entry that reads a row of the basis, of a bivariate one at phi_d. */
-gonio_plan *gonio_i_allocate_plan(gonio_context *context, size_t count);
-gonio_plan_entry gonio_i_plan_entry(const gonio_basis_view *basis, size_t row, double phi_d);
 
 #endif

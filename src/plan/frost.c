@@ -225,11 +225,6 @@ static void begin(const pursuit *p)
 
 static gonio_status check(const gonio_i_selection_problem *problem)
 {
-    if (problem->basis == NULL || problem->basis->loadings == NULL) {
-        return gonio_i_fail(problem->context, GONIO_ERROR_ARGUMENT,
-                            "frost needs the loadings of the materials, which this basis lacks: it "
-                            "is from before gonio kept them; learn it again with gonio learn");
-    }
     if (problem->count > problem->components) {
         return gonio_i_fail(problem->context, GONIO_ERROR_ARGUMENT,
                             "frost plans a reading for each component: %zu readings need a basis "
@@ -264,4 +259,13 @@ static gonio_status select_frost(const gonio_i_selection_problem *problem,
 }
 
 const gonio_i_method gonio_i_frost_method = {
-    "frost", "matching pursuit of the materials (FROST, Miandji et al. 2024)", false, select_frost};
+    .name = "frost",
+    .summary = "matching pursuit of the materials (FROST, Miandji et al. 2024)",
+    .reconstruction = "ridge",
+    .basis = GONIO_I_RELATIVE_BASIS,
+    .needs = GONIO_I_NEEDS_LOADINGS,
+    .where_it_lacks = "frost needs the loadings of the materials, which this basis lacks: it is "
+                      "from before gonio kept them; learn it again with gonio learn",
+    .few_components = true,
+    .select = select_frost,
+};

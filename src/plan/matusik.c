@@ -16,16 +16,6 @@ enum { POOL = 8000 };
 /* A stream of random numbers that no start uses. */
 static const uint64_t pool_stream = UINT64_MAX;
 
-static gonio_status check(const gonio_i_selection_problem *problem)
-{
-    if (problem->basis == NULL || !problem->basis->without_mean) {
-        return gonio_i_fail(problem->context, GONIO_ERROR_ARGUMENT,
-                            "matusik works on materials without a mean taken out; learn such a "
-                            "basis: gonio learn --no-mean --grid full");
-    }
-    return GONIO_OK;
-}
-
 static size_t pool_size(const gonio_i_selection_problem *problem)
 {
     const size_t wanted = problem->count > POOL ? problem->count : POOL;
@@ -68,15 +58,11 @@ static gonio_status search(const gonio_i_selection_problem *problem, const size_
 static gonio_status select_matusik(const gonio_i_selection_problem *problem,
                                    gonio_i_selection *selection)
 {
-    gonio_status status = check(problem);
-    if (status != GONIO_OK) {
-        return status;
-    }
     const size_t count = pool_size(problem);
     size_t *pool = gonio_i_allocate(problem->context, count, sizeof *pool);
     double *scaled =
         gonio_i_allocate(problem->context, count * problem->components, sizeof *scaled);
-    status = pool == NULL || scaled == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    gonio_status status = pool == NULL || scaled == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
     if (status == GONIO_OK) {
         status = draw_pool(problem, count, pool);
     }
@@ -89,4 +75,13 @@ static gonio_status select_matusik(const gonio_i_selection_problem *problem,
 }
 
 const gonio_i_method gonio_i_matusik_method = {
-    "matusik", "the materials themselves, by swaps (Matusik et al. 2003)", true, select_matusik};
+    .name = "matusik",
+    .summary = "the materials themselves, by swaps (Matusik et al. 2003)",
+    .reconstruction = "least-squares",
+    .basis = {.representation = GONIO_FULL, .channels = GONIO_JOINT, .without_mean = true},
+    .needs = GONIO_I_NEEDS_NO_MEAN,
+    .where_it_lacks = "matusik works on materials without a mean taken out; learn such a basis: "
+                      "gonio learn --no-mean --grid full",
+    .needs_full_rank = true,
+    .select = select_matusik,
+};

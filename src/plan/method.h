@@ -1,5 +1,5 @@
-/* A selection method: to add one, write a file like random.c and add a line to the table in plan.c.
- */
+/* A planning method: to add one, write a file like random.c (of rows) or expected_error_plan.c (of
+ * directions), declare its gonio_i_method below and add a line to the table in methods.c. */
 #ifndef GONIO_METHOD_H
 #define GONIO_METHOD_H
 
@@ -18,7 +18,7 @@ typedef struct gonio_i_selection_problem {
     int restarts;
     uint64_t seed;
     bool keep_history;
-    const char *start;   /* a name that starting_rows.h knows */
+    const struct gonio_i_start *start; /* of the swaps: starting_rows.h */
     const size_t *given; /* [count] or NULL: rows to start from instead; may be the result's */
     bool part;           /* of the work on another problem, which reports the progress */
     const gonio_basis_view *basis; /* whose rows V has; NULL for rows that come from elsewhere */
@@ -38,19 +38,52 @@ typedef struct gonio_i_selection {
         tests; /* eigenvalue solves that the plain algorithm would have made for the same swaps */
 } gonio_i_selection;
 
+typedef gonio_status gonio_i_selector(const gonio_i_selection_problem *problem,
+                                      gonio_i_selection *selection);
+
+/* What a method that chooses rows has to have. */
+typedef enum gonio_i_needs {
+    GONIO_I_NEEDS_ROWS,     /* of any matrix */
+    GONIO_I_NEEDS_A_BASIS,  /* to know what the rows stand for */
+    GONIO_I_NEEDS_NO_MEAN,  /* a basis that was learned without one */
+    GONIO_I_NEEDS_LOADINGS, /* a basis that has its materials' */
+} gonio_i_needs;
+
 typedef struct gonio_i_method {
     const char *name;
     const char *summary;
-    bool needs_full_rank; /* n >= K */
-    gonio_status (*select)(const gonio_i_selection_problem *problem, gonio_i_selection *selection);
+    const char *reconstruction; /* the method (reconstruct.h) that its plans are made for */
+    gonio_plan_basis basis;     /* what it is meant for */
+    gonio_i_needs needs;
+    const char *where_it_lacks; /* the message where it does not have that */
+    bool needs_full_rank;       /* n >= K */
+    bool few_components;        /* no more components than readings, where nobody says how many */
+
+    /* One of two: chooses rows, or makes a whole plan by what else it knows of a basis. */
+    gonio_i_selector *select;
+    gonio_status (*plan)(gonio_context *context, const gonio_basis *basis,
+                         const gonio_plan_options *options, gonio_plan **plan);
 } gonio_i_method;
 
+/* The bases of Ali et al., and those of Nielsen et al. and of Miandji et al. */
+#define GONIO_I_PAPERS_BASIS                                                                       \
+    {                                                                                              \
+        .representation = GONIO_BIVARIATE, .channels = GONIO_JOINT, .mapping = GONIO_LOG           \
+    }
+#define GONIO_I_RELATIVE_BASIS                                                                     \
+    {                                                                                              \
+        .representation = GONIO_FULL, .channels = GONIO_SEPARATE, .mapping = GONIO_LOG_RELATIVE    \
+    }
+
+/* As in the table in methods.c. */
 extern const gonio_i_method gonio_i_expected_error_method;
 extern const gonio_i_method gonio_i_condition_method;
 extern const gonio_i_method gonio_i_random_method;
 extern const gonio_i_method gonio_i_matusik_method;
 extern const gonio_i_method gonio_i_nielsen_method;
 extern const gonio_i_method gonio_i_frost_method;
+
+/* ---- what methods that choose rows share ---- */
 
 /* Appends to the history, if it is kept. */
 gonio_status gonio_i_selection_record(const gonio_i_selection_problem *problem,

@@ -308,10 +308,6 @@ static void free_search(search *s)
 static gonio_status select_nielsen(const gonio_i_selection_problem *problem,
                                    gonio_i_selection *selection)
 {
-    if (problem->basis == NULL) {
-        return gonio_i_fail(problem->context, GONIO_ERROR_ARGUMENT,
-                            "nielsen works on a basis, not on rows alone");
-    }
     search *s = gonio_i_allocate(problem->context, 1, sizeof *s);
     if (s == NULL) {
         return GONIO_ERROR_MEMORY;
@@ -333,5 +329,12 @@ static gonio_status select_nielsen(const gonio_i_selection_problem *problem,
 }
 
 const gonio_i_method gonio_i_nielsen_method = {
-    "nielsen", "lowest condition number by moves over the grid (Nielsen et al. 2015)", false,
-    select_nielsen};
+    .name = "nielsen",
+    .summary = "lowest condition number by moves over the grid (Nielsen et al. 2015)",
+    .reconstruction = "ridge",
+    .basis = GONIO_I_RELATIVE_BASIS,
+    .needs = GONIO_I_NEEDS_A_BASIS,
+    .where_it_lacks = "nielsen works on a basis, not on rows alone",
+    .few_components = true,
+    .select = select_nielsen,
+};

@@ -1,22 +1,5 @@
 /* Random rows: the yardstick that every other method has to beat. */
-#include <stdlib.h>
-
-#include "../core/random.h"
 #include "method.h"
-
-gonio_status gonio_i_random_choice(const gonio_i_selection_problem *problem, uint64_t stream,
-                                   size_t *chosen)
-{
-    unsigned char *used = gonio_i_allocate(problem->context, problem->rows, 1);
-    if (used == NULL) {
-        return GONIO_ERROR_MEMORY;
-    }
-    gonio_i_random random;
-    gonio_i_random_seed(&random, problem->seed, stream);
-    gonio_i_random_subset(&random, problem->rows, problem->count, used, chosen);
-    free(used);
-    return GONIO_OK;
-}
 
 static gonio_status select_random(const gonio_i_selection_problem *problem,
                                   gonio_i_selection *selection)
@@ -31,5 +14,8 @@ static gonio_status select_random(const gonio_i_selection_problem *problem,
     return status;
 }
 
-const gonio_i_method gonio_i_random_method = {"random", "rows drawn at random, the yardstick",
-                                              false, select_random};
+const gonio_i_method gonio_i_random_method = {.name = "random",
+                                              .summary = "rows drawn at random, the yardstick",
+                                              .reconstruction = "least-squares",
+                                              .basis = GONIO_I_PAPERS_BASIS,
+                                              .select = select_random};

@@ -33,12 +33,12 @@ static size_t gather_rows(gonio_i_swap_search *s, unsigned char *used, size_t *r
 
 /* Swaps within the problem `part`, added to the history of the whole; but for the last, whose kappa
  * is computed anew from the rows of the whole. */
-static gonio_status search_part(gonio_i_swap_search *s, const gonio_i_selection_problem *part,
-                                size_t *chosen, int restart, int *swaps,
-                                gonio_i_selection *selection)
+static gonio_status search_part(gonio_i_swap_search *s, gonio_i_selector *select,
+                                const gonio_i_selection_problem *part, size_t *chosen, int restart,
+                                int *swaps, gonio_i_selection *selection)
 {
     gonio_i_selection found = {.chosen = chosen};
-    gonio_status status = gonio_i_condition_method.select(part, &found);
+    gonio_status status = select(part, &found);
     s->tests += found.tests;
     for (size_t k = 1; k + 1 < found.steps && status == GONIO_OK; k++) {
         status = gonio_i_selection_record(s->problem, selection, restart, ++*swaps,
@@ -49,8 +49,9 @@ static gonio_status search_part(gonio_i_swap_search *s, const gonio_i_selection_
 }
 
 /* Searches rows[count] alone, from the chosen ones, which are its first; turns to the result. */
-static gonio_status search_among(gonio_i_swap_search *s, const size_t *rows, size_t count,
-                                 int restart, int *swaps, gonio_i_selection *selection)
+static gonio_status search_among(gonio_i_swap_search *s, gonio_i_selector *select,
+                                 const size_t *rows, size_t count, int restart, int *swaps,
+                                 gonio_i_selection *selection)
 {
     const gonio_i_selection_problem *p = s->problem;
     const size_t k = p->components;
@@ -71,7 +72,7 @@ static gonio_status search_among(gonio_i_swap_search *s, const size_t *rows, siz
         part.restarts = 1;
         part.given = chosen;
         part.part = true;
-        status = search_part(s, &part, chosen, restart, swaps, selection);
+        status = search_part(s, select, &part, chosen, restart, swaps, selection);
     }
     if (status == GONIO_OK) {
         for (size_t j = 0; j < p->count; j++) {
@@ -87,7 +88,8 @@ static gonio_status search_among(gonio_i_swap_search *s, const size_t *rows, siz
     return status;
 }
 
-gonio_status gonio_i_search_shortlists(gonio_i_swap_search *s, int restart, int *swaps,
+gonio_status gonio_i_search_shortlists(gonio_i_swap_search *s, int restart,
+                                       gonio_i_selector *select, int *swaps,
                                        gonio_i_selection *selection)
 {
     const gonio_i_selection_problem *p = s->problem;
@@ -100,7 +102,7 @@ gonio_status gonio_i_search_shortlists(gonio_i_swap_search *s, int restart, int 
         const double before = s->condition_number;
         const size_t count = gather_rows(s, used, rows);
         if (count > p->count) {
-            status = search_among(s, rows, count, restart, swaps, selection);
+            status = search_among(s, select, rows, count, restart, swaps, selection);
         }
         worth = s->condition_number < before * (1.0 - least_gain);
         if (status == GONIO_OK) {

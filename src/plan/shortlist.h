@@ -12,8 +12,10 @@
 
 enum { GONIO_I_MANY_ROWS = 100000 };
 
-/* Makes those swaps; counts and records them. */
-gonio_status gonio_i_search_shortlists(gonio_i_swap_search *search, int restart, int *swaps,
+/* Makes those swaps; counts and records them. `select` finds a local optimum of a part of the rows
+ * from the choice that is given. */
+gonio_status gonio_i_search_shortlists(gonio_i_swap_search *search, int restart,
+                                       gonio_i_selector *select, int *swaps,
                                        gonio_i_selection *selection);
 
 #endif

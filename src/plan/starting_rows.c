@@ -170,17 +170,29 @@ static const gonio_i_start starts[] = {
     {"volume", "the rows that make det(X'X) largest, one after another", volume_start},
 };
 
-const gonio_i_start *gonio_i_start_at(int index)
+enum { STARTS = sizeof starts / sizeof *starts, SPANNING = 1 };
+
+const char *gonio_plan_start_name(int index)
 {
-    return index >= 0 && (size_t)index < sizeof starts / sizeof *starts ? &starts[index] : NULL;
+    return index >= 0 && index < STARTS ? starts[index].name : NULL;
+}
+
+const char *gonio_plan_start_summary(int index)
+{
+    return index >= 0 && index < STARTS ? starts[index].summary : NULL;
 }
 
 const gonio_i_start *gonio_i_find_start(const char *name)
 {
-    for (int k = 0; gonio_i_start_at(k) != NULL; k++) {
+    for (int k = 0; k < STARTS; k++) {
         if (strcmp(starts[k].name, name) == 0) {
             return &starts[k];
         }
     }
     return NULL;
+}
+
+const gonio_i_start *gonio_i_spanning_start(void)
+{
+    return &starts[SPANNING];
 }

@@ -12,8 +12,10 @@ typedef struct gonio_i_start {
     gonio_status (*choose)(const gonio_i_selection_problem *problem, int restart, size_t *chosen);
 } gonio_i_start;
 
-/* By name; NULL if there is none. By index from 0; NULL past the last. */
+/* By name; NULL if there is none. */
 const gonio_i_start *gonio_i_find_start(const char *name);
-const gonio_i_start *gonio_i_start_at(int index);
+
+/* One whose rows span K dimensions wherever any do. */
+const gonio_i_start *gonio_i_spanning_start(void);
 
 #endif

@@ -12,7 +12,6 @@
 
 #include "../linalg/linalg.h"
 #include "exchange_eigenvalues.h"
-#include "shortlist.h"
 
 /* A swap has to lower kappa by more than this share: less is rounding. */
 static const double least_gain = 1e-10;
@@ -24,7 +23,7 @@ static double seconds(clockid_t clock)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-static void begin_watch(gonio_i_swap_search *s)
+void gonio_i_swap_search_watch(gonio_i_swap_search *s)
 {
     s->began = seconds(CLOCK_MONOTONIC);
     s->worked = -seconds(CLOCK_THREAD_CPUTIME_ID);
@@ -369,17 +368,11 @@ gonio_status gonio_i_swap_search_report(gonio_i_swap_search *s, double share)
                                                0.999 * sum / s->problem->restarts);
 }
 
-gonio_status gonio_i_swap_search_descend(gonio_i_swap_search *s, int restart,
+gonio_status gonio_i_swap_search_descend(gonio_i_swap_search *s, int restart, int swaps,
                                          gonio_i_selection *selection)
 {
-    int swaps = 0;
-    begin_watch(s);
-    gonio_status status =
-        gonio_i_selection_record(s->problem, selection, restart, swaps, s->condition_number);
+    gonio_status status = GONIO_OK;
     bool proved = s->problem->components < 2; /* kappa of one component is 1 */
-    if (status == GONIO_OK && !proved && s->problem->rows >= GONIO_I_MANY_ROWS) {
-        status = gonio_i_search_shortlists(s, restart, &swaps, selection);
-    }
     for (int turn = 0; status == GONIO_OK && !proved; turn++) {
         const int before = swaps;
         status = sweep(s, restart, &swaps, selection);

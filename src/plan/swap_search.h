@@ -71,8 +71,12 @@ gonio_status gonio_i_swap_search_begin(gonio_i_swap_search *search, const size_t
 size_t gonio_i_swap_search_winners(gonio_i_swap_search *search, size_t position, size_t from,
                                    size_t most, size_t *found);
 
-/* Swaps until no single swap lowers kappa; records them in the selection's history. */
-gonio_status gonio_i_swap_search_descend(gonio_i_swap_search *search, int restart,
+/* Begins the time by which the search sees whether threads pay. */
+void gonio_i_swap_search_watch(gonio_i_swap_search *search);
+
+/* Swaps until no single swap lowers kappa; records them in the selection's history, after `swaps`
+ * that were made before. */
+gonio_status gonio_i_swap_search_descend(gonio_i_swap_search *search, int restart, int swaps,
                                          gonio_i_selection *selection);
 
 /* Reports how far this search is, 0 to 1, as its share of the progress of all. */
