@@ -81,29 +81,28 @@ static json_t *names_to_learn(const json_t *splits, size_t number)
     return names;
 }
 
-static bool is_posterior(const setting *s)
+/* The kind of basis that a method is meant for. */
+static gonio_plan_basis basis_of(const setting *s)
 {
-    return strcmp(s->method, "expected-error") == 0;
+    gonio_plan_basis kind = {.representation = GONIO_BIVARIATE};
+    gonio_plan_method_basis(s->method, &kind);
+    return kind;
 }
 
-/* The grid that a method was published with. */
-static gonio_database_options grid_of(const setting *s)
+static bool is_posterior(const setting *s)
 {
-    static const gonio_database_options sectored = {.representation = GONIO_SECTORED,
-                                                    .channels = GONIO_SEPARATE};
-    static const gonio_database_options relative = {
-        .representation = GONIO_FULL, .channels = GONIO_SEPARATE, .mapping = GONIO_LOG_RELATIVE};
-    static const gonio_database_options paper = {.representation = GONIO_BIVARIATE};
-    const bool full = strcmp(s->method, "nielsen") == 0 || strcmp(s->method, "frost") == 0;
-    return is_posterior(s) ? sectored : full ? relative : paper;
+    return basis_of(s).mixtures;
 }
 
 static gonio_basis *learn(gonio_context *context, const setting *s, const json_t *names)
 {
-    const gonio_database_options grid = grid_of(s);
+    const gonio_plan_basis kind = basis_of(s);
+    const gonio_database_options grid = {
+        .representation = kind.representation, .channels = kind.channels, .mapping = kind.mapping};
     const size_t largest = s->size[s->sizes - 1];
-    const gonio_basis_options how = {.mixtures = is_posterior(s) ? GONIO_DEFAULT_MIXTURES : 0,
-                                     .components = is_posterior(s)                     ? 0
+    const gonio_basis_options how = {.mixtures = kind.mixtures ? GONIO_DEFAULT_MIXTURES : 0,
+                                     .without_mean = kind.without_mean,
+                                     .components = kind.mixtures                       ? 0
                                                    : grid.representation == GONIO_FULL ? largest
                                                                                        : 45};
     gonio_database *database = NULL;

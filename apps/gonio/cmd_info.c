@@ -157,17 +157,6 @@ static int info_atlas(json_t *results)
 
 /* ---- bases ---- */
 
-static const char *mapping_name(const gonio_basis_view *view)
-{
-    return view->mapping == GONIO_LOG ? "log" : "relative";
-}
-
-static const char *representation_of(const gonio_basis_view *view)
-{
-    static const char *const names[] = {"bivariate", "full", "sectored"};
-    return names[view->representation];
-}
-
 static json_t *basis_json(const char *path, const gonio_basis *basis)
 {
     const gonio_basis_view view = gonio_basis_describe(basis);
@@ -178,10 +167,10 @@ static json_t *basis_json(const char *path, const gonio_basis *basis)
         json_array_append_new(names, json_string(view.names[k]));
     }
     return json_pack("{s:s, s:s, s:s, s:b, s:b, s:s, s:s, s:I, s:I, s:I, s:f, s:o, s:s, s:s, s:s}",
-                     "file", path, "kind", "basis", "mapping", mapping_name(&view), "mean",
-                     !view.without_mean, "loadings", view.loadings != NULL, "representation",
-                     representation_of(&view), "channels",
-                     view.channels == GONIO_JOINT ? "joint" : "separate", "components",
+                     "file", path, "kind", "basis", "mapping", gonio_mapping_name(view.mapping),
+                     "mean", !view.without_mean, "loadings", view.loadings != NULL,
+                     "representation", gonio_representation_name(view.representation), "channels",
+                     gonio_channel_model_name(view.channels), "components",
                      (json_int_t)view.components, "cells", (json_int_t)view.cells, "mixtures",
                      (json_int_t)view.mixtures, "explained_variance",
                      gonio_basis_cumulative_variance(basis, view.components), "materials", names,
@@ -191,9 +180,9 @@ static json_t *basis_json(const char *path, const gonio_basis *basis)
 static void print_basis(const char *path, const gonio_basis *basis)
 {
     const gonio_basis_view view = gonio_basis_describe(basis);
-    printf("%s: gonio basis, %s, %s channels\n", path, representation_of(&view),
-           view.channels == GONIO_JOINT ? "joint" : "separate");
-    printf("  mapping      %s, %s mean%s\n", mapping_name(&view),
+    printf("%s: gonio basis, %s, %s channels\n", path,
+           gonio_representation_name(view.representation), gonio_channel_model_name(view.channels));
+    printf("  mapping      %s, %s mean%s\n", gonio_mapping_name(view.mapping),
            view.without_mean ? "without" : "with", view.loadings == NULL ? ", no loadings" : "");
     printf("  components   %zu on %zu cells (%zu rows)\n", view.components, view.cells, view.rows);
     if (view.mixtures > 0) {

@@ -106,16 +106,21 @@ static int learn(tool *t, const options *o, const material_list *list,
 
 static bool choose_kind(const tool *t, const options *o, gonio_database_options *how)
 {
-    static const char *const representations[] = {"bivariate", "full", "sectored", NULL};
-    static const char *const channel_models[] = {"joint", "separate", NULL};
-    static const char *const mappings[] = {"log", "relative", NULL};
+    const char *const representations[] = {gonio_representation_name(GONIO_BIVARIATE),
+                                           gonio_representation_name(GONIO_FULL),
+                                           gonio_representation_name(GONIO_SECTORED), NULL};
+    const char *const channel_models[] = {gonio_channel_model_name(GONIO_JOINT),
+                                          gonio_channel_model_name(GONIO_SEPARATE), NULL};
+    const char *const mappings[] = {gonio_mapping_name(GONIO_LOG),
+                                    gonio_mapping_name(GONIO_LOG_RELATIVE), NULL};
     int representation = 0;
     int channels = 0;
     int mapping = 0;
     if (!tool_check_word(t, "--grid", o->representation, representations, &representation)) {
         return false;
     }
-    const char *usual = representation == GONIO_SECTORED ? "separate" : "joint";
+    const char *usual =
+        gonio_channel_model_name(representation == GONIO_SECTORED ? GONIO_SEPARATE : GONIO_JOINT);
     const char *wanted = o->channels != NULL ? o->channels : usual;
     if (!tool_check_word(t, "--channels", wanted, channel_models, &channels) ||
         !tool_check_word(t, "--mapping", o->mapping, mappings, &mapping)) {

@@ -210,7 +210,8 @@ static size_t add_interpolated(const slab *s, size_t row, size_t first, gonio_i_
 static void add_cell(const slab *s, int metric, size_t i, gonio_i_digest *d)
 {
     gonio_i_digest_metric *m = &d->metric[metric];
-    const size_t row = (size_t)(d->cell[i] % GONIO_THETA_D_BINS) * GONIO_PHI_D_BINS;
+    const size_t row =
+        (size_t)gonio_cell_bin(GONIO_BIVARIATE, d->cell[i]).theta_d * GONIO_PHI_D_BINS;
     double (*const proportion)(double) = gonio_i_metric_at(metric)->proportion;
     const size_t first = m->first[i];
     const size_t count = proportion != NULL ? add_proportional(s, row, proportion, first, m)
@@ -225,7 +226,7 @@ static void list_cells(const slab *s, int theta_h, gonio_i_digest *d)
         if (s->statistics.count[theta_d] == 0) {
             continue;
         }
-        d->cell[d->cells] = theta_d + GONIO_THETA_D_BINS * theta_h;
+        d->cell[d->cells] = gonio_cell_of_bin(GONIO_BIVARIATE, (gonio_bin){theta_h, theta_d, 0});
         d->bins += s->statistics.count[theta_d];
         for (int c = 0; c < GONIO_CHANNELS; c++) {
             d->mean[c][d->cells] = s->statistics.mean[theta_d][c];

@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
-# The shape of the sources: every public header compiles alone, as C and as C++, and a stage includes
-# only stages before it: test_structure.sh SOURCE
+# The shape of the sources: every public header compiles alone, as C and as C++, a stage includes
+# only stages before it, and no files use each other's work in a circle:
+# test_structure.sh SOURCE OBJECT...
 set -euo pipefail
 cd "$1"
+shift
 failed=0
 
 for header in include/gonio/*.h; do
@@ -38,5 +40,47 @@ while IFS=: read -r file line; do
         failed=1
     fi
 done < <(grep -rn '#include' src --include='*.[ch]' | sed 's/:[0-9]*:/:/')
+
+# ties: of the listing of nm -A -P, "user owner symbol" for each symbol that a file takes from another.
+ties() {
+    awk '{
+        file = $1
+        sub(/^.*gonio-objects\.dir\//, "", file)
+        sub(/\.o:$/, "", file)
+        if ($3 ~ /^[TDBRC]$/)
+            owner[$2] = file
+        else if ($3 == "U")
+            use[file " " $2]
+    }
+    END {
+        for (pair in use) {
+            split(pair, p, " ")
+            if ((p[2] in owner) && owner[p[2]] != p[1])
+                print p[1], owner[p[2]], p[2]
+        }
+    }' | LC_ALL=C sort
+}
+
+# circles: the ties between files that are in circles.
+circles() {
+    local ties files
+    ties=$(cat)
+    files=$(cut -d ' ' -f 1,2 <<<"$ties" | tsort 2>&1 >/dev/null | sed -n 's/^tsort: //p' | grep -v 'loop:$' | sort -u)
+    [[ -z $files ]] || awk 'NR == FNR { looping[$1]; next } ($1 in looping) && ($2 in looping)' <(echo "$files") - <<<"$ties"
+}
+
+found=$(printf '%s\n' 'a.o: f T' 'a.o: g U' 'b.o: g T' 'b.o: f U' 'c.o: f U' | ties | circles)
+if [[ $found != $'a b g\nb a f' ]]; then
+    echo "a circle of two files is not found: $found" >&2
+    failed=1
+fi
+if [[ $# -gt 0 ]]; then
+    found=$(nm -A -P "$@" | ties | circles)
+    if [[ -n $found ]]; then
+        echo "files use each other's work in a circle (user, owner, what):" >&2
+        echo "$found" >&2
+        failed=1
+    fi
+fi
 
 exit $failed

@@ -564,6 +564,20 @@ static void test_what_a_method_cannot_work_on(void **state)
     assert_string_equal(gonio_plan_method_reconstruction("frost"), "ridge");
     assert_string_equal(gonio_plan_method_reconstruction("condition"), "least-squares");
     assert_null(gonio_plan_method_reconstruction("none"));
+    for (int k = 0; gonio_plan_method_name(k) != NULL; k++) {
+        const char *name = gonio_plan_method_name(k);
+        gonio_plan_basis meant;
+        assert_true(gonio_plan_method_basis(name, &meant));
+        assert_int_equal(meant.mixtures,
+                         strcmp(gonio_plan_method_reconstruction(name), "posterior") == 0);
+        assert_int_equal(meant.without_mean, strcmp(name, "matusik") == 0);
+    }
+    gonio_plan_basis frosts;
+    assert_true(gonio_plan_method_basis("frost", &frosts));
+    assert_int_equal(frosts.representation, GONIO_FULL);
+    assert_int_equal(frosts.mapping, GONIO_LOG_RELATIVE);
+    assert_false(gonio_plan_method_basis("none", &frosts));
+    assert_int_equal(frosts.representation, GONIO_FULL);
 }
 
 /* ---- ridge ---- */
