@@ -11,16 +11,8 @@
 #include "../core/core.h"
 #include "colour.h"
 #include "formats/format.h"
-#include "slab.h"
+#include "inside.h"
 #include "source.h"
-
-struct gonio_material {
-    char *name;
-    char *format;
-    gonio_material_source source;
-    double *wavelength; /* [source.channels]; NULL for colours */
-    double *weight;     /* [GONIO_CHANNELS][source.channels]: from spectra to colours, or NULL */
-};
 
 struct gonio_fingerprint {
     XXH3_state_t *state;
@@ -129,19 +121,6 @@ const char *gonio_material_name(const gonio_material *material)
 const char *gonio_material_format(const gonio_material *material)
 {
     return material->format;
-}
-
-gonio_status gonio_material_read_slab(const gonio_material *material, gonio_context *context,
-                                      int theta_h, double *rho)
-{
-    if (theta_h < 0 || theta_h >= GONIO_THETA_H_BINS) {
-        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "theta_h index %d outside 0 .. 89",
-                            theta_h);
-    }
-    const gonio_material_source *source = &material->source;
-    return source->read_slab != NULL
-               ? source->read_slab(source->self, context, theta_h, rho)
-               : gonio_i_slab_evaluate(context, source, material->weight, theta_h, rho);
 }
 
 gonio_material_view gonio_material_describe(const gonio_material *material)

@@ -1,10 +1,11 @@
-/* Slabs by evaluation: see slab.h. */
+/* Slabs of a material: as its source reads them, or by evaluation: see slab.h. */
 #include "slab.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 #include "../core/core.h"
+#include "inside.h"
 
 enum { TURNS = 8 /* azimuths of the half vector of an anisotropic material */ };
 
@@ -126,4 +127,17 @@ gonio_status gonio_i_slab_evaluate(gonio_context *context, const gonio_material_
     free(r.value);
     free(r.mean);
     return status;
+}
+
+gonio_status gonio_material_read_slab(const gonio_material *material, gonio_context *context,
+                                      int theta_h, double *rho)
+{
+    if (theta_h < 0 || theta_h >= GONIO_THETA_H_BINS) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "theta_h index %d outside 0 .. 89",
+                            theta_h);
+    }
+    const gonio_material_source *source = &material->source;
+    return source->read_slab != NULL
+               ? source->read_slab(source->self, context, theta_h, rho)
+               : gonio_i_slab_evaluate(context, source, material->weight, theta_h, rho);
 }

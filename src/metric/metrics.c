@@ -1,7 +1,6 @@
 /* The table of error metrics, and the sums over values that they are found from: see metric.h. */
 #include "metric.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "../core/core.h"
@@ -86,23 +85,4 @@ gonio_error gonio_i_error_of(const gonio_i_error_sums *sums, double values)
         error.value[m] = metrics[m]->finish(&sums->metric[m], values);
     }
     return error;
-}
-
-/* ---- what metrics share ---- */
-
-double gonio_i_relative_rms_percent(const gonio_i_metric_sums *sums, double values)
-{
-    (void)values;
-    return 100.0 * sqrt(sums->square / sums->reference);
-}
-
-double gonio_i_rms(const gonio_i_metric_sums *sums, double values)
-{
-    return sqrt(sums->square / values);
-}
-
-double gonio_i_independent(double cosines)
-{
-    (void)cosines;
-    return 1.0;
 }

@@ -14,20 +14,6 @@ void gonio_reconstruct_options_default(gonio_reconstruct_options *options)
     *options = (gonio_reconstruct_options){.noise = 0.01, .floor = 1e-5};
 }
 
-void gonio_reconstruction_free(gonio_reconstruction **reconstruction)
-{
-    if (reconstruction == NULL || *reconstruction == NULL) {
-        return;
-    }
-    free((*reconstruction)->coefficients);
-    free((*reconstruction)->field);
-    free((*reconstruction)->deviation);
-    free((*reconstruction)->wavelength);
-    free((*reconstruction)->dark);
-    free(*reconstruction);
-    *reconstruction = NULL;
-}
-
 /* ---- methods ---- */
 
 static const gonio_i_reconstruct_method *const methods[] = {
