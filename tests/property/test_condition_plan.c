@@ -83,7 +83,8 @@ static void test_local_optimum(void **state)
     } cases[] = {{60, 2, 2},   {60, 2, 5}, {120, 5, 5}, {120, 5, 12},
                  {200, 8, 20}, {90, 1, 3}, {12, 3, 12}, {110000, 3, 4}}; /* searched in rounds */
     for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
-        for (uint64_t seed = 0; seed < (cases[c].rows > 1000 ? 1 : 4); seed++) {
+        const bool one = cases[c].rows > 1000 || support_small();
+        for (uint64_t seed = 0; seed < (one ? 1 : 4); seed++) {
             const size_t rows = cases[c].rows, k = cases[c].k, n = cases[c].n;
             double *v = make_rows(rows, k, seed);
             size_t chosen[32];
@@ -167,7 +168,7 @@ static void test_same_swaps(void **state)
     enum { MOST = 2000 };
     double *kappas = malloc(MOST * sizeof *kappas);
     for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
-        for (uint64_t seed = 10; seed < 14; seed++) {
+        for (uint64_t seed = 10; seed < (support_small() ? 11 : 14); seed++) {
             const size_t rows = cases[c].rows, k = cases[c].k, n = cases[c].n;
             double *v = make_rows(rows, k, seed);
             size_t plain[32];
@@ -236,7 +237,7 @@ static void test_any_number_of_threads(void **state)
         gonio_plan_options_default(&options);
         options.count = N;
         options.restarts = cases[c].restarts;
-        for (int threads = 1; threads <= 4; threads++) {
+        for (int threads = 1; threads <= (support_small() ? 2 : 4); threads++) {
             gonio_context *context = NULL;
             const gonio_context_options settings = {.threads = threads};
             size_t chosen[N];
