@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "made_material.h"
+#include "made_readings.h"
 
 enum { DIRECTIONS = 4000 };
 
@@ -54,17 +55,15 @@ static gonio_readings *read_back(const fixture *f, bool values_needed)
 }
 
 /* A plan of many directions, forwards or backwards. */
-static gonio_readings *make_plan(const fixture *f, bool backwards)
+static gonio_readings *make_plan(bool backwards)
 {
-    FILE *file = fopen(f->path, "wb");
-    assert_non_null(file);
-    fputs("theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg\n", file);
+    static double row[DIRECTIONS][4];
     for (int k = 0; k < DIRECTIONS; k++) {
         const int n = backwards ? DIRECTIONS - 1 - k : k;
-        fprintf(file, "%.3f,%d,%.3f,%d\n", n % 80 + 0.25, n % 360, n / 50 + 0.5, n % 181);
+        const double angles[4] = {n % 80 + 0.25, n % 360, n / 50 + 0.5, n % 181};
+        memcpy(row[k], angles, sizeof angles);
     }
-    assert_int_equal(fclose(file), 0);
-    return read_back(f, false);
+    return made_directions((const double(*)[4])row, DIRECTIONS);
 }
 
 static void measure(gonio_readings *readings, const fixture *f, double noise, double floor,
@@ -77,12 +76,12 @@ static void measure(gonio_readings *readings, const fixture *f, double noise, do
 static void test_without_noise_the_value_itself(void **state)
 {
     const fixture *f = *state;
-    gonio_readings *readings = make_plan(f, false);
+    gonio_readings *readings = make_plan(false);
     gonio_readings_view view = gonio_readings_describe(readings);
     assert_int_equal(view.count, DIRECTIONS);
     assert_true(isnan(view.value[0]));
     assert_int_equal(view.planned[0], GONIO_ALL_CHANNELS);
-    assert_int_equal(view.line[5], 7);
+    assert_int_equal(view.line[5], 6);
     assert_int_equal(gonio_measure(NULL, readings, f->table, NULL), GONIO_OK);
     for (size_t k = 0; k < view.count; k++) {
         for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
@@ -114,7 +113,7 @@ static void assert_statistics(const gonio_readings *readings, int channel, doubl
 static void test_noise_is_as_large_as_asked(void **state)
 {
     const fixture *f = *state;
-    gonio_readings *readings = make_plan(f, false);
+    gonio_readings *readings = make_plan(false);
     for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
         const double v = values[channel];
         measure(readings, f, 0.02, 0.0, 1);
@@ -130,7 +129,7 @@ static void test_noise_is_as_large_as_asked(void **state)
 static void test_readings_are_not_negative(void **state)
 {
     const fixture *f = *state;
-    gonio_readings *readings = make_plan(f, false);
+    gonio_readings *readings = make_plan(false);
     measure(readings, f, 0.0, 1.0, 4);
     const gonio_readings_view view = gonio_readings_describe(readings);
     int zeros = 0;
@@ -145,9 +144,9 @@ static void test_readings_are_not_negative(void **state)
 static void test_noise_belongs_to_the_direction_and_the_seed(void **state)
 {
     const fixture *f = *state;
-    gonio_readings *forwards = make_plan(f, false);
-    gonio_readings *backwards = make_plan(f, true);
-    gonio_readings *other = make_plan(f, false);
+    gonio_readings *forwards = make_plan(false);
+    gonio_readings *backwards = make_plan(true);
+    gonio_readings *other = make_plan(false);
     measure(forwards, f, 0.1, 0.01, 5);
     measure(backwards, f, 0.1, 0.01, 5);
     measure(other, f, 0.1, 0.01, 6);
@@ -164,10 +163,25 @@ static void test_noise_belongs_to_the_direction_and_the_seed(void **state)
     gonio_readings_free(&other);
 }
 
+/* The same plan as a file. */
+static gonio_readings *read_plan(const fixture *f)
+{
+    FILE *file = fopen(f->path, "wb");
+    assert_non_null(file);
+    fputs("theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg\n", file);
+    for (int n = 0; n < DIRECTIONS; n++) {
+        fprintf(file, "%.3f,%d,%.3f,%d\n", n % 80 + 0.25, n % 360, n / 50 + 0.5, n % 181);
+    }
+    assert_int_equal(fclose(file), 0);
+    return read_back(f, false);
+}
+
 static void test_readings_are_written_and_read(void **state)
 {
     const fixture *f = *state;
-    gonio_readings *readings = make_plan(f, false);
+    gonio_readings *readings = read_plan(f);
+    assert_int_equal(gonio_readings_describe(readings).count, DIRECTIONS);
+    assert_int_equal(gonio_readings_describe(readings).line[5], 7);
     measure(readings, f, 0.1, 0.01, 7);
     assert_int_equal(gonio_readings_write(NULL, readings, "a command", f->path), GONIO_OK);
     gonio_readings *again = read_back(f, true);
@@ -189,7 +203,7 @@ static void test_negative_noise_is_refused(void **state)
                                                    {NAN, 0.0, 0, 0.0},
                                                    {0.0, INFINITY, 0, 0.0},
                                                    {0.0, 0.0, 0, -0.1}};
-    gonio_readings *readings = make_plan(f, false);
+    gonio_readings *readings = make_plan(false);
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
         assert_int_equal(gonio_measure(NULL, readings, f->table, &bad[k]), GONIO_ERROR_ARGUMENT);
     }

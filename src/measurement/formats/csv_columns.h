@@ -1,4 +1,4 @@
-/* The columns of readings as CSV: what each holds, by its name. */
+/* Readings as CSV: what each column holds, by its name; what is kept of a file; writing. */
 #ifndef GONIO_CSV_COLUMNS_H
 #define GONIO_CSV_COLUMNS_H
 
@@ -34,5 +34,23 @@ gonio_status gonio_i_csv_columns_find(const gonio_i_csv_reader *reader, bool val
                                       gonio_i_csv_columns *columns);
 
 void gonio_i_csv_columns_free(gonio_i_csv_columns *columns);
+
+/* A planned channel as a cell has it: all; R, G or B; 400nm; or its number from 1. */
+void gonio_i_csv_name_channel(const gonio_readings *readings, int channel,
+                              char name[GONIO_I_NAME_ROOM]);
+
+/* What is written again of a CSV file. */
+typedef struct gonio_i_csv_kept {
+    char *text;
+    size_t size;
+    gonio_i_csv_columns columns;
+} gonio_i_csv_kept;
+
+/* NULL if the readings are not from a CSV file. */
+const gonio_i_csv_kept *gonio_i_csv_kept_of(const gonio_readings *readings);
+
+/* Prints readings over the file that they came from, or anew. Errors: _MEMORY. */
+gonio_status gonio_i_csv_print(gonio_context *context, const gonio_readings *readings,
+                               const char *command, FILE *stream);
 
 #endif
