@@ -417,6 +417,23 @@ static void test_what_is_kept_of_a_file(void **state)
     gonio_readings_free(&r);
 }
 
+/* A channel that was planned may be none of the channels that were read in the end. */
+static void test_a_planned_channel_that_there_is_no_more(void **state)
+{
+    (void)state;
+    static const int planned[2] = {GONIO_ALL_CHANNELS, 30};
+    const gonio_readings_arrays arrays = {
+        .count = 2, .channels = 31, .pair = two_pairs, .planned = planned};
+    gonio_readings *r = NULL;
+    assert_int_equal(gonio_readings_create(context, &arrays, NULL, &r), GONIO_OK);
+    assert_int_equal(gonio_readings_set_values(context, r, 3, NULL, NULL, NULL), GONIO_OK);
+    char *text = text_of(r);
+    assert_non_null(strstr(text, ",all,"));
+    assert_non_null(strstr(text, ",31,"));
+    free(text);
+    gonio_readings_free(&r);
+}
+
 static void test_columns_that_are_not_understood(void **state)
 {
     (void)state;
@@ -558,6 +575,7 @@ int main(void)
         cmocka_unit_test(test_values_can_be_set),
         cmocka_unit_test(test_arrays_are_written_and_read),
         cmocka_unit_test(test_what_is_kept_of_a_file),
+        cmocka_unit_test(test_a_planned_channel_that_there_is_no_more),
         cmocka_unit_test(test_columns_that_are_not_understood),
         cmocka_unit_test(test_notes),
         cmocka_unit_test(test_deviations),
