@@ -183,26 +183,13 @@ static gonio_status take_rows(csv_source *s)
     return status;
 }
 
-static void release(void *data)
-{
-    gonio_i_csv_kept *kept = data;
-    gonio_i_csv_columns_free(&kept->columns);
-    free(kept->text);
-    free(kept);
-}
-
-const gonio_i_csv_kept *gonio_i_csv_kept_of(const gonio_readings *readings)
-{
-    return readings->attachment.release == release ? readings->attachment.data : NULL;
-}
-
 /* The readings keep the text from here on. */
 static gonio_i_csv_kept *keep(gonio_i_readings_file *file, gonio_readings *readings)
 {
     gonio_i_csv_kept *kept = gonio_i_allocate(file->context, 1, sizeof *kept);
     if (kept != NULL) {
         *kept = (gonio_i_csv_kept){.text = file->text, .size = file->size};
-        readings->attachment = (gonio_i_attachment){kept, release};
+        readings->attachment = (gonio_i_attachment){kept, gonio_i_csv_kept_free};
         file->text = NULL;
     }
     return kept;

@@ -211,3 +211,31 @@ void gonio_i_csv_columns_free(gonio_i_csv_columns *columns)
     free(columns->wavelength);
     *columns = (gonio_i_csv_columns){0};
 }
+
+static const char *const channel_names[] = {"all", "R", "G", "B"};
+
+void gonio_i_csv_name_channel(const gonio_readings *readings, int channel,
+                              char name[GONIO_I_NAME_ROOM])
+{
+    const bool colour = gonio_readings_are_colours(readings) && channel < GONIO_CHANNELS;
+    if (channel == GONIO_ALL_CHANNELS || colour) {
+        snprintf(name, GONIO_I_NAME_ROOM, "%s", channel_names[channel + 1]);
+    } else if (readings->wavelength != NULL && (size_t)channel < readings->channels) {
+        snprintf(name, GONIO_I_NAME_ROOM, "%.10gnm", readings->wavelength[channel]);
+    } else {
+        snprintf(name, GONIO_I_NAME_ROOM, "%d", channel + 1);
+    }
+}
+
+void gonio_i_csv_kept_free(void *data)
+{
+    gonio_i_csv_kept *kept = data;
+    gonio_i_csv_columns_free(&kept->columns);
+    free(kept->text);
+    free(kept);
+}
+
+const gonio_i_csv_kept *gonio_i_csv_kept_of(const gonio_readings *readings)
+{
+    return readings->attachment.release == gonio_i_csv_kept_free ? readings->attachment.data : NULL;
+}

@@ -46,6 +46,8 @@ typedef struct gonio_i_csv_kept {
     gonio_i_csv_columns columns;
 } gonio_i_csv_kept;
 
+void gonio_i_csv_kept_free(void *kept);
+
 /* NULL if the readings are not from a CSV file. */
 const gonio_i_csv_kept *gonio_i_csv_kept_of(const gonio_readings *readings);
 

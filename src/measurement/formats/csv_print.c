@@ -6,21 +6,6 @@
 #include "../rules.h"
 #include "csv_columns.h"
 
-static const char *const channel_names[] = {"all", "R", "G", "B"};
-
-void gonio_i_csv_name_channel(const gonio_readings *readings, int channel,
-                              char name[GONIO_I_NAME_ROOM])
-{
-    const bool colour = gonio_readings_are_colours(readings) && channel < GONIO_CHANNELS;
-    if (channel == GONIO_ALL_CHANNELS || colour) {
-        snprintf(name, GONIO_I_NAME_ROOM, "%s", channel_names[channel + 1]);
-    } else if (readings->wavelength != NULL && (size_t)channel < readings->channels) {
-        snprintf(name, GONIO_I_NAME_ROOM, "%.10gnm", readings->wavelength[channel]);
-    } else {
-        snprintf(name, GONIO_I_NAME_ROOM, "%d", channel + 1);
-    }
-}
-
 /* What a column of the file that is written holds: a cell of the file that was read, an angle, a
  * planned channel, or a value or deviation of one of the channels. */
 typedef struct printed_column {
