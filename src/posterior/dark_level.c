@@ -148,8 +148,9 @@ static gonio_status score_group(search *s, size_t number, gonio_i_steps *steps)
 {
     size_t count = 0;
     for (size_t c = 0; c < s->columns; c++) {
-        s->member[count] = c;
-        count += s->group[c] == number;
+        if (s->group[c] == number) {
+            s->member[count++] = c;
+        }
     }
     gonio_status status =
         gonio_i_sites_create(s->context, s->prior, &s->thinned[s->member[0]], &s->sites);
@@ -211,8 +212,7 @@ static bool allocate(search *s)
 {
     s->thinned = gonio_i_allocate(s->context, s->columns, sizeof *s->thinned);
     s->group = gonio_i_allocate(s->context, s->columns, sizeof *s->group);
-    /* One more, which is written and not read. */
-    s->member = gonio_i_allocate(s->context, s->columns + 1, sizeof *s->member);
+    s->member = gonio_i_allocate(s->context, s->columns, sizeof *s->member);
     s->score = gonio_i_allocate(s->context, s->columns * LEVELS, sizeof *s->score);
     s->dark = gonio_i_allocate(s->context, s->columns, sizeof *s->dark);
     return s->thinned && s->group && s->member && s->score && s->dark;

@@ -155,8 +155,9 @@ static gonio_status begin(gonio_context *context, const gonio_basis *basis,
         .eta = options->eta != 0.0 ? options->eta : default_eta,
     };
     if (task->method == NULL) {
-        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                            "no reconstruction method is called '%s'", name);
+        gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "no reconstruction method is called '%s'",
+                     name);
+        return GONIO_ERROR_ARGUMENT;
     }
     if (!(task->eta > 0.0 && isfinite(task->eta))) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "eta has to be a number above 0, not %g",
