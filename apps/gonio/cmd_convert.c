@@ -27,7 +27,7 @@ static int run(tool *t, void *given)
     gonio_material *material = NULL;
     gonio_status status = tool_open_material(t, arguments[0], &material);
     if (status == GONIO_OK) {
-        status = gonio_material_write_merl(t->context, material, arguments[1]);
+        status = gonio_material_write(t->context, material, arguments[1], NULL);
     }
     const int code =
         status == GONIO_OK ? report(t, material, arguments[1]) : tool_exit_code(status);

@@ -120,6 +120,24 @@ GONIO_API void gonio_fingerprint_free(gonio_fingerprint **fingerprint);
 GONIO_API gonio_status gonio_material_write_merl(gonio_context *context,
                                                  const gonio_material *material, const char *path);
 
+/* Writes an isotropic material as an RGL .bsdf, which Mitsuba 3 and pbrt-v4 render as `measured`:
+ * RGB, or spectra where the material has wavelengths (ascending, at most 512). Evaluated at 19
+ * incidences and 64 x 64 places (32 x 32 of spectra) that follow the material's highlight. Where
+ * the material has no data the nearest places stand in. The file appears whole or not at all.
+ * Errors: _ARGUMENT (an anisotropic material, too many wavelengths), _IO, _MEMORY, _CANCELLED, and
+ * those of the source. */
+GONIO_API gonio_status gonio_material_write_rgl(gonio_context *context,
+                                                const gonio_material *material, const char *path);
+
+/* Writes a material in a format by name; NULL for that of the path's extension, a MERL table where
+ * it is none that gonio knows. Errors: _ARGUMENT (no such format), those of the format. */
+GONIO_API gonio_status gonio_material_write(gonio_context *context, const gonio_material *material,
+                                            const char *path, const char *format);
+
+/* Names and one-line descriptions of the formats; NULL past the last. */
+GONIO_API const char *gonio_material_writer_name(int index);
+GONIO_API const char *gonio_material_writer_summary(int index);
+
 /* A material read whole (35 MB), for look-ups in any order. Errors of loading: _CANCELLED, _MEMORY,
  * and those of the source. */
 typedef struct gonio_table gonio_table;

@@ -27,6 +27,29 @@ static const size_t size_of[TYPES] = {0, 1, 1, 2, 2, 4, 4, 8, 8, 2, 4, 8};
 static const char *const type_name[TYPES] = {"",    "u8",  "i8",  "u16", "i16", "u32",
                                              "i32", "u64", "i64", "f16", "f32", "f64"};
 
+size_t gonio_i_tensor_size(gonio_i_tensor_type type)
+{
+    return size_of[type];
+}
+
+void gonio_i_tensor_byte_order(void *values, size_t count, size_t size)
+{
+#if __BYTE_ORDER == __BIG_ENDIAN
+    unsigned char *byte = values;
+    for (size_t k = 0; k < count; k++, byte += size) {
+        for (size_t low = 0, high = size - 1; low < high; low++, high--) {
+            const unsigned char kept = byte[low];
+            byte[low] = byte[high];
+            byte[high] = kept;
+        }
+    }
+#else
+    (void)values;
+    (void)count;
+    (void)size;
+#endif
+}
+
 bool gonio_i_tensor_probe(const unsigned char *head, size_t size)
 {
     return size >= sizeof magic && memcmp(head, magic, sizeof magic) == 0;
@@ -247,24 +270,6 @@ gonio_status gonio_i_tensor_expect(gonio_context *context, const gonio_i_tensor_
     return GONIO_OK;
 }
 
-static void to_host(void *values, size_t count, size_t size)
-{
-#if __BYTE_ORDER == __BIG_ENDIAN
-    unsigned char *byte = values;
-    for (size_t k = 0; k < count; k++, byte += size) {
-        for (size_t low = 0, high = size - 1; low < high; low++, high--) {
-            const unsigned char kept = byte[low];
-            byte[low] = byte[high];
-            byte[high] = kept;
-        }
-    }
-#else
-    (void)values;
-    (void)count;
-    (void)size;
-#endif
-}
-
 gonio_status gonio_i_tensor_read(gonio_context *context, const gonio_i_tensor_file *file,
                                  const gonio_i_tensor *field, uint64_t first, size_t count,
                                  void *values)
@@ -280,7 +285,7 @@ gonio_status gonio_i_tensor_read(gonio_context *context, const gonio_i_tensor_fi
     }
     const gonio_status status = read_bytes(context, file, values, count * size, offset);
     if (status == GONIO_OK) {
-        to_host(values, count, size);
+        gonio_i_tensor_byte_order(values, count, size);
     }
     return status;
 }

@@ -49,6 +49,12 @@ typedef struct gonio_i_tensor_file {
     gonio_i_tensor *field;
 } gonio_i_tensor_file;
 
+/* Bytes of a number of a type. */
+size_t gonio_i_tensor_size(gonio_i_tensor_type type);
+
+/* Between the byte order of files and that of the machine, in either direction. */
+void gonio_i_tensor_byte_order(void *values, size_t count, size_t size);
+
 /* Whether a file's first bytes are those of a tensor file. */
 bool gonio_i_tensor_probe(const unsigned char *head, size_t size);
 

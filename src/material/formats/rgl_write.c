@@ -1,0 +1,444 @@
+/* Writing isotropic materials as RGL .bsdf files (rgl.c has the format's equations).
+ *
+ * The file's values at a place s are rho cos theta_o 4 sigma / ndf in the direction that s is
+ * warped to, so any ndf that is positive represents any material. The better ndf resembles the
+ * material, the smoother the values are, which is what interpolation and importance sampling want.
+ * Here
+ *
+ *     ndf ~ (1 + cos theta)/2 sum over p of L^p / (integral of L^p),   p = 1, 1/2, 0,
+ *
+ * where L is the material's mean luminance by theta_h: a third of the nodes goes where the light
+ * goes, a third everywhere, and a third between. sigma and vndf follow from ndf; the luminance of
+ * the values is the density by which places are sampled. Where the material has no data, the
+ * nearest places stand in. Beyond the angle up to which it was measured, the values at that angle
+ * do. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../core/core.h"
+#include "../tensor_write.h"
+#include "../warp.h"
+#include "writers.h"
+
+enum {
+    THETAS = 19,  /* incidences: every 5 degrees */
+    SIDE = 64,    /* of the grid over s, in colours */
+    COARSE = 32,  /* in spectra, which are smooth and many */
+    NORMALS = 128 /* of the grids over half vectors, as measured files have it */
+};
+
+/* The most polar angle at which tables still have data around. */
+static const double STEEPEST = 88.0 * M_PI / 180.0;
+
+typedef struct writer {
+    gonio_context *context;
+    const gonio_material *material;
+    gonio_material_view view;
+    size_t channels; /* 3, or the wavelengths */
+    size_t side;
+    double limit;            /* polar angle that directions are held to */
+    float theta[THETAS];     /* of incidence */
+    float ndf[2][NORMALS];   /* the rows are alike */
+    float sigma[2][NORMALS]; /* the same */
+    float *vndf;             /* [THETAS][NORMALS][NORMALS] */
+    gonio_i_warp warp;       /* of vndf */
+    float *value;            /* [THETAS][channels][side][side] */
+    float *luminance;        /* [THETAS][side][side] */
+    unsigned char *valid;    /* [THETAS * side * side / 8], bits */
+    double *weight;          /* [channels]: of the luminance */
+} writer;
+
+static double theta_of_place(double u)
+{
+    return u * u * (M_PI / 2.0);
+}
+
+/* ---- the distribution of normals ---- */
+
+/* The mean luminance, in logarithms, by theta_h, of half vectors off the plane of incidence. */
+static gonio_status find_luminance(const writer *w, double *luminance)
+{
+    enum { DIFFERENCES = 4 };
+    gonio_pair pair[NORMALS][DIFFERENCES];
+    double *value =
+        gonio_i_allocate(w->context, NORMALS * DIFFERENCES * w->view.channels, sizeof *value);
+    if (value == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    for (size_t k = 0; k < NORMALS; k++) {
+        const double theta_h = theta_of_place((double)k / (NORMALS - 1));
+        for (size_t j = 0; j < DIFFERENCES; j++) {
+            const double theta_d = (5.0 + 15.0 * (double)j) * M_PI / 180.0;
+            pair[k][j] = gonio_pair_from_half_difference(
+                (gonio_half_difference){theta_h, theta_d, M_PI / 2.0});
+        }
+    }
+    const gonio_status status = gonio_material_evaluate(w->context, w->material, pair[0],
+                                                        (size_t)NORMALS * DIFFERENCES, value);
+    double before = 1.0;
+    for (size_t k = 0; k < NORMALS && status == GONIO_OK; k++) {
+        double sum = 0.0;
+        int count = 0;
+        for (size_t j = 0; j < DIFFERENCES; j++) {
+            const double *at = value + (k * DIFFERENCES + j) * w->view.channels;
+            double here = 0.0;
+            for (size_t c = 0; c < w->channels; c++) {
+                const double v = at[w->view.channels == 1 ? 0 : c];
+                here += w->weight[c] * (v > 0.0 ? v : 0.0);
+            }
+            if (!isnan(at[0])) {
+                sum += log(here + 1e-6);
+                count++;
+            }
+        }
+        before = count > 0 ? exp(sum / count) : before;
+        luminance[k] = before;
+    }
+    free(value);
+    return status;
+}
+
+/* The solid angle and the cosine of half vectors around node k: the trapezoidal rule in u. */
+static double projected_angle(size_t k)
+{
+    const double u = (double)k / (NORMALS - 1);
+    const double end = k == 0 || k == NORMALS - 1 ? 0.5 : 1.0;
+    const double theta = theta_of_place(u);
+    return end * 2.0 * M_PI * sin(theta) * cos(theta) * M_PI * u / (NORMALS - 1);
+}
+
+static void add_power(const double *luminance, double power, double *density)
+{
+    double all = 0.0;
+    for (size_t k = 0; k < NORMALS; k++) {
+        all += pow(luminance[k], power) * projected_angle(k);
+    }
+    for (size_t k = 0; k < NORMALS; k++) {
+        density[k] += pow(luminance[k], power) / all;
+    }
+}
+
+/* Scaled so that the area projected along the normal is 1. */
+static gonio_status find_ndf(writer *w)
+{
+    static const double powers[] = {1.0, 0.5, 0.0};
+    double luminance[NORMALS];
+    double density[NORMALS] = {0.0};
+    double all = 0.0;
+    const gonio_status status = find_luminance(w, luminance);
+    for (size_t p = 0; p < sizeof powers / sizeof *powers && status == GONIO_OK; p++) {
+        add_power(luminance, powers[p], density);
+    }
+    for (size_t k = 0; k < NORMALS; k++) {
+        density[k] *= 0.5 * (1.0 + cos(theta_of_place((double)k / (NORMALS - 1))));
+        all += density[k] * projected_angle(k);
+    }
+    for (size_t k = 0; k < NORMALS && status == GONIO_OK; k++) {
+        w->ndf[0][k] = w->ndf[1][k] = (float)(density[k] / all);
+    }
+    return status;
+}
+
+/* <i, m>, with m at azimuth phi from i. */
+static double cosine_between(double theta_i, double theta_m, double phi)
+{
+    return sin(theta_i) * sin(theta_m) * cos(phi) + cos(theta_i) * cos(theta_m);
+}
+
+/* The area of all normals' facets that is seen from theta_i. */
+static double project(const writer *w, double theta_i)
+{
+    enum { AZIMUTHS = 256 };
+    double sum = 0.0;
+    for (size_t k = 0; k < NORMALS; k++) {
+        const double u = (double)k / (NORMALS - 1);
+        const double theta = theta_of_place(u);
+        const double end = k == 0 || k == NORMALS - 1 ? 0.5 : 1.0;
+        double seen = 0.0;
+        for (int a = 0; a < AZIMUTHS; a++) {
+            seen += fmax(cosine_between(theta_i, theta, 2.0 * M_PI * (a + 0.5) / AZIMUTHS), 0.0);
+        }
+        sum += end * (double)w->ndf[0][k] * seen * (2.0 * M_PI / AZIMUTHS) * sin(theta) * M_PI * u /
+               (NORMALS - 1);
+    }
+    return sum;
+}
+
+static void find_sigma(writer *w)
+{
+    for (size_t k = 0; k < NORMALS; k++) {
+        const double theta = theta_of_place((double)k / (NORMALS - 1));
+        w->sigma[0][k] = w->sigma[1][k] = (float)project(w, theta);
+    }
+}
+
+/* The density of visible normals over the square of (u, v), for each incidence. */
+static gonio_status find_vndf(writer *w)
+{
+    for (size_t t = 0; t < THETAS; t++) {
+        float *slice = w->vndf + t * NORMALS * NORMALS;
+        for (size_t y = 0; y < NORMALS; y++) {
+            const double phi = (2.0 * (double)y / (NORMALS - 1) - 1.0) * M_PI;
+            for (size_t x = 0; x < NORMALS; x++) {
+                const double u = (double)x / (NORMALS - 1);
+                const double theta = theta_of_place(u);
+                const double seen = fmax(cosine_between((double)w->theta[t], theta, phi), 0.0);
+                slice[y * NORMALS + x] = (float)((double)w->ndf[0][x] * seen * sin(theta) * u);
+            }
+        }
+    }
+    return gonio_i_warp_create(w->context, w->vndf, THETAS, NORMALS, NORMALS, &w->warp);
+}
+
+/* ---- the values ---- */
+
+/* A place of the grid over s: where it leads. */
+typedef struct place {
+    double factor; /* from rho to the file's value; negative below the horizon */
+    bool measured;
+} place;
+
+static double look_up_normal(const float *row, double u)
+{
+    const gonio_i_step x = gonio_i_step_evenly(NORMALS, u);
+    return (1.0 - x.share) * (double)row[x.before] + x.share * (double)row[x.before + 1];
+}
+
+static place aim(const writer *w, size_t t, size_t node, gonio_pair *pair)
+{
+    const gonio_i_blend blend = {1, {t}, {1.0}};
+    const double s[2] = {(double)(node % w->side) / (double)(w->side - 1),
+                         (double)(node / w->side) / (double)(w->side - 1)};
+    const double theta_i = (double)w->theta[t];
+    double u[2];
+    gonio_i_warp_sample(&w->warp, &blend, s, u);
+    const double theta = theta_of_place(u[0]);
+    const double phi = (2.0 * u[1] - 1.0) * M_PI;
+    const double m[3] = {sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta)};
+    const double twice = 2.0 * cosine_between(theta_i, theta, phi);
+    const double o[3] = {twice * m[0] - sin(theta_i), twice * m[1], twice * m[2] - cos(theta_i)};
+    const double theta_o = atan2(hypot(o[0], o[1]), o[2]);
+    *pair =
+        (gonio_pair){{fmin(theta_i, w->limit), 0.0}, {fmin(theta_o, w->limit), atan2(o[1], o[0])}};
+    const double area = look_up_normal(w->sigma[0], sqrt(theta_i * (2.0 / M_PI)));
+    return (place){4.0 * area * o[2] / look_up_normal(w->ndf[0], u[0]),
+                   theta_i <= w->limit && theta_o <= w->limit};
+}
+
+/* Empty places get the mean of their neighbours, ring by ring, in all channels. */
+static void fill_empty(double *value, size_t side, size_t channels, bool *known)
+{
+    const size_t nodes = side * side;
+    bool more = true;
+    while (more) {
+        bool found[COARSE * COARSE * 4] = {false};
+        more = false;
+        for (size_t node = 0; node < nodes; node++) {
+            const size_t x = node % side;
+            const size_t y = node / side;
+            const size_t around[4] = {x > 0 ? node - 1 : node, x + 1 < side ? node + 1 : node,
+                                      y > 0 ? node - side : node,
+                                      y + 1 < side ? node + side : node};
+            int count = 0;
+            for (int k = 0; k < 4 && !known[node]; k++) {
+                count += known[around[k]] ? 1 : 0;
+            }
+            for (size_t c = 0; c < channels && count > 0; c++) {
+                double sum = 0.0;
+                for (int k = 0; k < 4; k++) {
+                    sum += known[around[k]] ? value[around[k] * channels + c] : 0.0;
+                }
+                value[node * channels + c] = sum / count;
+            }
+            found[node] = count > 0;
+        }
+        for (size_t node = 0; node < nodes; node++) {
+            known[node] = known[node] || found[node];
+            more = more || found[node];
+        }
+    }
+}
+
+/* rho of an incidence at all places: [node][view.channels], holes filled. Of channels without data
+ * 0 if others have some. */
+static gonio_status read_incidence(const writer *w, const gonio_pair *pairs, double *rho,
+                                   bool *known)
+{
+    const size_t nodes = w->side * w->side;
+    const size_t channels = w->view.channels;
+    const gonio_status status = gonio_material_evaluate(w->context, w->material, pairs, nodes, rho);
+    bool any = false;
+    for (size_t k = 0; k < nodes && status == GONIO_OK; k++) {
+        known[k] = false;
+        for (size_t c = 0; c < channels; c++) {
+            known[k] = known[k] || !isnan(rho[k * channels + c]);
+        }
+        for (size_t c = 0; c < channels; c++) {
+            rho[k * channels + c] = isnan(rho[k * channels + c]) ? 0.0 : rho[k * channels + c];
+        }
+        any = any || known[k];
+    }
+    if (status == GONIO_OK && any) {
+        fill_empty(rho, w->side, channels, known);
+    }
+    return status;
+}
+
+static void store_incidence(writer *w, size_t t, const place *places, const double *rho)
+{
+    const size_t nodes = w->side * w->side;
+    const size_t channels = w->view.channels;
+    for (size_t k = 0; k < nodes; k++) {
+        double luminance = 0.0;
+        for (size_t c = 0; c < w->channels; c++) {
+            const double value = places[k].factor * rho[k * channels + (channels == 1 ? 0 : c)];
+            w->value[(t * w->channels + c) * nodes + k] = (float)value;
+            luminance += w->weight[c] * value;
+        }
+        w->luminance[t * nodes + k] = (float)fmax(luminance, 0.0);
+        if (places[k].measured) {
+            const size_t bit = t * nodes + k;
+            w->valid[bit / 8] = (unsigned char)(w->valid[bit / 8] | (0x80U >> (bit % 8)));
+        }
+    }
+}
+
+static gonio_status find_values(writer *w)
+{
+    const size_t nodes = w->side * w->side;
+    gonio_pair *pairs = gonio_i_allocate(w->context, nodes, sizeof *pairs);
+    place *places = gonio_i_allocate(w->context, nodes, sizeof *places);
+    double *rho = gonio_i_allocate(w->context, nodes * w->view.channels, sizeof *rho);
+    bool *known = gonio_i_allocate(w->context, nodes, sizeof *known);
+    gonio_status status = pairs != NULL && places != NULL && rho != NULL && known != NULL
+                              ? GONIO_OK
+                              : GONIO_ERROR_MEMORY;
+    for (size_t t = 0; t < THETAS && status == GONIO_OK; t++) {
+        for (size_t k = 0; k < nodes; k++) {
+            places[k] = aim(w, t, k, &pairs[k]);
+        }
+        status = read_incidence(w, pairs, rho, known);
+        if (status == GONIO_OK) {
+            store_incidence(w, t, places, rho);
+            status = gonio_i_progress(w->context, "writing", 0.99 * (double)(t + 1) / THETAS);
+        }
+    }
+    free(pairs);
+    free(places);
+    free(rho);
+    free(known);
+    return status;
+}
+
+/* ---- the file ---- */
+
+static gonio_status write_fields(const writer *w, const char *path)
+{
+    const float phi = 0.0F;
+    const uint32_t version[2] = {1, 0};
+    const unsigned char jacobian = 1;
+    float wavelength[GONIO_I_RGL_WAVELENGTHS];
+    const bool spectral = w->view.wavelength != NULL;
+    const uint64_t nodes = w->side * w->side;
+    for (size_t k = 0; spectral && k < w->channels; k++) {
+        wavelength[k] = (float)w->view.wavelength[k];
+    }
+    const gonio_i_tensor_field fields[] = {
+        {"version", GONIO_I_TENSOR_U32, 1, {2}, version},
+        {"description", GONIO_I_TENSOR_U8, 1, {strlen(w->view.name)}, w->view.name},
+        {"phi_i", GONIO_I_TENSOR_F32, 1, {1}, &phi},
+        {"theta_i", GONIO_I_TENSOR_F32, 1, {THETAS}, w->theta},
+        {"sigma", GONIO_I_TENSOR_F32, 2, {2, NORMALS}, w->sigma},
+        {"ndf", GONIO_I_TENSOR_F32, 2, {2, NORMALS}, w->ndf},
+        {"vndf", GONIO_I_TENSOR_F32, 4, {1, THETAS, NORMALS, NORMALS}, w->vndf},
+        {"luminance", GONIO_I_TENSOR_F32, 4, {1, THETAS, w->side, w->side}, w->luminance},
+        {spectral ? "spectra" : "rgb",
+         GONIO_I_TENSOR_F32,
+         5,
+         {1, THETAS, w->channels, w->side, w->side},
+         w->value},
+        {"jacobian", GONIO_I_TENSOR_U8, 1, {1}, &jacobian},
+        {"valid", GONIO_I_TENSOR_U8, 1, {THETAS * nodes / 8}, w->valid},
+        {"wavelengths", GONIO_I_TENSOR_F32, 1, {w->channels}, wavelength},
+    };
+    const size_t count = sizeof fields / sizeof *fields - (spectral ? 0 : 1);
+    return gonio_i_tensor_write(w->context, path, fields, count);
+}
+
+static gonio_status begin(writer *w)
+{
+    w->view = gonio_material_describe(w->material);
+    const bool spectral = w->view.wavelength != NULL;
+    if (w->view.anisotropic) {
+        return gonio_i_fail(w->context, GONIO_ERROR_ARGUMENT,
+                            "%s: an anisotropic material; gonio writes isotropic .bsdf files only",
+                            w->view.name);
+    }
+    if (w->view.channels > GONIO_I_RGL_WAVELENGTHS) {
+        return gonio_i_fail(w->context, GONIO_ERROR_ARGUMENT,
+                            "%s: %zu wavelengths; a .bsdf is written with at most %d", w->view.name,
+                            w->view.channels, GONIO_I_RGL_WAVELENGTHS);
+    }
+    w->channels = spectral ? w->view.channels : GONIO_CHANNELS;
+    w->side = spectral ? COARSE : SIDE;
+    w->limit = w->view.theta_limit > 0.0 ? fmin(w->view.theta_limit, STEEPEST) : STEEPEST;
+    for (size_t t = 0; t < THETAS; t++) {
+        w->theta[t] = (float)(M_PI / 2.0 * (double)t / (THETAS - 1));
+    }
+    const size_t nodes = w->side * w->side;
+    w->vndf = gonio_i_allocate(w->context, THETAS * NORMALS * NORMALS, sizeof *w->vndf);
+    w->value = gonio_i_allocate(w->context, THETAS * w->channels * nodes, sizeof *w->value);
+    w->luminance = gonio_i_allocate(w->context, THETAS * nodes, sizeof *w->luminance);
+    w->valid = gonio_i_allocate(w->context, THETAS * nodes / 8, sizeof *w->valid);
+    w->weight = gonio_i_allocate(w->context, w->channels, sizeof *w->weight);
+    if (w->vndf == NULL || w->value == NULL || w->luminance == NULL || w->valid == NULL ||
+        w->weight == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    static const double rgb[GONIO_CHANNELS] = {0.2126, 0.7152, 0.0722};
+    for (size_t c = 0; c < w->channels; c++) {
+        w->weight[c] = spectral ? 1.0 / (double)w->channels : rgb[c];
+    }
+    return GONIO_OK;
+}
+
+static void end(writer *w)
+{
+    gonio_i_warp_free(&w->warp);
+    free(w->vndf);
+    free(w->value);
+    free(w->luminance);
+    free(w->valid);
+    free(w->weight);
+}
+
+gonio_status gonio_material_write_rgl(gonio_context *context, const gonio_material *material,
+                                      const char *path)
+{
+    writer *w = gonio_i_allocate(context, 1, sizeof *w);
+    if (w == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    *w = (writer){.context = context, .material = material};
+    gonio_status status = begin(w);
+    if (status == GONIO_OK) {
+        status = find_ndf(w);
+    }
+    if (status == GONIO_OK) {
+        find_sigma(w);
+        status = find_vndf(w);
+    }
+    if (status == GONIO_OK) {
+        status = find_values(w);
+    }
+    if (status == GONIO_OK) {
+        status = write_fields(w, path);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_progress(context, "writing", 1.0);
+    }
+    end(w);
+    free(w);
+    return status;
+}
