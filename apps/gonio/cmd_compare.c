@@ -16,19 +16,15 @@ typedef struct options {
 /* `rendered` is NULL where there is none. */
 static void print_row(const char *name, const gonio_error *error, const gonio_image_error *rendered)
 {
-    printf("%-28s %9.3f %9.3f %9.4f", name, error->value[GONIO_E6], error->value[GONIO_CUBE_ROOT],
-           error->value[GONIO_LOG_RELATIVE_ERROR]);
+    const gonio_metric_view *metric = NULL;
+    printf("%-28s", name);
+    for (int m = 0; (metric = gonio_metric_describe(m)) != NULL; m++) {
+        printf(" %9.*f", metric->digits, error->value[m]);
+    }
     if (rendered != NULL) {
         printf(" %9.2f %9.3f", rendered->psnr, rendered->delta_e_itp);
     }
     putchar('\n');
-}
-
-static json_t *error_json(const gonio_error *error)
-{
-    return json_pack("{s:o, s:o, s:o}", "e6_percent", tool_json_number(error->value[GONIO_E6]),
-                     "cube_root_percent", tool_json_number(error->value[GONIO_CUBE_ROOT]),
-                     "log_relative", tool_json_number(error->value[GONIO_LOG_RELATIVE_ERROR]));
 }
 
 static json_t *comparison_json(const char *path, const gonio_comparison *c,
@@ -36,14 +32,24 @@ static json_t *comparison_json(const char *path, const gonio_comparison *c,
 {
     json_t *json = json_pack("{s:s, s:I, s:I, s:o, s:o, s:o, s:o}", "file", path, "bins",
                              (json_int_t)c->bins, "missing_bins", (json_int_t)c->missing, "all",
-                             error_json(&c->all), "R", error_json(&c->channel[0]), "G",
-                             error_json(&c->channel[1]), "B", error_json(&c->channel[2]));
+                             tool_error_json(&c->all), "R", tool_error_json(&c->channel[0]), "G",
+                             tool_error_json(&c->channel[1]), "B", tool_error_json(&c->channel[2]));
     if (json != NULL && rendered != NULL) {
         json_object_set_new(json, "rendered",
                             json_pack("{s:o, s:o}", "psnr_db", tool_json_number(rendered->psnr),
                                       "delta_e_itp", tool_json_number(rendered->delta_e_itp)));
     }
     return json;
+}
+
+static void print_headings(bool rendered)
+{
+    const gonio_metric_view *metric = NULL;
+    printf("%-28s", "");
+    for (int m = 0; (metric = gonio_metric_describe(m)) != NULL; m++) {
+        printf(" %9s", metric->heading);
+    }
+    puts(rendered ? "   PSNR dB    dE_ITP" : "");
 }
 
 static void print_comparison(const char *path, const gonio_comparison *c,
@@ -121,8 +127,9 @@ static gonio_status compare_readings(tool *t, const char *reference_path,
     }
     gonio_readings_free(&other);
     if (status == GONIO_OK && tool_json) {
-        json_array_append_new(results, json_pack("{s:s, s:I, s:o}", "file", path, "readings",
-                                                 (json_int_t)compared, "all", error_json(&error)));
+        json_array_append_new(results,
+                              json_pack("{s:s, s:I, s:o}", "file", path, "readings",
+                                        (json_int_t)compared, "all", tool_error_json(&error)));
     } else if (status == GONIO_OK) {
         print_row(path, &error, NULL);
         printf("  %zu readings compared\n", compared);
@@ -205,15 +212,6 @@ static bool check(const tool *t, const options *o, const char *reference, bool r
     return true;
 }
 
-static void print_heading(const options *o)
-{
-    printf("%-28s %9s %9s %9s", "", "E6 %", "cbrt %", "log-rel");
-    if (o->render) {
-        printf(" %9s %9s", "PSNR dB", "dE_ITP");
-    }
-    putchar('\n');
-}
-
 static int run(tool *t, void *given)
 {
     const options *o = given;
@@ -235,7 +233,7 @@ static int run(tool *t, void *given)
     }
     json_t *results = json_array();
     if (!tool_json) {
-        print_heading(o);
+        print_headings(o->render);
     }
     status = readings ? compare_all_readings(t, o, arguments, count, results)
                       : compare_all_tables(t, o, arguments, count, results);
@@ -245,6 +243,27 @@ static int run(tool *t, void *given)
     }
     json_decref(results);
     return tool_exit_code(status);
+}
+
+/* What the errors are; to be released with free(). */
+static char *help_text(void)
+{
+    char *text = NULL;
+    size_t size = 0;
+    const gonio_metric_view *metric = NULL;
+    FILE *stream = open_memstream(&text, &size);
+    if (stream == NULL) {
+        return NULL;
+    }
+    for (int m = 0; (metric = gonio_metric_describe(m)) != NULL; m++) {
+        fprintf(stream, "%s: %s.\n", metric->heading, metric->summary);
+    }
+    fputs(
+        "With --render, of tone-mapped spheres in the built-in studio: PSNR, and dE_ITP, the mean\n"
+        "Delta E_ITP (BT.2124; 1 can just be seen).",
+        stream);
+    fclose(stream);
+    return text;
 }
 
 int cmd_compare(int argc, const char **argv)
@@ -257,17 +276,13 @@ int cmd_compare(int argc, const char **argv)
         {"render", '\0', POPT_ARG_NONE, &o.render, 0, "Also render both and compare the renderings",
          NULL},
         TOOL_OPTIONS};
-    const tool_command_line line = {
-        .table = table,
-        .usage = "[OPTION...] REFERENCE OTHER...",
-        .text =
-            "E6: relative RMS of ln(1 + rho/s) over all valid bins (Ali et al., eq. 6), per cent.\n"
-            "cbrt: relative RMS of the cube root of rho cos cos (Fores et al. 2012), per cent.\n"
-            "log-rel: RMS of the log ratio, cosine-weighted (Nielsen et al. 2015).\n"
-            "With --render, of tone-mapped spheres in the built-in studio: PSNR, and dE_ITP, the "
-            "mean\n"
-            "Delta E_ITP (BT.2124; 1 can just be seen).",
-        .work = run,
-        .options = &o};
-    return tool_run(argc, argv, &line);
+    char *text = help_text();
+    const tool_command_line line = {.table = table,
+                                    .usage = "[OPTION...] REFERENCE OTHER...",
+                                    .text = text != NULL ? text : "",
+                                    .work = run,
+                                    .options = &o};
+    const int code = tool_run(argc, argv, &line);
+    free(text);
+    return code;
 }

@@ -16,6 +16,16 @@ json_t *tool_json_number(double value)
     return isfinite(value) ? json_real(value) : json_null();
 }
 
+json_t *tool_error_json(const gonio_error *error)
+{
+    json_t *json = json_object();
+    const gonio_metric_view *metric = NULL;
+    for (int m = 0; (metric = gonio_metric_describe(m)) != NULL; m++) {
+        json_object_set_new(json, metric->key, tool_json_number(error->value[m]));
+    }
+    return json;
+}
+
 int tool_print_json(const tool *t, json_t *json)
 {
     if (json == NULL) {

@@ -6,8 +6,19 @@
 
 #include "inputs.h"
 
-/* In the order of gonio_metric. */
-static const char *const metrics[] = {"e6", "cube-root", "log-relative", NULL};
+/* Whether a metric is one that plans can be made for; complains if it is not. */
+static bool check_metric(const tool *t, const char *name)
+{
+    const char *names[GONIO_MOST_METRICS + 1] = {NULL};
+    size_t count = 0;
+    int choice = 0;
+    for (int m = 0; gonio_metric_describe(m) != NULL; m++) {
+        if (gonio_metric_describe(m)->plannable) {
+            names[count++] = gonio_metric_describe(m)->name;
+        }
+    }
+    return tool_check_word(t, "--metric", name, names, &choice);
+}
 
 /* "3" or "3%"; -1 if it is neither, or not above 0. */
 static double percent(const char *text)
@@ -20,9 +31,7 @@ static double percent(const char *text)
 
 bool planning_options_check(const tool *t, const planning_options *o, const char *output)
 {
-    int metric = 0;
-    return tool_check_count(t, "-n", o->count, 1) &&
-           tool_check_word(t, "--metric", o->metric, metrics, &metric) &&
+    return tool_check_count(t, "-n", o->count, 1) && check_metric(t, o->metric) &&
            (o->target == NULL || percent(o->target) > 0.0 ||
             tool_refuse(t, "--target-error: '%s' is no error in per cent above 0", o->target)) &&
            (o->candidates == NULL || tool_check_output(t, output, &o->candidates, 1));
@@ -51,10 +60,8 @@ static gonio_status read_directions(const tool *t, const char *path, gonio_pair 
 gonio_status planning_options_apply(const tool *t, const planning_options *o,
                                     gonio_plan_options *how, gonio_pair **candidates)
 {
-    int metric = 0;
-    tool_check_word(t, "--metric", o->metric, metrics, &metric);
     how->count = (size_t)o->count;
-    how->metric = (gonio_metric)metric;
+    how->metric = (gonio_metric)gonio_metric_find(o->metric);
     how->target = o->target != NULL ? percent(o->target) : 0.0;
     *candidates = NULL;
     if (o->candidates == NULL) {

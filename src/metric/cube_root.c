@@ -31,8 +31,7 @@ const gonio_i_metric gonio_i_metric_cube_root = {
              .heading = "cbrt %",
              .title = "cube root",
              .unit = "%",
-             .summary =
-                 "relative RMS of the cube root of rho cos cos (Fores et al. 2012), per cent",
+             .summary = "relative RMS of the cube root of rho cos cos (Fores et al. 2012)",
              .digits = 3,
              .plannable = true},
     .terms = terms,

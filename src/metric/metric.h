@@ -14,7 +14,8 @@
 #define GONIO_I_METRICS(METRIC)                                                                    \
     METRIC(e6)                                                                                     \
     METRIC(cube_root)                                                                              \
-    METRIC(log_relative)
+    METRIC(log_relative)                                                                           \
+    METRIC(bias)
 
 /* Values of one channel that are compared. */
 typedef struct gonio_i_compared {
@@ -75,6 +76,9 @@ gonio_error gonio_i_error_of(const gonio_i_error_sums *sums, double values);
 /* Ways to finish: root mean square in per cent of the reference's; root mean square. */
 double gonio_i_relative_rms_percent(const gonio_i_metric_sums *sums, double values);
 double gonio_i_rms(const gonio_i_metric_sums *sums, double values);
+
+/* d = g - g' of each value, and g. */
+void gonio_i_log_terms(const gonio_i_compared *values, double *difference, double *reference);
 
 /* The proportion of terms that do not depend on the cosines: 1. */
 double gonio_i_independent(double cosines);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../core/core.h"
+#include "../core/vector_math.h"
 
 #define ROW(name) &gonio_i_metric_##name,
 static const gonio_i_metric *const metrics[] = {GONIO_I_METRICS(ROW)};

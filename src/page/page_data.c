@@ -70,19 +70,34 @@ json_t *gonio_i_web_material(const gonio_material *material, const gonio_table *
 
 /* ---- errors ---- */
 
-static json_t *error_json(const gonio_error *error)
+/* What the numbers of an error are, in their order. */
+static json_t *metrics(void)
 {
-    return json_pack("{s:o, s:o, s:o}", "e6", number(error->value[GONIO_E6]), "cubeRoot",
-                     number(error->value[GONIO_CUBE_ROOT]), "logRelative",
-                     number(error->value[GONIO_LOG_RELATIVE_ERROR]));
+    json_t *list = json_array();
+    const gonio_metric_view *metric = NULL;
+    for (int m = 0; (metric = gonio_metric_describe(m)) != NULL; m++) {
+        json_array_append_new(list, json_pack("{s:s, s:s, s:i, s:s}", "title", metric->title,
+                                              "unit", metric->unit, "digits", metric->digits,
+                                              "summary", metric->summary));
+    }
+    return list;
+}
+
+static json_t *error_numbers(const gonio_error *error)
+{
+    json_t *list = json_array();
+    for (int m = 0; gonio_metric_describe(m) != NULL; m++) {
+        json_array_append_new(list, number(error->value[m]));
+    }
+    return list;
 }
 
 json_t *gonio_i_web_comparison(const gonio_comparison *c)
 {
-    return json_pack("{s:I, s:I, s:o, s:[o,o,o]}", "bins", (json_int_t)c->bins, "missing",
-                     (json_int_t)c->missing, "all", error_json(&c->all), "channels",
-                     error_json(&c->channel[0]), error_json(&c->channel[1]),
-                     error_json(&c->channel[2]));
+    return json_pack("{s:I, s:I, s:o, s:o, s:[o,o,o]}", "bins", (json_int_t)c->bins, "missing",
+                     (json_int_t)c->missing, "metrics", metrics(), "all", error_numbers(&c->all),
+                     "channels", error_numbers(&c->channel[0]), error_numbers(&c->channel[1]),
+                     error_numbers(&c->channel[2]));
 }
 
 /* ---- readings ---- */

@@ -108,7 +108,7 @@ static void test_errors_between_readings(void **state)
                                {0.3, 0.2, 2},
                                {0.4, 0.4, 0},
                                {0.5, 0.6, 1}};
-    double sums[5] = {0.0};
+    double sums[6] = {0.0};
     for (size_t k = 0; k < 5; k++) {
         const double cosines = k < 3 ? cos(M_PI / 6.0) * cos(50.0 * M_PI / 180.0)
                                      : cos(M_PI / 9.0) * cos(70.0 * M_PI / 180.0);
@@ -117,6 +117,7 @@ static void test_errors_between_readings(void **state)
         const double cube = cbrt(pairs[k][0] * cosines);
         sums[0] += pow(g - log(1.0 + pairs[k][1] / s), 2.0);
         sums[1] += g * g;
+        sums[5] += log(1.0 + pairs[k][1] / s) - g;
         sums[2] += pow(cube - cbrt(pairs[k][1] * cosines), 2.0);
         sums[3] += cube * cube;
         sums[4] += pow(log((pairs[k][0] * cosines + 0.001) / (pairs[k][1] * cosines + 0.001)), 2.0);
@@ -128,10 +129,12 @@ static void test_errors_between_readings(void **state)
     assert_close(error.value[GONIO_E6], 100.0 * sqrt(sums[0] / sums[1]), 1e-9);
     assert_close(error.value[GONIO_CUBE_ROOT], 100.0 * sqrt(sums[2] / sums[3]), 1e-9);
     assert_close(error.value[GONIO_LOG_RELATIVE_ERROR], sqrt(sums[4] / 5.0), 1e-12);
+    assert_close(error.value[GONIO_BIAS], 100.0 * sums[5] / 5.0, 1e-9);
     assert_int_equal(gonio_compare_readings(NULL, a, a, NULL, &error, &compared), GONIO_OK);
     assert_int_equal(compared, 3);
-    assert_true(error.value[GONIO_E6] == 0.0 && error.value[GONIO_CUBE_ROOT] == 0.0 &&
-                error.value[GONIO_LOG_RELATIVE_ERROR] == 0.0);
+    for (int m = 0; gonio_metric_describe(m) != NULL; m++) {
+        assert_true(error.value[m] == 0.0);
+    }
     gonio_readings_free(&a);
     gonio_readings_free(&b);
 }

@@ -14,15 +14,21 @@ export interface Material {
     checks: [number, number, number, number, number, number][];
 }
 
-export interface ErrorNumbers {
-    e6: number | null;
-    cubeRoot: number | null;
-    logRelative: number | null;
+/** An error metric: digits are those worth showing after the decimal point. */
+export interface Metric {
+    title: string;
+    unit: string;
+    digits: number;
+    summary: string;
 }
+
+/** Errors in the order of the metrics. */
+export type ErrorNumbers = (number | null)[];
 
 export interface Comparison {
     bins: number;
     missing: number;
+    metrics: Metric[];
     all: ErrorNumbers;
     channels: [ErrorNumbers, ErrorNumbers, ErrorNumbers];
 }

@@ -1,25 +1,34 @@
 // Section 5: the errors that gonio compare finds.
 import { byId, element } from './controls';
-import type { Comparison, ErrorNumbers } from './data';
+import type { Comparison, ErrorNumbers, Metric } from './data';
 
-const text = (value: number | null, digits: number, unit: string) =>
-    value === null ? '–' : `${value.toFixed(digits)}${unit}`;
+const text = (value: number | null, metric: Metric) =>
+    value === null
+        ? '–'
+        : `${value.toFixed(metric.digits)}${metric.unit === '' ? '' : ` ${metric.unit}`}`;
 
-function row(name: string, e: ErrorNumbers): HTMLElement {
-    const cells = [text(e.e6, 3, ' %'), text(e.cubeRoot, 3, ' %'), text(e.logRelative, 4, '')];
+function row(name: string, errors: ErrorNumbers, metrics: Metric[]): HTMLElement {
     return element(
         'tr',
         {},
         element('th', { scope: 'row' }, name),
-        ...cells.map((c) => element('td', {}, c)),
+        ...metrics.map((metric, m) => element('td', {}, text(errors[m], metric))),
     );
 }
 
 export function showErrors(comparison: Comparison) {
-    byId('error-rows').replaceChildren(
-        row('all channels', comparison.all),
-        ...comparison.channels.map((e, k) => row('RGB'[k], e)),
+    const metrics = comparison.metrics;
+    byId('error-metrics').replaceChildren(
+        element('th', { scope: 'col' }),
+        ...metrics.map((metric) => element('th', { scope: 'col' }, metric.title)),
     );
+    byId('error-rows').replaceChildren(
+        row('all channels', comparison.all, metrics),
+        ...comparison.channels.map((e, k) => row('RGB'[k], e, metrics)),
+    );
+    byId('error-summaries').textContent = metrics
+        .map((metric) => `${metric.title}: ${metric.summary}.`)
+        .join(' ');
     const count = (value: number) => value.toLocaleString('en');
     byId('error-note').textContent =
         `${count(comparison.bins)} bins compared` +
