@@ -94,27 +94,32 @@ static bool is_posterior(const setting *s)
     return basis_of(s).mixtures;
 }
 
-static gonio_basis *learn(gonio_context *context, const setting *s, const json_t *names)
+/* The recipe for the kind of basis that a method is meant for. */
+static gonio_recipe recipe_of(const setting *s)
 {
     const gonio_plan_basis kind = basis_of(s);
-    const gonio_database_options grid = {
-        .representation = kind.representation, .channels = kind.channels, .mapping = kind.mapping};
-    const size_t largest = s->size[s->sizes - 1];
-    const gonio_basis_options how = {.mixtures = kind.mixtures ? GONIO_DEFAULT_MIXTURES : 0,
-                                     .without_mean = kind.without_mean,
-                                     .components = kind.mixtures                       ? 0
-                                                   : grid.representation == GONIO_FULL ? largest
-                                                                                       : 45};
-    gonio_database *database = NULL;
+    gonio_recipe recipe;
+    gonio_recipe_for_grid(&recipe, kind.representation);
+    recipe.channels = kind.channels;
+    recipe.mapping = kind.mapping;
+    recipe.without_mean = kind.without_mean;
+    if (!kind.mixtures) {
+        recipe.mixtures = 0;
+        recipe.components = kind.representation == GONIO_FULL ? s->size[s->sizes - 1] : 45;
+    }
+    return recipe;
+}
+
+static gonio_basis *learn(gonio_context *context, const setting *s, const json_t *names)
+{
+    const gonio_recipe recipe = recipe_of(s);
     gonio_basis *basis = NULL;
     char *path[MOST_MATERIALS];
     const size_t count = json_array_size(names);
     for (size_t k = 0; k < count; k++) {
         path[k] = path_of(s->folder, json_string_value(json_array_get(names, k)));
     }
-    check(gonio_database_create(context, (const char *const *)path, count, &grid, &database));
-    check(gonio_basis_learn(context, database, &how, &basis));
-    gonio_database_free(&database);
+    check(gonio_learn(context, (const char *const *)path, count, &recipe, &basis));
     for (size_t k = 0; k < count; k++) {
         free(path[k]);
     }

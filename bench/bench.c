@@ -108,17 +108,22 @@ static void find_materials(bench *b, const char *folder)
 }
 
 static gonio_basis *learn(gonio_context *context, char *const *paths, size_t count,
-                          size_t components, const gonio_database_options *how)
+                          const gonio_recipe *recipe)
 {
-    gonio_database *database = NULL;
     gonio_basis *basis = NULL;
-    const gonio_basis_options options = {.components = components};
-    check(gonio_database_create(context, (const char *const *)paths, count, how, &database) ==
-              GONIO_OK,
-          "reading materials");
-    check(gonio_basis_learn(context, database, &options, &basis) == GONIO_OK, "learning");
-    gonio_database_free(&database);
+    check(gonio_learn(context, (const char *const *)paths, count, recipe, &basis) == GONIO_OK,
+          "learning");
     return basis;
+}
+
+/* By the paper's recipe. */
+static gonio_basis *learn_paper(gonio_context *context, char *const *paths, size_t count,
+                                size_t components)
+{
+    gonio_recipe recipe;
+    gonio_recipe_paper(&recipe);
+    recipe.components = components;
+    return learn(context, paths, count, &recipe);
 }
 
 /* ---- planning ---- */
@@ -216,7 +221,7 @@ static void bench_plan_size(bench *b, const gonio_basis *basis, size_t k, size_t
 static void bench_plan(bench *b)
 {
     gonio_context *all = make_context(0);
-    gonio_basis *basis = learn(all, b->paths, BASIS_MATERIALS, 45, NULL);
+    gonio_basis *basis = learn_paper(all, b->paths, BASIS_MATERIALS, 45);
     bench_plan_size(b, basis, 35, 80);
     bench_plan_size(b, basis, 45, 170);
     double seconds[RUNS];
@@ -233,7 +238,7 @@ static void bench_starts(bench *b)
     enum { SEEDS = 20 };
     char name[128];
     gonio_context *all = make_context(0);
-    gonio_basis *basis = learn(all, b->paths, BASIS_MATERIALS, 35, NULL);
+    gonio_basis *basis = learn_paper(all, b->paths, BASIS_MATERIALS, 35);
     for (int start = 0; gonio_plan_start_name(start) != NULL; start++) {
         static const int restarts[] = {1, 5, 20};
         for (size_t r = 0; r < sizeof restarts / sizeof *restarts; r++) {
@@ -404,12 +409,12 @@ static int learn_as_child(char *const *arguments, size_t count)
     size_t components = 0;
     check(sscanf(arguments[0], "%15s %15s %zu", representation, channels, &components) == 3,
           "reading what to learn");
-    gonio_database_options how;
-    gonio_database_options_default(&how);
-    how.representation = strcmp(representation, "full") == 0 ? GONIO_FULL : GONIO_BIVARIATE;
+    gonio_recipe how;
+    gonio_recipe_for_grid(&how, strcmp(representation, "full") == 0 ? GONIO_FULL : GONIO_BIVARIATE);
+    how.components = components;
     how.channels = strcmp(channels, "separate") == 0 ? GONIO_SEPARATE : GONIO_JOINT;
     gonio_context *all = make_context(0);
-    gonio_basis *basis = learn(all, arguments + 1, count - 1, components, &how);
+    gonio_basis *basis = learn(all, arguments + 1, count - 1, &how);
     gonio_basis_free(&basis);
     gonio_context_free(&all);
     return 0;
@@ -490,7 +495,7 @@ static double learn_links_seconds(const char *folder, char *const *tables, size_
               "linking tables");
     }
     const double start = now();
-    gonio_basis *basis = learn(all, links, count, 45, NULL);
+    gonio_basis *basis = learn_paper(all, links, count, 45);
     const double seconds = now() - start;
     gonio_basis_free(&basis);
     for (size_t k = 0; k < count; k++) {
@@ -561,11 +566,11 @@ static void bench_full_plan(bench *b, const char *folder, gonio_channel_model ch
     char name[128];
     char *path = NULL;
     gonio_context *context = make_context(0);
-    gonio_database_options how;
-    gonio_database_options_default(&how);
-    how.representation = GONIO_FULL;
+    gonio_recipe how;
+    gonio_recipe_for_grid(&how, GONIO_FULL);
     how.channels = channels;
-    gonio_basis *basis = learn(context, b->paths, BASIS_MATERIALS, 60, &how);
+    how.components = 60;
+    gonio_basis *basis = learn(context, b->paths, BASIS_MATERIALS, &how);
     check(asprintf(&path, "%s/full.gonio", folder) > 0 &&
               gonio_basis_write(context, basis, NULL, path) == GONIO_OK,
           "writing a basis");
@@ -761,7 +766,54 @@ static void bench_reconstruct_many(bench *b, gonio_context *context, const gonio
 static void bench_reconstruct(bench *b)
 {
     gonio_context *all = make_context(0);
-    gonio_basis *basis = learn(all, b->paths, BASIS_MATERIALS, 35, NULL);
+    gonio_basis *basis = learn_paper(all, b->paths, BASIS_MATERIALS, 35);
+    char *folder = scratch_folder();
+    char *path = NULL;
+    check(asprintf(&path, "%s/table.binary", folder) > 0, "memory");
+    char *data = table_bytes(b, all, path);
+    bench_reconstruct_one(b, all, basis, path, data);
+    bench_reconstruct_many(b, all, basis, folder, data);
+    unlink(path);
+    rmdir(folder);
+    free(data);
+    free(path);
+    free(folder);
+    gonio_basis_free(&basis);
+    gonio_context_free(&all);
+}
+
+/* ---- the default method ---- */
+
+/* basis.gonio in a folder: what `gonio learn` makes of the first materials. */
+static void write_default_basis(const bench *b, const char *folder)
+{
+    gonio_context *context = make_context(0);
+    gonio_basis *basis = learn(context, b->paths, BASIS_MATERIALS, NULL);
+    char *path = NULL;
+    check(asprintf(&path, "%s/basis.gonio", folder) > 0 &&
+              gonio_basis_write(context, basis, NULL, path) == GONIO_OK,
+          "writing a basis");
+    write_readings(b, context, basis, folder);
+    double ratio[RUNS];
+    double seconds[RUNS];
+    for (int run = 0; run < RUNS; run++) {
+        make_room(folder);
+        const double plain = plain_writes_seconds(folder, data);
+        make_room(folder);
+        seconds[run] = command_seconds(folder, GONIO_PROGRAM
+                                       " reconstruct -q basis.gonio readings-*.csv -o out");
+        ratio[run] = seconds[run] / plain;
+    }
+    report(b, "reconstruct 100 materials in one command", median(seconds, RUNS), "s");
+    report(b, "reconstruct 100 materials: over plain write(2)", median(ratio, RUNS), "x");
+    command_seconds(folder, "rm -rf out basis.gonio plan.csv readings-*.csv");
+    free(path);
+}
+
+static void bench_reconstruct(bench *b)
+{
+    gonio_context *all = make_context(0);
+    gonio_basis *basis = learn_paper(all, b->paths, BASIS_MATERIALS, 35);
     char *folder = scratch_folder();
     char *path = NULL;
     check(asprintf(&path, "%s/table.binary", folder) > 0, "memory");

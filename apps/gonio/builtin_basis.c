@@ -45,9 +45,11 @@ static char *cache_folder(void)
 
 static gonio_status learn_atlas(tool *t, bool paper, gonio_basis **basis)
 {
-    const gonio_database_options kind = {.representation = paper ? GONIO_BIVARIATE : GONIO_SECTORED,
-                                         .channels = paper ? GONIO_JOINT : GONIO_SEPARATE};
-    const gonio_basis_options how = {.mixtures = paper ? 0 : GONIO_DEFAULT_MIXTURES};
+    gonio_recipe recipe;
+    gonio_recipe_default(&recipe);
+    if (paper) {
+        gonio_recipe_paper(&recipe);
+    }
     const int count = gonio_atlas_count();
     char **paths = calloc((size_t)count, sizeof *paths);
     gonio_status status = paths == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
@@ -55,15 +57,9 @@ static gonio_status learn_atlas(tool *t, bool paper, gonio_basis **basis)
         status = asprintf(&paths[k], "atlas:%s", gonio_atlas_name(k)) < 0 ? GONIO_ERROR_MEMORY
                                                                           : GONIO_OK;
     }
-    gonio_database *database = NULL;
     if (status == GONIO_OK) {
-        status = gonio_database_create(t->context, (const char *const *)paths, (size_t)count, &kind,
-                                       &database);
+        status = gonio_learn(t->context, (const char *const *)paths, (size_t)count, &recipe, basis);
     }
-    if (status == GONIO_OK) {
-        status = gonio_basis_learn(t->context, database, &how, basis);
-    }
-    gonio_database_free(&database);
     for (int k = 0; paths != NULL && k < count; k++) {
         free(paths[k]);
     }

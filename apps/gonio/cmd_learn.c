@@ -73,38 +73,28 @@ static int report(const tool *t, const gonio_basis *basis, const options *o)
     return 0;
 }
 
-/* Where mixtures serve, as many as are usual. */
-static size_t mixtures_of(const options *o, const gonio_database_options *how)
+static int learn(tool *t, const options *o, const material_list *list, const gonio_recipe *recipe)
 {
-    const bool usual = how->representation == GONIO_SECTORED && how->mapping == GONIO_LOG &&
-                       how->channels == GONIO_SEPARATE && !o->no_mean;
-    return o->mixtures != UNSET ? (size_t)o->mixtures : usual ? GONIO_DEFAULT_MIXTURES : 0;
-}
-
-static int learn(tool *t, const options *o, const material_list *list,
-                 const gonio_database_options *how)
-{
-    gonio_database *database = NULL;
     gonio_basis *basis = NULL;
-    const gonio_basis_options settings = {.components = (size_t)o->components,
-                                          .without_mean = o->no_mean,
-                                          .mixtures = mixtures_of(o, how),
-                                          .seed = (uint64_t)o->seed};
-    gonio_status status = gonio_database_create(t->context, (const char *const *)list->path,
-                                                list->count, how, &database);
-    if (status == GONIO_OK) {
-        status = gonio_basis_learn(t->context, database, &settings, &basis);
-    }
+    gonio_status status =
+        gonio_learn(t->context, (const char *const *)list->path, list->count, recipe, &basis);
     if (status == GONIO_OK) {
         status = gonio_basis_write(t->context, basis, t->command_line, o->output);
     }
     const int code = status == GONIO_OK ? report(t, basis, o) : tool_exit_code(status);
     gonio_basis_free(&basis);
-    gonio_database_free(&database);
     return code;
 }
 
-static bool choose_kind(const tool *t, const options *o, gonio_database_options *how)
+/* Whether a word is in a list that ends with NULL; the choice stays as it is without a word. */
+static bool choose(const tool *t, const char *option, const char *word, const char *const *words,
+                   int *choice)
+{
+    return word == NULL || tool_check_word(t, option, word, words, choice);
+}
+
+/* What is not said is as usual on the grid. */
+static bool choose_recipe(const tool *t, const options *o, gonio_recipe *recipe)
 {
     const char *const representations[] = {gonio_representation_name(GONIO_BIVARIATE),
                                            gonio_representation_name(GONIO_FULL),
@@ -113,33 +103,34 @@ static bool choose_kind(const tool *t, const options *o, gonio_database_options 
                                           gonio_channel_model_name(GONIO_SEPARATE), NULL};
     const char *const mappings[] = {gonio_mapping_name(GONIO_LOG),
                                     gonio_mapping_name(GONIO_LOG_RELATIVE), NULL};
-    int representation = 0;
-    int channels = 0;
-    int mapping = 0;
-    if (!tool_check_word(t, "--grid", o->representation, representations, &representation)) {
+    int representation = GONIO_SECTORED;
+    if (!choose(t, "--grid", o->representation, representations, &representation)) {
         return false;
     }
-    const char *usual =
-        gonio_channel_model_name(representation == GONIO_SECTORED ? GONIO_SEPARATE : GONIO_JOINT);
-    const char *wanted = o->channels != NULL ? o->channels : usual;
-    if (!tool_check_word(t, "--channels", wanted, channel_models, &channels) ||
-        !tool_check_word(t, "--mapping", o->mapping, mappings, &mapping)) {
+    gonio_recipe_for_grid(recipe, (gonio_representation)representation);
+    int channels = (int)recipe->channels;
+    int mapping = (int)recipe->mapping;
+    if (!choose(t, "--channels", o->channels, channel_models, &channels) ||
+        !choose(t, "--mapping", o->mapping, mappings, &mapping)) {
         return false;
     }
-    *how = (gonio_database_options){.representation = (gonio_representation)representation,
-                                    .channels = (gonio_channel_model)channels,
-                                    .mapping = (gonio_mapping)mapping};
+    recipe->channels = (gonio_channel_model)channels;
+    recipe->mapping = (gonio_mapping)mapping;
+    recipe->without_mean = o->no_mean;
+    recipe->components = (size_t)o->components;
+    recipe->mixtures = o->mixtures != UNSET ? (size_t)o->mixtures : recipe->mixtures;
+    recipe->seed = (uint64_t)o->seed;
     return true;
 }
 
-static bool check(const tool *t, const options *o, size_t count, gonio_database_options *how)
+static bool check(const tool *t, const options *o, size_t count, gonio_recipe *recipe)
 {
     if (count == 0) {
         return tool_refuse(t, "no materials given");
     }
     return tool_check_count(t, "--components", o->components, o->components == 0 ? 0 : 1) &&
            (o->mixtures == UNSET || tool_check_count(t, "--mixtures", o->mixtures, 0)) &&
-           choose_kind(t, o, how);
+           choose_recipe(t, o, recipe);
 }
 
 static gonio_status expect_materials(const tool *t, const material_list *list)
@@ -156,9 +147,9 @@ static int run(tool *t, void *given)
 {
     const options *o = given;
     size_t count = 0;
-    gonio_database_options how;
+    gonio_recipe recipe;
     const char **arguments = tool_arguments(t, &count);
-    if (!check(t, o, count, &how)) {
+    if (!check(t, o, count, &recipe)) {
         return EXIT_USAGE;
     }
     material_list list = {0};
@@ -172,7 +163,7 @@ static int run(tool *t, void *given)
         code = tool_exit_code(expect_materials(t, &list));
     }
     if (code == 0) {
-        code = learn(t, o, &list, &how);
+        code = learn(t, o, &list, &recipe);
     }
     material_list_free(&list);
     return code;
@@ -180,7 +171,7 @@ static int run(tool *t, void *given)
 
 int cmd_learn(int argc, const char **argv)
 {
-    options o = {.representation = "sectored", .mapping = "log", .mixtures = UNSET};
+    options o = {.mixtures = UNSET};
     const struct poptOption table[] = {
         {"output", 'o', POPT_ARG_STRING, &o.output, 0, "The basis file to write", "BASIS"},
         {"components", 'K', POPT_ARG_INT, &o.components, 0,

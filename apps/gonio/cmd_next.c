@@ -111,7 +111,8 @@ static int run(tool *t, void *given)
 
 int cmd_next(int argc, const char **argv)
 {
-    options o = {.planning = {.count = 5, .metric = "e6"}, .posterior = POSTERIOR_DEFAULTS};
+    options o = {.planning = {.count = PLANNING_USUAL_COUNT},
+                 .posterior = posterior_options_default()};
     const struct poptOption table[] = {
         {"output", 'o', POPT_ARG_STRING, &o.output, 0, "The plan to write (CSV)", "PLAN"},
         PLANNING_OPTIONS(

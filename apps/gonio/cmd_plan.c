@@ -4,13 +4,10 @@
 #include "json_output.h"
 #include "planning_options.h"
 
-#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum { USUAL_COUNT = 80, MOST_FOR_TARGET = 300, UNSET = INT_MIN };
 
 typedef struct options {
     const char *output;
@@ -90,12 +87,9 @@ static bool check(const tool *t, const options *o, size_t count, const char **ar
 
 static int run(tool *t, void *given)
 {
-    options *o = given;
+    const options *o = given;
     size_t count = 0;
     const char **arguments = tool_arguments(t, &count);
-    if (o->planning.count == UNSET) {
-        o->planning.count = o->planning.target != NULL ? MOST_FOR_TARGET : USUAL_COUNT;
-    }
     if (!check(t, o, count, arguments)) {
         return EXIT_USAGE;
     }
@@ -114,10 +108,12 @@ static int run(tool *t, void *given)
 
 int cmd_plan(int argc, const char **argv)
 {
-    options o = {.planning = {.count = UNSET, .metric = "e6"},
-                 .start = "random",
-                 .restarts = 5,
-                 .phi_d = 90.0};
+    gonio_plan_options usual;
+    gonio_plan_options_default(&usual);
+    options o = {.planning = {.count = PLANNING_USUAL_COUNT},
+                 .start = usual.start,
+                 .restarts = usual.restarts,
+                 .phi_d = usual.phi_d * 180.0 / M_PI};
     const struct poptOption table[] = {
         {"output", 'o', POPT_ARG_STRING, &o.output, 0, "The plan to write (CSV)", "PLAN"},
         PLANNING_OPTIONS(&o.planning,

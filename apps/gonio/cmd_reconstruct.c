@@ -402,7 +402,9 @@ static int run(tool *t, void *given)
 
 int cmd_reconstruct(int argc, const char **argv)
 {
-    options o = {.eta = 40.0, .posterior = POSTERIOR_DEFAULTS};
+    gonio_reconstruct_options usual;
+    gonio_reconstruct_options_default(&usual);
+    options o = {.eta = usual.eta, .posterior = posterior_options_default()};
     const struct poptOption table[] = {
         {"output", 'o', POPT_ARG_STRING, &o.output, 0,
          "The MERL .binary table to write, or a folder for NAME.binary", "OUT"},

@@ -31,7 +31,8 @@ static double percent(const char *text)
 
 bool planning_options_check(const tool *t, const planning_options *o, const char *output)
 {
-    return tool_check_count(t, "-n", o->count, 1) && check_metric(t, o->metric) &&
+    return (o->count == PLANNING_USUAL_COUNT || tool_check_count(t, "-n", o->count, 1)) &&
+           (o->metric == NULL || check_metric(t, o->metric)) &&
            (o->target == NULL || percent(o->target) > 0.0 ||
             tool_refuse(t, "--target-error: '%s' is no error in per cent above 0", o->target)) &&
            (o->candidates == NULL || tool_check_output(t, output, &o->candidates, 1));
@@ -60,8 +61,8 @@ static gonio_status read_directions(const tool *t, const char *path, gonio_pair 
 gonio_status planning_options_apply(const tool *t, const planning_options *o,
                                     gonio_plan_options *how, gonio_pair **candidates)
 {
-    how->count = (size_t)o->count;
-    how->metric = (gonio_metric)gonio_metric_find(o->metric);
+    how->count = o->count != PLANNING_USUAL_COUNT ? (size_t)o->count : how->count;
+    how->metric = o->metric != NULL ? (gonio_metric)gonio_metric_find(o->metric) : how->metric;
     how->target = o->target != NULL ? percent(o->target) : 0.0;
     *candidates = NULL;
     if (o->candidates == NULL) {

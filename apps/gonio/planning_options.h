@@ -2,13 +2,18 @@
 #ifndef GONIO_PLANNING_OPTIONS_H
 #define GONIO_PLANNING_OPTIONS_H
 
+#include <limits.h>
+
 #include "command_line.h"
 
+/* The library's default count. */
+enum { PLANNING_USUAL_COUNT = INT_MIN };
+
 typedef struct planning_options {
-    int count;
+    int count;              /* or PLANNING_USUAL_COUNT */
     const char *target;     /* per cent; NULL: none */
     const char *candidates; /* a file of directions; NULL: any */
-    const char *metric;
+    const char *metric;     /* NULL: the library's default */
 } planning_options;
 
 /* Rows of an option table. `number` and `target_error`: what the help says of the first two. */

@@ -11,10 +11,8 @@ typedef struct posterior_options {
     int no_checks;
 } posterior_options;
 
-#define POSTERIOR_DEFAULTS                                                                         \
-    {                                                                                              \
-        .noise = 1.0, .floor = 1e-5                                                                \
-    }
+/* The library's defaults. */
+posterior_options posterior_options_default(void);
 
 /* Rows of an option table. */
 #define POSTERIOR_OPTIONS(o)                                                                       \

@@ -35,12 +35,18 @@ enum { GONIO_DEFAULT_MIXTURES = 1000, GONIO_MIXTURE_COMPONENTS = 300 };
 
 enum { GONIO_DEFAULT_COMPONENTS = 45 };
 
+/* Number of mixtures: GONIO_DEFAULT_MIXTURES on the sectored grid with separate channels, the log
+ * mapping and a mean; none otherwise. */
+#define GONIO_USUAL_MIXTURES SIZE_MAX
+
 typedef struct gonio_basis_options {
-    size_t components;    /* K; 0 for the smaller of 45 and columns - 1, without mean all columns */
+    size_t components;    /* K; 0 for 300 with mixtures, 45 without, or as many as there are;
+                           * without mean all of them */
     const size_t *subset; /* learn from these materials of the database only; NULL for all */
     size_t subset_count;
     bool without_mean; /* components of H itself: all of them span the materials */
-    size_t mixtures;   /* made-up columns beside the measured ones, see below; 0 by default */
+    size_t mixtures;   /* made-up columns beside the measured ones; GONIO_USUAL_MIXTURES by
+                        * default */
     uint64_t seed;     /* of the mixtures */
 } gonio_basis_options;
 
@@ -54,6 +60,36 @@ GONIO_API void gonio_basis_options_default(gonio_basis_options *options);
  * than K dimensions; _MEMORY; those of gonio_database_read_rows. */
 GONIO_API gonio_status gonio_basis_learn(gonio_context *context, const gonio_database *database,
                                          const gonio_basis_options *options, gonio_basis **basis);
+
+/* How a basis is learned from materials. Set one by a function below, then change fields. */
+typedef struct gonio_recipe {
+    size_t size; /* of this struct */
+    gonio_representation representation;
+    gonio_channel_model channels;
+    gonio_mapping mapping;
+    bool without_mean;   /* as in gonio_basis_options, as are the next three */
+    size_t components;   /* 0 by default */
+    size_t mixtures;     /* GONIO_USUAL_MIXTURES by default */
+    uint64_t seed;       /* of the mixtures; 0 by default */
+    const char *scratch; /* folder for scratch files; NULL for $TMPDIR or /tmp */
+} gonio_recipe;
+
+/* The default recipe: sectored, separate, 1000 mixtures, 300 components. */
+GONIO_API void gonio_recipe_default(gonio_recipe *recipe);
+
+/* The paper's: bivariate, joint, no mixtures, 45 components. */
+GONIO_API void gonio_recipe_paper(gonio_recipe *recipe);
+
+/* What is usual on a grid: separate channels if it is sectored, joint ones otherwise. The two above
+ * are those of the sectored and the bivariate grid. */
+GONIO_API void gonio_recipe_for_grid(gonio_recipe *recipe, gonio_representation representation);
+
+/* Learns a basis from the materials at paths[count] (as gonio_material_open takes them), in their
+ * order. recipe may be NULL for the default one. *basis is the caller's, and is set on success
+ * only. The result does not depend on the number of threads. Errors: _ARGUMENT (a recipe that was
+ * not set by one of the functions above); those of gonio_database_create and gonio_basis_learn. */
+GONIO_API gonio_status gonio_learn(gonio_context *context, const char *const *paths, size_t count,
+                                   const gonio_recipe *recipe, gonio_basis **basis);
 
 GONIO_API void gonio_basis_free(gonio_basis **basis);
 

@@ -114,7 +114,7 @@ typedef struct gonio_database_options {
     gonio_mapping mapping;
 } gonio_database_options;
 
-/* Bivariate, joint, log: the paper's. */
+/* Sectored, separate, log. */
 GONIO_API void gonio_database_options_default(gonio_database_options *options);
 
 /* Reads the materials at the given paths (as gonio_material_open takes them), several at a time.

@@ -49,12 +49,15 @@ typedef struct gonio_plan {
                                * each reading, per cent; NULL by other methods */
 } gonio_plan;
 
+/* Number of readings: 80; with a target error 300 at most; of gonio_plan_next 5. */
+#define GONIO_USUAL_COUNT SIZE_MAX
+
 typedef struct gonio_plan_options {
     const char *method; /* NULL: what suits the basis, expected-error for one with mixtures and
                          * condition for others; gonio_plan_method_name */
     const char *start;  /* of the swaps: "random" (default): gonio_plan_start_name */
     size_t components;  /* K; 0 for all of the basis, with nielsen and frost for n if it is less */
-    size_t count;       /* n, rows to choose; 80 by default */
+    size_t count;       /* n, rows to choose; GONIO_USUAL_COUNT by default */
     int restarts;       /* starts of swaps, of which the best is kept; 5 by default */
     uint64_t seed;      /* same seed, same plan, on any number of threads */
     bool keep_history;  /* true by default; a search of very many starts may do without */

@@ -43,7 +43,7 @@ typedef struct learner {
 
 void gonio_basis_options_default(gonio_basis_options *options)
 {
-    *options = (gonio_basis_options){0};
+    *options = (gonio_basis_options){.mixtures = GONIO_USUAL_MIXTURES};
 }
 
 /* What a thread works on. */
@@ -478,6 +478,16 @@ static gonio_status learn(learner *l, const gonio_basis_options *options)
     return status;
 }
 
+/* Where mixtures serve, as many as are usual. */
+static size_t count_mixtures(const gonio_database_view *view, const gonio_basis_options *options)
+{
+    const bool usual = view->representation == GONIO_SECTORED && view->mapping == GONIO_LOG &&
+                       view->channels == GONIO_SEPARATE && !options->without_mean;
+    return options->mixtures != GONIO_USUAL_MIXTURES ? options->mixtures
+           : usual                                   ? GONIO_DEFAULT_MIXTURES
+                                                     : 0;
+}
+
 /* The kinds of bases that mixtures are made for. */
 static gonio_status check_mixtures(gonio_context *context, const gonio_database_view *view,
                                    const gonio_basis_options *options)
@@ -517,11 +527,13 @@ static gonio_status choose_components(gonio_context *context, size_t columns,
 gonio_status gonio_basis_learn(gonio_context *context, const gonio_database *database,
                                const gonio_basis_options *options, gonio_basis **basis)
 {
-    gonio_basis_options defaults;
-    gonio_basis_options_default(&defaults);
-    options = options != NULL ? options : &defaults;
+    gonio_basis_options how;
+    gonio_basis_options_default(&how);
+    how = options != NULL ? *options : how;
+    options = &how;
     learner l = {.context = context, .database = database, .subset = options->subset};
     l.view = gonio_database_describe(database);
+    how.mixtures = count_mixtures(&l.view, &how);
     l.materials = l.subset != NULL ? options->subset_count : l.view.materials;
     l.measured = l.view.columns / l.view.materials * l.materials;
     l.columns = l.measured + options->mixtures;

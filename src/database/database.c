@@ -52,7 +52,8 @@ struct gonio_database {
 
 void gonio_database_options_default(gonio_database_options *options)
 {
-    *options = (gonio_database_options){0};
+    *options =
+        (gonio_database_options){.representation = GONIO_SECTORED, .channels = GONIO_SEPARATE};
 }
 
 /* ---- tiles ---- */
@@ -535,8 +536,10 @@ static gonio_status create(gonio_context *context, const sources *from, size_t c
     if (count == 0) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "no materials given");
     }
-    if (options != NULL && options->representation == GONIO_SECTORED &&
-        options->mapping == GONIO_LOG_RELATIVE) {
+    gonio_database_options defaults;
+    gonio_database_options_default(&defaults);
+    options = options != NULL ? options : &defaults;
+    if (options->representation == GONIO_SECTORED && options->mapping == GONIO_LOG_RELATIVE) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
                             "the relative mapping is for the full and the bivariate grid, not for "
                             "sectors (gonio learn --grid full)");
@@ -545,9 +548,7 @@ static gonio_status create(gonio_context *context, const sources *from, size_t c
     if (made == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    if (options != NULL) {
-        made->options = *options;
-    }
+    made->options = *options;
     gonio_i_scratch_init(&made->scratch);
     made->materials = count;
     made->names = gonio_i_allocate(context, count, sizeof *made->names);

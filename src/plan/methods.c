@@ -54,8 +54,21 @@ bool gonio_plan_method_basis(const char *method, gonio_plan_basis *basis)
 
 void gonio_plan_options_default(gonio_plan_options *options)
 {
-    *options = (gonio_plan_options){
-        .count = 80, .restarts = 5, .keep_history = true, .start = "random", .phi_d = M_PI / 2.0};
+    *options = (gonio_plan_options){.count = GONIO_USUAL_COUNT,
+                                    .restarts = 5,
+                                    .keep_history = true,
+                                    .start = "random",
+                                    .phi_d = M_PI / 2.0};
+}
+
+/* The options with the number of readings that is usual, unless another was asked for. */
+static gonio_plan_options counted(const gonio_plan_options *asked)
+{
+    gonio_plan_options options = *asked;
+    if (options.count == GONIO_USUAL_COUNT) {
+        options.count = options.target > 0.0 ? 300 : 80;
+    }
+    return options;
 }
 
 /* The first that is made for bases with mixtures, or for those without. */
@@ -156,21 +169,22 @@ static gonio_status select_rows(const gonio_i_method *method, gonio_i_selection_
 }
 
 gonio_status gonio_plan_select(gonio_context *context, const double *vectors, size_t rows,
-                               size_t leading, size_t components, const gonio_plan_options *options,
+                               size_t leading, size_t components, const gonio_plan_options *asked,
                                size_t *chosen, gonio_selection_report *report)
 {
+    const gonio_plan_options options = counted(asked);
     gonio_i_selection_problem problem = {.context = context,
                                          .vectors = vectors,
                                          .rows = rows,
                                          .components = components,
                                          .stride = leading};
     const gonio_i_method *method = NULL;
-    gonio_status status = choose_method(context, NULL, options, &method);
+    gonio_status status = choose_method(context, NULL, &options, &method);
     if (status == GONIO_OK && method->select == NULL) {
         status = gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
                               "%s works on a basis, not on bare rows", method->name);
     }
-    return status == GONIO_OK ? select_rows(method, &problem, options, chosen, report) : status;
+    return status == GONIO_OK ? select_rows(method, &problem, &options, chosen, report) : status;
 }
 
 /* ---- plans of rows ---- */
@@ -269,14 +283,15 @@ static gonio_status plan_rows(gonio_context *context, const gonio_i_method *meth
 }
 
 gonio_status gonio_plan_create(gonio_context *context, const gonio_basis *basis,
-                               const gonio_plan_options *options, gonio_plan **plan)
+                               const gonio_plan_options *asked, gonio_plan **plan)
 {
+    const gonio_plan_options options = counted(asked);
     const gonio_basis_view view = gonio_basis_describe(basis);
     const gonio_i_method *method = NULL;
-    const gonio_status status = choose_method(context, &view, options, &method);
+    const gonio_status status = choose_method(context, &view, &options, &method);
     if (status != GONIO_OK) {
         return status;
     }
-    return method->select != NULL ? plan_rows(context, method, basis, options, plan)
-                                  : method->plan(context, basis, options, plan);
+    return method->select != NULL ? plan_rows(context, method, basis, &options, plan)
+                                  : method->plan(context, basis, &options, plan);
 }

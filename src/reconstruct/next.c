@@ -107,6 +107,7 @@ gonio_status gonio_plan_next(gonio_context *context, const gonio_basis *basis,
                                      n.posterior.predicted_by_variance,
                                      n.posterior.norm};
         gonio_plan_options all = *plan_options;
+        all.count = all.count != GONIO_USUAL_COUNT ? all.count : 5;
         all.target = 0.0; /* what was read counts; the plan is as long as asked for */
         status = gonio_i_expected_error_next(context, basis, &all, &known, plan);
     }

@@ -11,7 +11,7 @@
 
 void gonio_reconstruct_options_default(gonio_reconstruct_options *options)
 {
-    *options = (gonio_reconstruct_options){.noise = 0.01, .floor = 1e-5};
+    *options = (gonio_reconstruct_options){.eta = 40.0, .noise = 0.01, .floor = 1e-5};
 }
 
 /* ---- methods ---- */

@@ -12,16 +12,16 @@ int main(void)
         paths[k] = names[k];
     }
     gonio_context *context = NULL;
-    gonio_database *database = NULL;
+    gonio_recipe recipe;
     gonio_basis *basis = NULL;
     gonio_plan *plan = NULL;
     gonio_plan_options options;
+    gonio_recipe_paper(&recipe);
     gonio_plan_options_default(&options);
     options.count = 8;
     int code = 1;
     if (gonio_context_create(&context, NULL) == GONIO_OK &&
-        gonio_database_create(context, paths, 5, NULL, &database) == GONIO_OK &&
-        gonio_basis_learn(context, database, NULL, &basis) == GONIO_OK &&
+        gonio_learn(context, paths, 5, &recipe, &basis) == GONIO_OK &&
         gonio_plan_create(context, basis, &options, &plan) == GONIO_OK) {
         printf("gonio %s: %zu readings, condition number %.3f\n", gonio_version(), plan->count,
                plan->condition_number);
@@ -29,7 +29,6 @@ int main(void)
     }
     gonio_plan_free(&plan);
     gonio_basis_free(&basis);
-    gonio_database_free(&database);
     gonio_context_free(&context);
     return code;
 }

@@ -50,14 +50,13 @@ static gonio_i_prior *prior;
 
 static gonio_basis *learn(size_t materials, size_t mixtures)
 {
-    const gonio_database_options how = {.representation = GONIO_BIVARIATE,
-                                        .channels = GONIO_SEPARATE};
-    const gonio_basis_options options = {.mixtures = mixtures, .seed = 3};
-    gonio_database *database = NULL;
+    gonio_recipe recipe;
     gonio_basis *made = NULL;
-    assert_int_equal(gonio_database_create(context, names, materials, &how, &database), GONIO_OK);
-    assert_int_equal(gonio_basis_learn(context, database, &options, &made), GONIO_OK);
-    gonio_database_free(&database);
+    gonio_recipe_for_grid(&recipe, GONIO_BIVARIATE);
+    recipe.channels = GONIO_SEPARATE;
+    recipe.mixtures = mixtures;
+    recipe.seed = 3;
+    assert_int_equal(gonio_learn(context, names, materials, &recipe, &made), GONIO_OK);
     return made;
 }
 

@@ -41,22 +41,15 @@ static int tear_down(void **state)
 /* As gonio learn makes it of these materials. */
 static gonio_basis *learn(json_t *names)
 {
-    const gonio_database_options how = {.representation = GONIO_SECTORED,
-                                        .channels = GONIO_SEPARATE};
-    const gonio_basis_options options = {.mixtures = GONIO_DEFAULT_MIXTURES};
     const size_t count = json_array_size(names);
     char *paths[MATERIALS];
     for (size_t k = 0; k < count; k++) {
         assert_true(asprintf(&paths[k], "%s/data/neural-merl/%s.h5", support_shared(),
                              json_string_value(json_array_get(names, k))) > 0);
     }
-    gonio_database *database = NULL;
     gonio_basis *basis = NULL;
-    assert_int_equal(
-        gonio_database_create(context, (const char *const *)paths, count, &how, &database),
-        GONIO_OK);
-    assert_int_equal(gonio_basis_learn(context, database, &options, &basis), GONIO_OK);
-    gonio_database_free(&database);
+    assert_int_equal(gonio_learn(context, (const char *const *)paths, count, NULL, &basis),
+                     GONIO_OK);
     for (size_t k = 0; k < count; k++) {
         free(paths[k]);
     }

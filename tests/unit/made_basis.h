@@ -23,11 +23,13 @@ static inline gonio_database *made_database(gonio_representation representation,
 static inline gonio_basis *made_basis(gonio_context *context, gonio_representation representation,
                                       gonio_channel_model channels, uint64_t seed)
 {
-    const gonio_basis_options options = {.mixtures = MADE_MIXTURES, .seed = seed};
-    gonio_database *database = made_database(representation, channels);
+    gonio_recipe recipe;
     gonio_basis *basis = NULL;
-    assert_int_equal(gonio_basis_learn(context, database, &options, &basis), GONIO_OK);
-    gonio_database_free(&database);
+    gonio_recipe_for_grid(&recipe, representation);
+    recipe.channels = channels;
+    recipe.mixtures = MADE_MIXTURES;
+    recipe.seed = seed;
+    assert_int_equal(gonio_learn(context, made_paths, MADE_MATERIALS, &recipe, &basis), GONIO_OK);
     return basis;
 }
 
