@@ -793,63 +793,7 @@ static void write_default_basis(const bench *b, const char *folder)
     check(asprintf(&path, "%s/basis.gonio", folder) > 0 &&
               gonio_basis_write(context, basis, NULL, path) == GONIO_OK,
           "writing a basis");
-    write_readings(b, context, basis, folder);
-    double ratio[RUNS];
-    double seconds[RUNS];
-    for (int run = 0; run < RUNS; run++) {
-        make_room(folder);
-        const double plain = plain_writes_seconds(folder, data);
-        make_room(folder);
-        seconds[run] = command_seconds(folder, GONIO_PROGRAM
-                                       " reconstruct -q basis.gonio readings-*.csv -o out");
-        ratio[run] = seconds[run] / plain;
-    }
-    report(b, "reconstruct 100 materials in one command", median(seconds, RUNS), "s");
-    report(b, "reconstruct 100 materials: over plain write(2)", median(ratio, RUNS), "x");
-    command_seconds(folder, "rm -rf out basis.gonio plan.csv readings-*.csv");
-    free(path);
-}
-
-static void bench_reconstruct(bench *b)
-{
-    gonio_context *all = make_context(0);
-    gonio_basis *basis = learn_paper(all, b->paths, BASIS_MATERIALS, 35);
-    char *folder = scratch_folder();
-    char *path = NULL;
-    check(asprintf(&path, "%s/table.binary", folder) > 0, "memory");
-    char *data = table_bytes(b, all, path);
-    bench_reconstruct_one(b, all, basis, path, data);
-    bench_reconstruct_many(b, all, basis, folder, data);
-    unlink(path);
-    rmdir(folder);
-    free(data);
-    free(path);
-    free(folder);
     gonio_basis_free(&basis);
-    gonio_context_free(&all);
-}
-
-/* ---- the default method ---- */
-
-/* basis.gonio in a folder: what `gonio learn` makes of the first materials. */
-static void write_default_basis(const bench *b, const char *folder)
-{
-    const gonio_database_options grid = {.representation = GONIO_SECTORED,
-                                         .channels = GONIO_SEPARATE};
-    const gonio_basis_options how = {.mixtures = GONIO_DEFAULT_MIXTURES};
-    gonio_context *context = make_context(0);
-    gonio_database *database = NULL;
-    gonio_basis *basis = NULL;
-    char *path = NULL;
-    check(gonio_database_create(context, (const char *const *)b->paths, BASIS_MATERIALS, &grid,
-                                &database) == GONIO_OK &&
-              gonio_basis_learn(context, database, &how, &basis) == GONIO_OK,
-          "learning");
-    check(asprintf(&path, "%s/basis.gonio", folder) > 0 &&
-              gonio_basis_write(context, basis, NULL, path) == GONIO_OK,
-          "writing a basis");
-    gonio_basis_free(&basis);
-    gonio_database_free(&database);
     gonio_context_free(&context);
     free(path);
 }

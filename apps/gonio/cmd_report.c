@@ -53,7 +53,7 @@ static gonio_status write_page(const tool *t, const options *o, const shown *s)
         status = read_readings(t, o->readings, &readings);
     }
     const gonio_page_content content = {materials[0], materials[1], materials[2], readings,
-                                          s->folder};
+                                        s->folder};
     if (status == GONIO_OK) {
         status = gonio_page_write(t->context, &content, o->output);
     }

@@ -129,9 +129,11 @@ GONIO_API gonio_status gonio_database_create(gonio_context *context, const char 
 /* The same from materials in memory, or opened already; their names are the columns'. Several
  * threads read at a time, each its own material. The materials stay the caller's and are not needed
  * afterwards. Errors: as gonio_database_create, but for those of gonio_material_open. */
-GONIO_API gonio_status gonio_database_create_from_materials(
-    gonio_context *context, const gonio_material *const *materials, size_t count,
-    const gonio_database_options *options, gonio_database **database);
+GONIO_API gonio_status gonio_database_create_from_materials(gonio_context *context,
+                                                            const gonio_material *const *materials,
+                                                            size_t count,
+                                                            const gonio_database_options *options,
+                                                            gonio_database **database);
 
 GONIO_API void gonio_database_free(gonio_database **database);
 

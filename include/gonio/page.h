@@ -30,8 +30,8 @@ GONIO_API bool gonio_page_is_built(void);
  * nothing to show, a reconstruction without a reference, deviations without a reconstruction;
  * _DATA and _FORMAT for a folder without tables, or with others; those of gonio_compare and of the
  * materials; _MEMORY; _CANCELLED. */
-GONIO_API gonio_status gonio_page_write(gonio_context *context,
-                                          const gonio_page_content *content, const char *path);
+GONIO_API gonio_status gonio_page_write(gonio_context *context, const gonio_page_content *content,
+                                        const char *path);
 
 #ifdef __cplusplus
 }

@@ -110,8 +110,10 @@ static int set_up(void **state)
     for (size_t k = 0; k < MATERIALS; k++) {
         paths[k] = path_of(json_string_value(json_array_get(names, k)));
     }
+    const gonio_database_options grid = {.representation = GONIO_BIVARIATE,
+                                         .channels = GONIO_JOINT};
     assert_int_equal(gonio_database_create(data.context, (const char *const *)paths, MATERIALS,
-                                           NULL, &data.database),
+                                           &grid, &data.database),
                      GONIO_OK);
     data.view = gonio_database_describe(data.database);
     data.summaries = calloc(MATERIALS, sizeof *data.summaries);

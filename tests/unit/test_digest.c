@@ -28,7 +28,9 @@ static int set_up(void **state)
 {
     (void)state;
     const gonio_basis_options options = {.components = COMPONENTS};
-    assert_int_equal(gonio_database_create(NULL, paths, PATHS, NULL, &data.database), GONIO_OK);
+    const gonio_database_options grid = {.representation = GONIO_BIVARIATE,
+                                         .channels = GONIO_JOINT};
+    assert_int_equal(gonio_database_create(NULL, paths, PATHS, &grid, &data.database), GONIO_OK);
     assert_int_equal(gonio_basis_learn(NULL, data.database, &options, &data.basis), GONIO_OK);
     data.view = gonio_basis_describe(data.basis);
     data.vectors = support_vectors(data.basis);

@@ -176,6 +176,8 @@ static gonio_status take(gonio_context *context, const char *const *paths, size_
 gonio_status gonio_i_collect(gonio_context *context, const char *const *paths, size_t count,
                              bool skip_bad, gonio_i_collection *collection)
 {
+    const gonio_database_options papers = {.representation = GONIO_BIVARIATE,
+                                           .channels = GONIO_JOINT};
     *collection = (gonio_i_collection){0};
     candidate *candidates = gonio_i_allocate(context, count, sizeof *candidates);
     if (candidates == NULL) {
@@ -190,7 +192,7 @@ gonio_status gonio_i_collect(gonio_context *context, const char *const *paths, s
     }
     if (status == GONIO_OK) {
         status = gonio_database_create(context, (const char *const *)collection->path,
-                                       collection->count, NULL, &collection->database);
+                                       collection->count, &papers, &collection->database);
     }
     for (size_t k = 0; k < count; k++) {
         gonio_i_digest_free(&candidates[k].digest);

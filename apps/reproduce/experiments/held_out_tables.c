@@ -38,7 +38,8 @@ static gonio_status load(gonio_context *context, const char *path, gonio_materia
         status = gonio_table_load(context, material, &table);
     }
     if (status == GONIO_OK) {
-        const gonio_material_source source = {.read_slab = read_table, .release = free_table, .self = table};
+        const gonio_material_source source = {
+            .read_slab = read_table, .release = free_table, .self = table};
         status =
             gonio_material_create(context, gonio_material_name(material), "table", source, loaded);
     }
