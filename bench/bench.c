@@ -190,7 +190,6 @@ static planned plan_once(const gonio_basis *basis, gonio_context *context, size_
 static void bench_plan_size(bench *b, const gonio_basis *basis, size_t k, size_t n)
 {
     char name[128];
-    const gonio_basis_view view = gonio_basis_describe(basis);
     gonio_context *one = make_context(1);
     gonio_context *all = make_context(0);
     double ratio[RUNS];
