@@ -191,7 +191,8 @@ const char *gonio_i_material_format_of(const gonio_i_file *file)
 
 const char *gonio_i_material_format_name(int index)
 {
-    return index < READERS ? readers[index]->name : NULL;
+    const gonio_i_format_reader *reader = index >= 0 && index < READERS ? readers[index] : NULL;
+    return reader != NULL ? reader->name : NULL;
 }
 
 static gonio_status not_recognised(gonio_context *context, const gonio_i_file *file)
@@ -200,10 +201,10 @@ static gonio_status not_recognised(gonio_context *context, const gonio_i_file *f
         return gonio_i_fail(context, GONIO_ERROR_FORMAT, "%s: the file is empty", file->path);
     }
     char known[256] = "";
-    for (int k = 0; k < READERS; k++) {
+    const char *name = NULL;
+    for (int k = 0; (name = gonio_i_material_format_name(k)) != NULL; k++) {
         const size_t length = strlen(known);
-        snprintf(known + length, sizeof known - length, "%s%s", k > 0 ? ", " : "",
-                 readers[k]->name);
+        snprintf(known + length, sizeof known - length, "%s%s", k > 0 ? ", " : "", name);
     }
     return gonio_i_fail(context, GONIO_ERROR_FORMAT,
                         "%s: not a material that gonio reads (%s), judged by its content",

@@ -60,7 +60,7 @@ static bool value_at(const reader *r, int32_t cell, int channel, double *value)
         *value = r->statistics.mean[theta_d][channel];
         return r->statistics.count[theta_d] > 0;
     }
-    const size_t first = (size_t)(theta_d * GONIO_PHI_D_BINS + bins.first.phi_d);
+    const size_t first = (size_t)theta_d * GONIO_PHI_D_BINS + (size_t)bins.first.phi_d;
     const double *g = r->g + (size_t)channel * GONIO_SLAB_BINS;
     int count = 0;
     double sum = 0.0;

@@ -33,6 +33,12 @@ export interface Comparison {
     channels: [ErrorNumbers, ErrorNumbers, ErrorNumbers];
 }
 
+/** The error of all channels by the metric of a title; null where there is none. */
+export function errorOf(comparison: Comparison | undefined, title: string): number | null {
+    const at = comparison?.metrics.findIndex((metric) => metric.title === title) ?? -1;
+    return comparison?.all[at] ?? null;
+}
+
 export interface Reading {
     incident: Angles;
     outgoing: Angles;

@@ -91,8 +91,9 @@ function describe(data: ReportData) {
     if (readings) {
         parts.push(`${readings.count} readings (${readings.file})`);
     }
-    if (data.comparison?.all.e6 !== null && data.comparison) {
-        parts.push(`E6 ${data.comparison.all.e6!.toFixed(2)} %`);
+    const e6 = errorOf(data.comparison, 'E6');
+    if (e6 !== null) {
+        parts.push(`E6 ${e6.toFixed(2)} %`);
     }
     byId('summary').textContent = parts.join(' · ');
     byId('version').textContent = `Written by gonio ${data.version}.`;

@@ -208,8 +208,9 @@ static double look_up_normal(const float *row, double u)
 static place aim(const writer *w, size_t t, size_t node, gonio_pair *pair)
 {
     const gonio_i_blend blend = {1, {t}, {1.0}};
-    const double s[2] = {(double)(node % w->side) / (double)(w->side - 1),
-                         (double)(node / w->side) / (double)(w->side - 1)};
+    const size_t row = node / w->side;
+    const size_t last = w->side - 1;
+    const double s[2] = {(double)(node % w->side) / (double)last, (double)row / (double)last};
     const double theta_i = (double)w->theta[t];
     double u[2];
     gonio_i_warp_sample(&w->warp, &blend, s, u);
