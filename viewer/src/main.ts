@@ -3,6 +3,7 @@ import './style.css';
 import { halfDifference, LOG_SCALE, radians, type Table } from './brdf';
 import { byId, choice, element } from './controls';
 import {
+    errorOf,
     readData,
     takeTable,
     type Material,
