@@ -1,4 +1,4 @@
-/* gonio convert: any material to a MERL table. */
+/* gonio convert: any material to a MERL table or an RGL .bsdf. */
 #include "command_line.h"
 #include "inputs.h"
 #include "json_output.h"
@@ -41,9 +41,11 @@ int cmd_convert(int argc, const char **argv)
     const tool_command_line line = {
         .table = table,
         .usage = "[OPTION...] IN OUT",
-        .text = "IN is a MERL .binary table, a neural BRDF .h5 or atlas:NAME (a built-in material; "
-                "'gonio info atlas:' lists them).\n"
-                "OUT becomes a MERL .binary table.",
+        .text =
+            "IN is a MERL .binary table, a neural BRDF .h5, an RGL .bsdf or atlas:NAME (a built-in "
+            "material; 'gonio info atlas:' lists them).\n"
+            "OUT becomes an RGL .bsdf, for Mitsuba 3 and pbrt-v4, if its name ends in .bsdf, and a "
+            "MERL .binary table otherwise.",
         .work = run};
     return tool_run(argc, argv, &line);
 }

@@ -22,10 +22,11 @@
 #include "writers.h"
 
 enum {
-    THETAS = 19,  /* incidences: every 5 degrees */
-    SIDE = 64,    /* of the grid over s, in colours */
-    COARSE = 32,  /* in spectra, which are smooth and many */
-    NORMALS = 128 /* of the grids over half vectors, as measured files have it */
+    THETAS = 15,   /* incidences, evenly spaced */
+    SIDE = 100,    /* of the grid over s, in colours */
+    COARSE = 32,   /* in spectra, which are smooth and many */
+    NORMALS = 128, /* of the grids over half vectors: polar angles, */
+    AZIMUTHS = 33  /* and azimuths, which matter less */
 };
 
 /* The most polar angle at which tables still have data around. */
@@ -149,17 +150,17 @@ static double cosine_between(double theta_i, double theta_m, double phi)
 /* The area of all normals' facets that is seen from theta_i. */
 static double project(const writer *w, double theta_i)
 {
-    enum { AZIMUTHS = 256 };
+    enum { STEPS = 256 };
     double sum = 0.0;
     for (size_t k = 0; k < NORMALS; k++) {
         const double u = (double)k / (NORMALS - 1);
         const double theta = theta_of_place(u);
         const double end = k == 0 || k == NORMALS - 1 ? 0.5 : 1.0;
         double seen = 0.0;
-        for (int a = 0; a < AZIMUTHS; a++) {
-            seen += fmax(cosine_between(theta_i, theta, 2.0 * M_PI * (a + 0.5) / AZIMUTHS), 0.0);
+        for (int a = 0; a < STEPS; a++) {
+            seen += fmax(cosine_between(theta_i, theta, 2.0 * M_PI * (a + 0.5) / STEPS), 0.0);
         }
-        sum += end * (double)w->ndf[0][k] * seen * (2.0 * M_PI / AZIMUTHS) * sin(theta) * M_PI * u /
+        sum += end * (double)w->ndf[0][k] * seen * (2.0 * M_PI / STEPS) * sin(theta) * M_PI * u /
                (NORMALS - 1);
     }
     return sum;
@@ -177,9 +178,9 @@ static void find_sigma(writer *w)
 static gonio_status find_vndf(writer *w)
 {
     for (size_t t = 0; t < THETAS; t++) {
-        float *slice = w->vndf + t * NORMALS * NORMALS;
-        for (size_t y = 0; y < NORMALS; y++) {
-            const double phi = (2.0 * (double)y / (NORMALS - 1) - 1.0) * M_PI;
+        float *slice = w->vndf + t * AZIMUTHS * NORMALS;
+        for (size_t y = 0; y < AZIMUTHS; y++) {
+            const double phi = (2.0 * (double)y / (AZIMUTHS - 1) - 1.0) * M_PI;
             for (size_t x = 0; x < NORMALS; x++) {
                 const double u = (double)x / (NORMALS - 1);
                 const double theta = theta_of_place(u);
@@ -188,7 +189,7 @@ static gonio_status find_vndf(writer *w)
             }
         }
     }
-    return gonio_i_warp_create(w->context, w->vndf, THETAS, NORMALS, NORMALS, &w->warp);
+    return gonio_i_warp_create(w->context, w->vndf, THETAS, AZIMUTHS, NORMALS, &w->warp);
 }
 
 /* ---- the values ---- */
@@ -233,7 +234,7 @@ static void fill_empty(double *value, size_t side, size_t channels, bool *known)
     const size_t nodes = side * side;
     bool more = true;
     while (more) {
-        bool found[COARSE * COARSE * 4] = {false};
+        bool found[SIDE * SIDE] = {false};
         more = false;
         for (size_t node = 0; node < nodes; node++) {
             const size_t x = node % side;
@@ -352,7 +353,7 @@ static gonio_status write_fields(const writer *w, const char *path)
         {"theta_i", GONIO_I_TENSOR_F32, 1, {THETAS}, w->theta},
         {"sigma", GONIO_I_TENSOR_F32, 2, {2, NORMALS}, w->sigma},
         {"ndf", GONIO_I_TENSOR_F32, 2, {2, NORMALS}, w->ndf},
-        {"vndf", GONIO_I_TENSOR_F32, 4, {1, THETAS, NORMALS, NORMALS}, w->vndf},
+        {"vndf", GONIO_I_TENSOR_F32, 4, {1, THETAS, AZIMUTHS, NORMALS}, w->vndf},
         {"luminance", GONIO_I_TENSOR_F32, 4, {1, THETAS, w->side, w->side}, w->luminance},
         {spectral ? "spectra" : "rgb",
          GONIO_I_TENSOR_F32,
@@ -388,7 +389,7 @@ static gonio_status begin(writer *w)
         w->theta[t] = (float)(M_PI / 2.0 * (double)t / (THETAS - 1));
     }
     const size_t nodes = w->side * w->side;
-    w->vndf = gonio_i_allocate(w->context, THETAS * NORMALS * NORMALS, sizeof *w->vndf);
+    w->vndf = gonio_i_allocate(w->context, THETAS * AZIMUTHS * NORMALS, sizeof *w->vndf);
     w->value = gonio_i_allocate(w->context, THETAS * w->channels * nodes, sizeof *w->value);
     w->luminance = gonio_i_allocate(w->context, THETAS * nodes, sizeof *w->luminance);
     w->valid = gonio_i_allocate(w->context, THETAS * nodes / 8, sizeof *w->valid);
