@@ -48,6 +48,10 @@ GONIO_API const char *gonio_status_text(gonio_status status);
 /* The library's version, "MAJOR.MINOR.PATCH". */
 GONIO_API const char *gonio_version(void);
 
+/* The same as a number that can be compared: 10000 MAJOR + 100 MINOR + PATCH. Of the library that
+ * runs; GONIO_VERSION_MAJOR and the others are of the header (docs/stability.md). */
+GONIO_API int gonio_version_number(void);
+
 #ifdef __cplusplus
 }
 #endif

@@ -35,6 +35,11 @@ const char *gonio_version(void)
     return VERSION(GONIO_VERSION_MAJOR, GONIO_VERSION_MINOR, GONIO_VERSION_PATCH);
 }
 
+int gonio_version_number(void)
+{
+    return 10000 * GONIO_VERSION_MAJOR + 100 * GONIO_VERSION_MINOR + GONIO_VERSION_PATCH;
+}
+
 const char *gonio_status_text(gonio_status status)
 {
     static const char *const texts[] = {

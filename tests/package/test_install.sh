@@ -15,6 +15,14 @@ export PKG_CONFIG_PATH=$libraries/pkgconfig
 config() { pkg-config --define-variable=prefix="$scratch/installed" --define-variable=libdir="$libraries" \
     --define-variable=includedir="$scratch/installed/include" "$@" gonio; }
 
+# The library exports the functions that the headers declare, and nothing else.
+nm -D --defined-only "$libraries/libgonio.so" | awk '$2 == "T" || $2 == "D" || $2 == "B" || $2 == "R" { print $3 }' |
+    sed 's/@.*//' | sort -u >"$scratch/exported"
+cat "$source"/include/gonio/*.h | sed 's#/\*.*\*/##' | tr '\n' ' ' | grep -oE 'GONIO_API[^;(]*\(' |
+    grep -oE 'gonio_[a-z0-9_]+ *\($' | tr -d ' (' | sort -u >"$scratch/declared"
+diff "$scratch/declared" "$scratch/exported"
+echo "exports: $(wc -l <"$scratch/exported") functions, those of the headers"
+
 cc "$scratch/consumer/consumer.c" $(config --cflags --libs) -o "$scratch/shared"
 LD_LIBRARY_PATH=$libraries "$scratch/shared"
 echo "pkg-config, shared: works"

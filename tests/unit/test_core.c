@@ -347,6 +347,15 @@ static void test_subsets(void **state)
     }
 }
 
+static void test_the_version_as_a_number(void **state)
+{
+    (void)state;
+    const int number = gonio_version_number();
+    char text[32];
+    snprintf(text, sizeof text, "%d.%d.%d", number / 10000, number / 100 % 100, number % 100);
+    assert_string_equal(text, gonio_version());
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -355,6 +364,7 @@ int main(void)
         cmocka_unit_test(test_a_team_can_be_cancelled),
         cmocka_unit_test(test_a_piece_is_part_of_a_whole),
         cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_the_version_as_a_number),
         cmocka_unit_test(test_names),
         cmocka_unit_test(test_an_output_appears_whole_or_not_at_all),
         cmocka_unit_test(test_outputs_that_cannot_be),
