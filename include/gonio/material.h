@@ -121,11 +121,12 @@ GONIO_API gonio_status gonio_material_write_merl(gonio_context *context,
                                                  const gonio_material *material, const char *path);
 
 /* Writes an isotropic material as an RGL .bsdf, which Mitsuba 3 and pbrt-v4 render as `measured`:
- * RGB, or spectra where the material has wavelengths (ascending, at most 512). Evaluated at 19
- * incidences and 64 x 64 places (32 x 32 of spectra) that follow the material's highlight. Where
- * the material has no data the nearest places stand in. The file appears whole or not at all.
- * Errors: _ARGUMENT (an anisotropic material, too many wavelengths), _IO, _MEMORY, _CANCELLED, and
- * those of the source. */
+ * RGB, or spectra where the material has wavelengths (ascending, at most 512). Evaluated at 26
+ * incidences and 84 x 84 places, 32 x 32 or more of spectra. Where the material has no data the
+ * nearest places stand in. One that was read from an RGL .bsdf, anisotropic or not, is written as
+ * it is. The file appears whole or not at all.
+ * Errors: _ARGUMENT (another anisotropic material, too many wavelengths), _IO, _MEMORY, _CANCELLED,
+ * and those of the source. */
 GONIO_API gonio_status gonio_material_write_rgl(gonio_context *context,
                                                 const gonio_material *material, const char *path);
 

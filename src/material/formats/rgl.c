@@ -9,44 +9,23 @@
  *     rho = values(s | incidence) ndf(u(theta_m), v) / (4 sigma(u(theta_i), v(phi_i)) cos theta_o).
  *
  * Values are interpolated linearly between the incidences and between the nodes of a grid over s.
+ * Where the field jacobian is 0 they hold rho cos theta_o itself.
  * They can be negative where light is outside the colours of sRGB: such a channel has no data.
  * Light was measured up to 80 degrees; values beyond are extrapolated. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "../source.h"
 #include "../tensor_file.h"
-#include "../warp.h"
 #include "format.h"
+#include "rgl.h"
 
 static const double MEASURED = 80.0 * M_PI / 180.0;
 
-/* A function over the unit square at the nodes of a grid. */
-typedef struct image {
-    size_t width;
-    size_t height;
-    float *value; /* [height][width] */
-} image;
-
-typedef struct rgl {
-    size_t channels;
-    double *wavelength; /* [channels], nm; NULL for R, G, B */
-    size_t phis;
-    double *phi; /* [phis]: azimuths of incidence, radians */
-    size_t thetas;
-    double *theta; /* [thetas] */
-    bool isotropic;
-    int repeats; /* by rotation: 1, 2 (point symmetry) or 4 (two mirror planes) */
-    image ndf;
-    image sigma;
-    gonio_i_warp vndf; /* slices [phis][thetas] */
-    size_t side;       /* of the grid over s */
-    float *value;      /* [phis][thetas][channels][side][side] */
-} rgl;
-
 static void release(void *self)
 {
-    rgl *r = self;
+    gonio_i_rgl *r = self;
     free(r->wavelength);
     free(r->phi);
     free(r->theta);
@@ -54,6 +33,9 @@ static void release(void *self)
     free(r->sigma.value);
     gonio_i_warp_free(&r->vndf);
     free(r->value);
+    free(r->luminance);
+    free(r->valid);
+    free(r->description);
     free(r);
 }
 
@@ -67,7 +49,7 @@ static double look_up(const float *value, size_t width, gonio_i_step x, gonio_i_
     return (1.0 - y.share) * low + y.share * high;
 }
 
-static double look_up_image(const image *i, double x, double y)
+static double look_up_image(const gonio_i_rgl_image *i, double x, double y)
 {
     return look_up(i->value, i->width, gonio_i_step_evenly(i->width, x),
                    gonio_i_step_evenly(i->height, y));
@@ -85,7 +67,7 @@ static double place_of_phi(double phi)
     return place - floor(place);
 }
 
-static gonio_i_blend blend_incidences(const rgl *r, gonio_angles incident)
+static gonio_i_blend blend_incidences(const gonio_i_rgl *r, gonio_angles incident)
 {
     const gonio_i_step t = gonio_i_step_among(r->theta, r->thetas, incident.theta);
     const gonio_i_step p = gonio_i_step_among(r->phi, r->phis, incident.phi);
@@ -119,7 +101,7 @@ static gonio_angles to_angles(vector v)
 
 /* Files of materials with symmetry hold azimuths of incidence from -pi on, of half a circle or a
  * quarter: both directions are turned or mirrored until the incident one is there. */
-static void reduce(const rgl *r, vector *i, vector *o)
+static void reduce(const gonio_i_rgl *r, vector *i, vector *o)
 {
     if (r->repeats >= 2) {
         const double y = i->y > 0.0 ? -1.0 : 1.0;
@@ -129,7 +111,7 @@ static void reduce(const rgl *r, vector *i, vector *o)
     }
 }
 
-static void evaluate_values(const rgl *r, const gonio_i_blend *blend, const double s[2],
+static void evaluate_values(const gonio_i_rgl *r, const gonio_i_blend *blend, const double s[2],
                             double factor, double *values)
 {
     const gonio_i_step x = gonio_i_step_evenly(r->side, s[0]);
@@ -145,7 +127,7 @@ static void evaluate_values(const rgl *r, const gonio_i_blend *blend, const doub
     }
 }
 
-static void evaluate_pair(const rgl *r, gonio_pair pair, double *values)
+static void evaluate_pair(const gonio_i_rgl *r, gonio_pair pair, double *values)
 {
     vector i = to_vector(pair.incident);
     vector o = to_vector(pair.outgoing);
@@ -159,18 +141,25 @@ static void evaluate_pair(const rgl *r, gonio_pair pair, double *values)
     gonio_i_warp_invert(&r->vndf, &blend, u, s);
     const double area =
         look_up_image(&r->sigma, place_of_theta(incident.theta), place_of_phi(incident.phi));
-    evaluate_values(r, &blend, s, look_up_image(&r->ndf, u[0], u[1]) / (4.0 * area * o.z), values);
+    const double factor = r->jacobian ? look_up_image(&r->ndf, u[0], u[1]) / (4.0 * area) : 1.0;
+    evaluate_values(r, &blend, s, factor / o.z, values);
 }
 
 static gonio_status evaluate(void *self, gonio_context *context, const gonio_pair *pairs,
                              size_t count, double *values)
 {
-    const rgl *r = self;
+    const gonio_i_rgl *r = self;
     (void)context;
     for (size_t k = 0; k < count; k++) {
         evaluate_pair(r, pairs[k], values + k * r->channels);
     }
     return GONIO_OK;
+}
+
+const gonio_i_rgl *gonio_i_rgl_of(const gonio_material *material)
+{
+    const gonio_material_source source = gonio_i_material_source(material);
+    return source.evaluate == evaluate ? source.self : NULL;
 }
 
 /* ---- reading ---- */
@@ -179,7 +168,7 @@ static gonio_status evaluate(void *self, gonio_context *context, const gonio_pai
 typedef struct reader {
     gonio_context *context;
     gonio_i_tensor_file file;
-    rgl *r;
+    gonio_i_rgl *r;
 } reader;
 
 static gonio_status wrong_shape(const reader *in, const char *name)
@@ -216,7 +205,7 @@ static gonio_status read_axis(const reader *in, const char *name, size_t *count,
     return status;
 }
 
-static gonio_status read_image(const reader *in, const char *name, image *to)
+static gonio_status read_image(const reader *in, const char *name, gonio_i_rgl_image *to)
 {
     const gonio_i_tensor *field = NULL;
     const gonio_status status =
@@ -233,7 +222,7 @@ static gonio_status read_image(const reader *in, const char *name, image *to)
 }
 
 /* A square of nodes for each incidence, at least 2 x 2. */
-static bool has_shape(const rgl *r, const gonio_i_tensor *field)
+static bool has_shape(const gonio_i_rgl *r, const gonio_i_tensor *field)
 {
     const uint64_t *last = field->shape + field->dimensions - 2;
     return field->shape[0] == r->phis && field->shape[1] == r->thetas && last[0] >= 2 &&
@@ -262,7 +251,7 @@ static gonio_status read_vndf(const reader *in)
 
 static gonio_status read_values(const reader *in)
 {
-    rgl *r = in->r;
+    gonio_i_rgl *r = in->r;
     const char *name = r->wavelength != NULL ? "spectra" : "rgb";
     const gonio_i_tensor *field = NULL;
     const gonio_status status =
@@ -278,6 +267,59 @@ static gonio_status read_values(const reader *in)
     return gonio_i_tensor_floats(in->context, &in->file, field, &r->value);
 }
 
+/* All of a field of bytes; NULL, and 0 of them, if there is no such field. */
+static gonio_status read_bytes(const reader *in, const char *name, unsigned char **bytes,
+                               size_t *count)
+{
+    const gonio_i_tensor *field = gonio_i_tensor_find(&in->file, name);
+    if (field == NULL || field->count == 0) {
+        return GONIO_OK;
+    }
+    gonio_status status =
+        gonio_i_tensor_expect(in->context, &in->file, name, GONIO_I_TENSOR_U8, 1, &field);
+    if (status != GONIO_OK) {
+        return status;
+    }
+    *bytes = gonio_i_allocate(in->context, field->count, 1);
+    *count = field->count;
+    return *bytes == NULL
+               ? GONIO_ERROR_MEMORY
+               : gonio_i_tensor_read(in->context, &in->file, field, 0, field->count, *bytes);
+}
+
+static gonio_status read_jacobian(const reader *in)
+{
+    unsigned char *bytes = NULL;
+    size_t count = 0;
+    const gonio_status status = read_bytes(in, "jacobian", &bytes, &count);
+    in->r->jacobian = status != GONIO_OK || count == 0 || bytes[0] != 0;
+    free(bytes);
+    return status;
+}
+
+/* What evaluation does without, for a copy of the file. */
+static gonio_status read_rest(const reader *in)
+{
+    gonio_i_rgl *r = in->r;
+    const gonio_i_tensor *field = NULL;
+    gonio_status status = read_bytes(in, "description", &r->description, &r->description_size);
+    if (status == GONIO_OK) {
+        status = read_bytes(in, "valid", &r->valid, &r->valid_size);
+    }
+    if (status != GONIO_OK || gonio_i_tensor_find(&in->file, "luminance") == NULL) {
+        return status;
+    }
+    status =
+        gonio_i_tensor_expect(in->context, &in->file, "luminance", GONIO_I_TENSOR_F32, 4, &field);
+    if (status != GONIO_OK) {
+        return status;
+    }
+    if (!has_shape(r, field) || field->shape[2] != r->side || field->shape[3] != r->side) {
+        return wrong_shape(in, "luminance");
+    }
+    return gonio_i_tensor_floats(in->context, &in->file, field, &r->luminance);
+}
+
 static gonio_status read_channels(const reader *in)
 {
     in->r->channels = GONIO_CHANNELS;
@@ -286,7 +328,7 @@ static gonio_status read_channels(const reader *in)
                : GONIO_OK;
 }
 
-static void find_symmetry(rgl *r)
+static void find_symmetry(gonio_i_rgl *r)
 {
     r->isotropic = r->phis <= 2;
     r->repeats = 1;
@@ -298,7 +340,7 @@ static void find_symmetry(rgl *r)
 
 static gonio_status read_rgl(const reader *in)
 {
-    rgl *r = in->r;
+    gonio_i_rgl *r = in->r;
     gonio_status status = read_axis(in, "phi_i", &r->phis, &r->phi);
     if (status == GONIO_OK) {
         status = read_axis(in, "theta_i", &r->thetas, &r->theta);
@@ -316,10 +358,16 @@ static gonio_status read_rgl(const reader *in)
     if (status == GONIO_OK) {
         status = read_vndf(in);
     }
-    return status == GONIO_OK ? read_values(in) : status;
+    if (status == GONIO_OK) {
+        status = read_values(in);
+    }
+    if (status == GONIO_OK) {
+        status = read_jacobian(in);
+    }
+    return status == GONIO_OK ? read_rest(in) : status;
 }
 
-static char *describe(const rgl *r)
+static char *describe(const gonio_i_rgl *r)
 {
     return gonio_i_format(
         "RGL %s BSDF, %s, %zu x %zu at %zu incidences", r->isotropic ? "isotropic" : "anisotropic",

@@ -1,17 +1,18 @@
 /* Writing isotropic materials as RGL .bsdf files (rgl.c has the format's equations).
  *
  * The file's values at a place s are rho cos theta_o 4 sigma / ndf in the direction that s is
- * warped to, so any ndf that is positive represents any material. The better ndf resembles the
- * material, the smoother the values are, which is what interpolation and importance sampling want.
- * Here
+ * warped to, so any ndf that is positive and any warp represent any material. The better ndf
+ * resembles the material, the smoother the values are, which is what interpolation wants: ndf is
+ * the material's mean luminance by theta_h, and sigma its area projected towards the incident
+ * direction. The warp leaves places where they are (vndf is constant): u crowds them around the
+ * mirror direction already, and evenly spaced in u they resolve highlights of any width. Light is
+ * sampled by the field luminance alone, which is therefore what a place reflects, the solid angle
+ * of its half vectors included:
  *
- *     ndf ~ (1 + cos theta)/2 sum over p of L^p / (integral of L^p),   p = 1, 1/2, 0,
+ *     luminance(s) = L(s) ndf(u) <i, m> u sin theta_m, L of the values.
  *
- * where L is the material's mean luminance by theta_h: a third of the nodes goes where the light
- * goes, a third everywhere, and a third between. sigma and vndf follow from ndf; the luminance of
- * the values is the density by which places are sampled. Where the material has no data, the
- * nearest places stand in. Beyond the angle up to which it was measured, the values at that angle
- * do. */
+ * Where the material has no data, the nearest places stand in. Beyond the angle up to which it was
+ * measured, the values at that angle do. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,15 +20,21 @@
 #include "../../core/core.h"
 #include "../tensor_write.h"
 #include "../warp.h"
+#include "rgl.h"
 #include "writers.h"
 
 enum {
-    THETAS = 15,   /* incidences, evenly spaced */
-    SIDE = 100,    /* of the grid over s, in colours */
-    COARSE = 32,   /* in spectra, which are smooth and many */
-    NORMALS = 128, /* of the grids over half vectors: polar angles, */
-    AZIMUTHS = 33  /* and azimuths, which matter less */
+    THETAS = 26,       /* incidences */
+    SIDE = 84,         /* most places along s, */
+    COARSE = 32,       /* and least, in spectra of many wavelengths */
+    NUMBERS = 6 << 20, /* of values and luminance, that a spectral file holds about */
+    NORMALS = 128,     /* polar angles of ndf and sigma */
+    WARP = 8,          /* nodes of the constant vndf along either axis */
+    VNDF = THETAS * WARP * WARP
 };
+
+/* Incidences are denser towards grazing: theta_i = pi/2 (1 - (1 - x)^GRAZING), x evenly spaced. */
+static const double GRAZING = 1.3;
 
 /* The most polar angle at which tables still have data around. */
 static const double STEEPEST = 88.0 * M_PI / 180.0;
@@ -42,13 +49,17 @@ typedef struct writer {
     float theta[THETAS];     /* of incidence */
     float ndf[2][NORMALS];   /* the rows are alike */
     float sigma[2][NORMALS]; /* the same */
-    float *vndf;             /* [THETAS][NORMALS][NORMALS] */
-    gonio_i_warp warp;       /* of vndf */
+    float *vndf;             /* [THETAS][WARP][WARP] */
     float *value;            /* [THETAS][channels][side][side] */
     float *luminance;        /* [THETAS][side][side] */
-    unsigned char *valid;    /* [THETAS * side * side / 8], bits */
+    unsigned char *valid;    /* [bytes_of_bits(THETAS * side * side)] */
     double *weight;          /* [channels]: of the luminance */
 } writer;
+
+static size_t bytes_of_bits(size_t bits)
+{
+    return (bits + 7) / 8;
+}
 
 static double theta_of_place(double u)
 {
@@ -109,34 +120,17 @@ static double projected_angle(size_t k)
     return end * 2.0 * M_PI * sin(theta) * cos(theta) * M_PI * u / (NORMALS - 1);
 }
 
-static void add_power(const double *luminance, double power, double *density)
-{
-    double all = 0.0;
-    for (size_t k = 0; k < NORMALS; k++) {
-        all += pow(luminance[k], power) * projected_angle(k);
-    }
-    for (size_t k = 0; k < NORMALS; k++) {
-        density[k] += pow(luminance[k], power) / all;
-    }
-}
-
 /* Scaled so that the area projected along the normal is 1. */
 static gonio_status find_ndf(writer *w)
 {
-    static const double powers[] = {1.0, 0.5, 0.0};
     double luminance[NORMALS];
-    double density[NORMALS] = {0.0};
     double all = 0.0;
     const gonio_status status = find_luminance(w, luminance);
-    for (size_t p = 0; p < sizeof powers / sizeof *powers && status == GONIO_OK; p++) {
-        add_power(luminance, powers[p], density);
-    }
-    for (size_t k = 0; k < NORMALS; k++) {
-        density[k] *= 0.5 * (1.0 + cos(theta_of_place((double)k / (NORMALS - 1))));
-        all += density[k] * projected_angle(k);
+    for (size_t k = 0; k < NORMALS && status == GONIO_OK; k++) {
+        all += luminance[k] * projected_angle(k);
     }
     for (size_t k = 0; k < NORMALS && status == GONIO_OK; k++) {
-        w->ndf[0][k] = w->ndf[1][k] = (float)(density[k] / all);
+        w->ndf[0][k] = w->ndf[1][k] = (float)(luminance[k] / all);
     }
     return status;
 }
@@ -174,29 +168,12 @@ static void find_sigma(writer *w)
     }
 }
 
-/* The density of visible normals over the square of (u, v), for each incidence. */
-static gonio_status find_vndf(writer *w)
-{
-    for (size_t t = 0; t < THETAS; t++) {
-        float *slice = w->vndf + t * AZIMUTHS * NORMALS;
-        for (size_t y = 0; y < AZIMUTHS; y++) {
-            const double phi = (2.0 * (double)y / (AZIMUTHS - 1) - 1.0) * M_PI;
-            for (size_t x = 0; x < NORMALS; x++) {
-                const double u = (double)x / (NORMALS - 1);
-                const double theta = theta_of_place(u);
-                const double seen = fmax(cosine_between((double)w->theta[t], theta, phi), 0.0);
-                slice[y * NORMALS + x] = (float)((double)w->ndf[0][x] * seen * sin(theta) * u);
-            }
-        }
-    }
-    return gonio_i_warp_create(w->context, w->vndf, THETAS, AZIMUTHS, NORMALS, &w->warp);
-}
-
 /* ---- the values ---- */
 
 /* A place of the grid over s: where it leads. */
 typedef struct place {
     double factor; /* from rho to the file's value; negative below the horizon */
+    double angle;  /* what the file's value counts for in sampling; 0 below the horizon */
     bool measured;
 } place;
 
@@ -208,24 +185,23 @@ static double look_up_normal(const float *row, double u)
 
 static place aim(const writer *w, size_t t, size_t node, gonio_pair *pair)
 {
-    const gonio_i_blend blend = {1, {t}, {1.0}};
-    const size_t row = node / w->side;
-    const size_t last = w->side - 1;
-    const double s[2] = {(double)(node % w->side) / (double)last, (double)row / (double)last};
+    const double last = (double)(w->side - 1);
+    const double u = (double)(node % w->side) / last;
     const double theta_i = (double)w->theta[t];
-    double u[2];
-    gonio_i_warp_sample(&w->warp, &blend, s, u);
-    const double theta = theta_of_place(u[0]);
-    const double phi = (2.0 * u[1] - 1.0) * M_PI;
+    const double theta = theta_of_place(u);
+    const double phi = (2.0 * (double)(node / w->side) / last - 1.0) * M_PI;
     const double m[3] = {sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta)};
-    const double twice = 2.0 * cosine_between(theta_i, theta, phi);
-    const double o[3] = {twice * m[0] - sin(theta_i), twice * m[1], twice * m[2] - cos(theta_i)};
+    const double cosine = cosine_between(theta_i, theta, phi);
+    const double o[3] = {2.0 * cosine * m[0] - sin(theta_i), 2.0 * cosine * m[1],
+                         2.0 * cosine * m[2] - cos(theta_i)};
     const double theta_o = atan2(hypot(o[0], o[1]), o[2]);
     *pair =
         (gonio_pair){{fmin(theta_i, w->limit), 0.0}, {fmin(theta_o, w->limit), atan2(o[1], o[0])}};
     const double area = look_up_normal(w->sigma[0], sqrt(theta_i * (2.0 / M_PI)));
-    return (place){4.0 * area * o[2] / look_up_normal(w->ndf[0], u[0]),
-                   theta_i <= w->limit && theta_o <= w->limit};
+    const double ndf = look_up_normal(w->ndf[0], u);
+    return (place){.factor = 4.0 * area * o[2] / ndf,
+                   .angle = o[2] > 0.0 ? ndf * fmax(cosine, 0.0) * u * sin(theta) : 0.0,
+                   .measured = theta_i <= w->limit && theta_o <= w->limit};
 }
 
 /* Empty places get the mean of their neighbours, ring by ring, in all channels. */
@@ -298,7 +274,7 @@ static void store_incidence(writer *w, size_t t, const place *places, const doub
             w->value[(t * w->channels + c) * nodes + k] = (float)value;
             luminance += w->weight[c] * value;
         }
-        w->luminance[t * nodes + k] = (float)fmax(luminance, 0.0);
+        w->luminance[t * nodes + k] = (float)(fmax(luminance, 0.0) * places[k].angle);
         if (places[k].measured) {
             const size_t bit = t * nodes + k;
             w->valid[bit / 8] = (unsigned char)(w->valid[bit / 8] | (0x80U >> (bit % 8)));
@@ -353,7 +329,7 @@ static gonio_status write_fields(const writer *w, const char *path)
         {"theta_i", GONIO_I_TENSOR_F32, 1, {THETAS}, w->theta},
         {"sigma", GONIO_I_TENSOR_F32, 2, {2, NORMALS}, w->sigma},
         {"ndf", GONIO_I_TENSOR_F32, 2, {2, NORMALS}, w->ndf},
-        {"vndf", GONIO_I_TENSOR_F32, 4, {1, THETAS, AZIMUTHS, NORMALS}, w->vndf},
+        {"vndf", GONIO_I_TENSOR_F32, 4, {1, THETAS, WARP, WARP}, w->vndf},
         {"luminance", GONIO_I_TENSOR_F32, 4, {1, THETAS, w->side, w->side}, w->luminance},
         {spectral ? "spectra" : "rgb",
          GONIO_I_TENSOR_F32,
@@ -361,11 +337,17 @@ static gonio_status write_fields(const writer *w, const char *path)
          {1, THETAS, w->channels, w->side, w->side},
          w->value},
         {"jacobian", GONIO_I_TENSOR_U8, 1, {1}, &jacobian},
-        {"valid", GONIO_I_TENSOR_U8, 1, {THETAS * nodes / 8}, w->valid},
+        {"valid", GONIO_I_TENSOR_U8, 1, {bytes_of_bits(THETAS * nodes)}, w->valid},
         {"wavelengths", GONIO_I_TENSOR_F32, 1, {w->channels}, wavelength},
     };
     const size_t count = sizeof fields / sizeof *fields - (spectral ? 0 : 1);
     return gonio_i_tensor_write(w->context, path, fields, count);
+}
+
+static size_t choose_side(size_t channels)
+{
+    const double side = sqrt((double)NUMBERS / (double)(THETAS * (channels + 1)));
+    return (size_t)fmin(fmax(side, COARSE), SIDE);
 }
 
 static gonio_status begin(writer *w)
@@ -383,20 +365,24 @@ static gonio_status begin(writer *w)
                             w->view.channels, GONIO_I_RGL_WAVELENGTHS);
     }
     w->channels = spectral ? w->view.channels : GONIO_CHANNELS;
-    w->side = spectral ? COARSE : SIDE;
+    w->side = choose_side(w->channels);
     w->limit = w->view.theta_limit > 0.0 ? fmin(w->view.theta_limit, STEEPEST) : STEEPEST;
     for (size_t t = 0; t < THETAS; t++) {
-        w->theta[t] = (float)(M_PI / 2.0 * (double)t / (THETAS - 1));
+        const double left = 1.0 - (double)t / (THETAS - 1);
+        w->theta[t] = (float)(M_PI / 2.0 * (1.0 - pow(left, GRAZING)));
     }
     const size_t nodes = w->side * w->side;
-    w->vndf = gonio_i_allocate(w->context, THETAS * AZIMUTHS * NORMALS, sizeof *w->vndf);
+    w->vndf = gonio_i_allocate(w->context, VNDF, sizeof *w->vndf);
     w->value = gonio_i_allocate(w->context, THETAS * w->channels * nodes, sizeof *w->value);
     w->luminance = gonio_i_allocate(w->context, THETAS * nodes, sizeof *w->luminance);
-    w->valid = gonio_i_allocate(w->context, THETAS * nodes / 8, sizeof *w->valid);
+    w->valid = gonio_i_allocate(w->context, bytes_of_bits(THETAS * nodes), sizeof *w->valid);
     w->weight = gonio_i_allocate(w->context, w->channels, sizeof *w->weight);
     if (w->vndf == NULL || w->value == NULL || w->luminance == NULL || w->valid == NULL ||
         w->weight == NULL) {
         return GONIO_ERROR_MEMORY;
+    }
+    for (size_t k = 0; k < VNDF; k++) {
+        w->vndf[k] = 1.0F;
     }
     static const double rgb[GONIO_CHANNELS] = {0.2126, 0.7152, 0.0722};
     for (size_t c = 0; c < w->channels; c++) {
@@ -407,7 +393,6 @@ static gonio_status begin(writer *w)
 
 static void end(writer *w)
 {
-    gonio_i_warp_free(&w->warp);
     free(w->vndf);
     free(w->value);
     free(w->luminance);
@@ -418,6 +403,10 @@ static void end(writer *w)
 gonio_status gonio_material_write_rgl(gonio_context *context, const gonio_material *material,
                                       const char *path)
 {
+    const gonio_i_rgl *same = gonio_i_rgl_of(material);
+    if (same != NULL && same->luminance != NULL) {
+        return gonio_i_rgl_copy(context, same, gonio_material_name(material), path);
+    }
     writer *w = gonio_i_allocate(context, 1, sizeof *w);
     if (w == NULL) {
         return GONIO_ERROR_MEMORY;
@@ -429,9 +418,6 @@ gonio_status gonio_material_write_rgl(gonio_context *context, const gonio_materi
     }
     if (status == GONIO_OK) {
         find_sigma(w);
-        status = find_vndf(w);
-    }
-    if (status == GONIO_OK) {
         status = find_values(w);
     }
     if (status == GONIO_OK) {
