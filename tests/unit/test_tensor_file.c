@@ -272,7 +272,7 @@ static float *read_floats(const gonio_i_tensor_file *file, const char *name)
 }
 
 /* The relative variance of what samples of light from incidence t count for, in the grey of all
- * channels: light is sampled by luminance, then by vndf, which is constant here. */
+ * channels: light is sampled by luminance, then by vndf. */
 static double variance_of_samples(const gonio_i_tensor_file *file, size_t t)
 {
     enum { STEPS = 500, NORMALS = 128 };
@@ -283,8 +283,14 @@ static double variance_of_samples(const gonio_i_tensor_file *file, size_t t)
     float *ndf = read_floats(file, "ndf");
     float *theta = read_floats(file, "theta_i");
     const double weight[GONIO_CHANNELS] = {0.2126, 0.7152, 0.0722};
+    const gonio_i_tensor *normals = gonio_i_tensor_find(file, "vndf");
+    float *vndf = read_floats(file, "vndf");
     gonio_i_warp warp;
+    gonio_i_warp to_normals;
     assert_int_equal(gonio_i_warp_create(NULL, luminance + t * nodes, 1, side, side, &warp),
+                     GONIO_OK);
+    assert_int_equal(gonio_i_warp_create(NULL, vndf + t * normals->shape[2] * normals->shape[3], 1,
+                                         normals->shape[2], normals->shape[3], &to_normals),
                      GONIO_OK);
     const gonio_i_blend blend = {1, {0}, {1.0}};
     double sum = 0.0;
@@ -292,10 +298,12 @@ static double variance_of_samples(const gonio_i_tensor_file *file, size_t t)
     for (size_t k = 0; k < STEPS * STEPS; k++) {
         const double place[2] = {((double)(k % STEPS) + 0.5) / STEPS,
                                  ((double)k / STEPS + 0.5) / STEPS};
+        double s[2];
         double u[2];
-        const double density = gonio_i_warp_sample(&warp, &blend, place, u);
-        const gonio_i_step x = gonio_i_step_evenly(side, u[0]);
-        const gonio_i_step y = gonio_i_step_evenly(side, u[1]);
+        double density = gonio_i_warp_sample(&warp, &blend, place, s);
+        density *= gonio_i_warp_sample(&to_normals, &blend, s, u);
+        const gonio_i_step x = gonio_i_step_evenly(side, s[0]);
+        const gonio_i_step y = gonio_i_step_evenly(side, s[1]);
         const gonio_i_step n = gonio_i_step_evenly(NORMALS, u[0]);
         double value = 0.0;
         for (size_t c = 0; c < GONIO_CHANNELS; c++) {
@@ -315,6 +323,8 @@ static double variance_of_samples(const gonio_i_tensor_file *file, size_t t)
     }
     const double mean = sum / (STEPS * STEPS);
     gonio_i_warp_free(&warp);
+    gonio_i_warp_free(&to_normals);
+    free(vndf);
     free(luminance);
     free(values);
     free(ndf);

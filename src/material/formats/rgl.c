@@ -16,7 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../source.h"
+#include "../inside.h"
 #include "../tensor_file.h"
 #include "format.h"
 #include "rgl.h"
@@ -158,8 +158,7 @@ static gonio_status evaluate(void *self, gonio_context *context, const gonio_pai
 
 const gonio_i_rgl *gonio_i_rgl_of(const gonio_material *material)
 {
-    const gonio_material_source source = gonio_i_material_source(material);
-    return source.evaluate == evaluate ? source.self : NULL;
+    return material->source.evaluate == evaluate ? material->source.self : NULL;
 }
 
 /* ---- reading ---- */

@@ -4,12 +4,11 @@
  * warped to, so any ndf that is positive and any warp represent any material. The better ndf
  * resembles the material, the smoother the values are, which is what interpolation wants: ndf is
  * the material's mean luminance by theta_h, and sigma its area projected towards the incident
- * direction. The warp leaves places where they are (vndf is constant): u crowds them around the
- * mirror direction already, and evenly spaced in u they resolve highlights of any width. Light is
- * sampled by the field luminance alone, which is therefore what a place reflects, the solid angle
- * of its half vectors included:
+ * direction. vndf depends on u alone, which crowds places around the mirror direction already; it
+ * is higher where values bend (rgl_places.c). Light is sampled by the field luminance together with
+ * vndf, so luminance is what a place reflects, the solid angle of its half vectors included:
  *
- *     luminance(s) = L(s) ndf(u) <i, m> u sin theta_m, L of the values.
+ *     luminance(s) = L(s) ndf(u) <i, m> u sin theta_m / vndf(u), L of the values.
  *
  * Where the material has no data, the nearest places stand in. Beyond the angle up to which it was
  * measured, the values at that angle do. */
@@ -21,6 +20,7 @@
 #include "../tensor_write.h"
 #include "../warp.h"
 #include "rgl.h"
+#include "rgl_places.h"
 #include "writers.h"
 
 enum {
@@ -28,9 +28,7 @@ enum {
     SIDE = 84,         /* most places along s, */
     COARSE = 32,       /* and least, in spectra of many wavelengths */
     NUMBERS = 6 << 20, /* of values and luminance, that a spectral file holds about */
-    NORMALS = 128,     /* polar angles of ndf and sigma */
-    WARP = 8,          /* nodes of the constant vndf along either axis */
-    VNDF = THETAS * WARP * WARP
+    NORMALS = GONIO_I_RGL_NORMALS
 };
 
 /* Incidences are denser towards grazing: theta_i = pi/2 (1 - (1 - x)^GRAZING), x evenly spaced. */
@@ -45,25 +43,21 @@ typedef struct writer {
     gonio_material_view view;
     size_t channels; /* 3, or the wavelengths */
     size_t side;
-    double limit;            /* polar angle that directions are held to */
-    float theta[THETAS];     /* of incidence */
-    float ndf[2][NORMALS];   /* the rows are alike */
-    float sigma[2][NORMALS]; /* the same */
-    float *vndf;             /* [THETAS][WARP][WARP] */
-    float *value;            /* [THETAS][channels][side][side] */
-    float *luminance;        /* [THETAS][side][side] */
-    unsigned char *valid;    /* [bytes_of_bits(THETAS * side * side)] */
-    double *weight;          /* [channels]: of the luminance */
+    double limit;                   /* polar angle that directions are held to */
+    float theta[THETAS];            /* of incidence */
+    float ndf[2][NORMALS];          /* the rows are alike */
+    float sigma[2][NORMALS];        /* the same */
+    float vndf[THETAS][2][NORMALS]; /* all rows are alike */
+    gonio_i_warp warp;              /* of a slice */
+    float *value;                   /* [THETAS][channels][side][side] */
+    float *luminance;               /* [THETAS][side][side] */
+    unsigned char *valid;           /* [bytes_of_bits(THETAS * side * side)] */
+    double *weight;                 /* [channels]: of the luminance */
 } writer;
 
 static size_t bytes_of_bits(size_t bits)
 {
     return (bits + 7) / 8;
-}
-
-static double theta_of_place(double u)
-{
-    return u * u * (M_PI / 2.0);
 }
 
 /* ---- the distribution of normals ---- */
@@ -79,7 +73,7 @@ static gonio_status find_luminance(const writer *w, double *luminance)
         return GONIO_ERROR_MEMORY;
     }
     for (size_t k = 0; k < NORMALS; k++) {
-        const double theta_h = theta_of_place((double)k / (NORMALS - 1));
+        const double theta_h = gonio_i_rgl_theta((double)k / (NORMALS - 1));
         for (size_t j = 0; j < DIFFERENCES; j++) {
             const double theta_d = (5.0 + 15.0 * (double)j) * M_PI / 180.0;
             pair[k][j] = gonio_pair_from_half_difference(
@@ -116,7 +110,7 @@ static double projected_angle(size_t k)
 {
     const double u = (double)k / (NORMALS - 1);
     const double end = k == 0 || k == NORMALS - 1 ? 0.5 : 1.0;
-    const double theta = theta_of_place(u);
+    const double theta = gonio_i_rgl_theta(u);
     return end * 2.0 * M_PI * sin(theta) * cos(theta) * M_PI * u / (NORMALS - 1);
 }
 
@@ -148,7 +142,7 @@ static double project(const writer *w, double theta_i)
     double sum = 0.0;
     for (size_t k = 0; k < NORMALS; k++) {
         const double u = (double)k / (NORMALS - 1);
-        const double theta = theta_of_place(u);
+        const double theta = gonio_i_rgl_theta(u);
         const double end = k == 0 || k == NORMALS - 1 ? 0.5 : 1.0;
         double seen = 0.0;
         for (int a = 0; a < STEPS; a++) {
@@ -163,9 +157,21 @@ static double project(const writer *w, double theta_i)
 static void find_sigma(writer *w)
 {
     for (size_t k = 0; k < NORMALS; k++) {
-        const double theta = theta_of_place((double)k / (NORMALS - 1));
+        const double theta = gonio_i_rgl_theta((double)k / (NORMALS - 1));
         w->sigma[0][k] = w->sigma[1][k] = (float)project(w, theta);
     }
+}
+
+static gonio_status find_vndf(writer *w)
+{
+    float *row = w->vndf[0][0];
+    const gonio_status status =
+        gonio_i_rgl_places(w->context, w->material, w->ndf[0], w->limit, row);
+    for (size_t k = 1; k < (size_t)THETAS * 2; k++) {
+        memcpy(row + k * NORMALS, row, NORMALS * sizeof *row);
+    }
+    return status == GONIO_OK ? gonio_i_warp_create(w->context, row, 1, 2, NORMALS, &w->warp)
+                              : status;
 }
 
 /* ---- the values ---- */
@@ -177,31 +183,23 @@ typedef struct place {
     bool measured;
 } place;
 
-static double look_up_normal(const float *row, double u)
-{
-    const gonio_i_step x = gonio_i_step_evenly(NORMALS, u);
-    return (1.0 - x.share) * (double)row[x.before] + x.share * (double)row[x.before + 1];
-}
-
 static place aim(const writer *w, size_t t, size_t node, gonio_pair *pair)
 {
+    const gonio_i_blend slice = {1, {0}, {1.0}};
     const double last = (double)(w->side - 1);
-    const double u = (double)(node % w->side) / last;
+    const double s[2] = {(double)(node % w->side) / last, (double)(node / w->side) / last};
     const double theta_i = (double)w->theta[t];
-    const double theta = theta_of_place(u);
-    const double phi = (2.0 * (double)(node / w->side) / last - 1.0) * M_PI;
-    const double m[3] = {sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta)};
-    const double cosine = cosine_between(theta_i, theta, phi);
-    const double o[3] = {2.0 * cosine * m[0] - sin(theta_i), 2.0 * cosine * m[1],
-                         2.0 * cosine * m[2] - cos(theta_i)};
-    const double theta_o = atan2(hypot(o[0], o[1]), o[2]);
-    *pair =
-        (gonio_pair){{fmin(theta_i, w->limit), 0.0}, {fmin(theta_o, w->limit), atan2(o[1], o[0])}};
-    const double area = look_up_normal(w->sigma[0], sqrt(theta_i * (2.0 / M_PI)));
-    const double ndf = look_up_normal(w->ndf[0], u);
-    return (place){.factor = 4.0 * area * o[2] / ndf,
-                   .angle = o[2] > 0.0 ? ndf * fmax(cosine, 0.0) * u * sin(theta) : 0.0,
-                   .measured = theta_i <= w->limit && theta_o <= w->limit};
+    double u[2];
+    const double density = gonio_i_warp_sample(&w->warp, &slice, s, u);
+    const gonio_i_rgl_mirrored to = gonio_i_rgl_mirror(theta_i, u[0], u[1]);
+    *pair = (gonio_pair){{fmin(theta_i, w->limit), 0.0},
+                         {fmin(to.outgoing.theta, w->limit), to.outgoing.phi}};
+    const double area = gonio_i_rgl_look_up(w->sigma[0], sqrt(theta_i * (2.0 / M_PI)));
+    const double ndf = gonio_i_rgl_look_up(w->ndf[0], u[0]);
+    const double angle = fmax(to.cosine_m, 0.0) * u[0] * sin(to.theta_m) / density;
+    return (place){.factor = 4.0 * area * to.cosine_o / ndf,
+                   .angle = to.cosine_o > 0.0 ? ndf * angle : 0.0,
+                   .measured = theta_i <= w->limit && to.outgoing.theta <= w->limit};
 }
 
 /* Empty places get the mean of their neighbours, ring by ring, in all channels. */
@@ -329,7 +327,7 @@ static gonio_status write_fields(const writer *w, const char *path)
         {"theta_i", GONIO_I_TENSOR_F32, 1, {THETAS}, w->theta},
         {"sigma", GONIO_I_TENSOR_F32, 2, {2, NORMALS}, w->sigma},
         {"ndf", GONIO_I_TENSOR_F32, 2, {2, NORMALS}, w->ndf},
-        {"vndf", GONIO_I_TENSOR_F32, 4, {1, THETAS, WARP, WARP}, w->vndf},
+        {"vndf", GONIO_I_TENSOR_F32, 4, {1, THETAS, 2, NORMALS}, w->vndf},
         {"luminance", GONIO_I_TENSOR_F32, 4, {1, THETAS, w->side, w->side}, w->luminance},
         {spectral ? "spectra" : "rgb",
          GONIO_I_TENSOR_F32,
@@ -372,17 +370,12 @@ static gonio_status begin(writer *w)
         w->theta[t] = (float)(M_PI / 2.0 * (1.0 - pow(left, GRAZING)));
     }
     const size_t nodes = w->side * w->side;
-    w->vndf = gonio_i_allocate(w->context, VNDF, sizeof *w->vndf);
     w->value = gonio_i_allocate(w->context, THETAS * w->channels * nodes, sizeof *w->value);
     w->luminance = gonio_i_allocate(w->context, THETAS * nodes, sizeof *w->luminance);
     w->valid = gonio_i_allocate(w->context, bytes_of_bits(THETAS * nodes), sizeof *w->valid);
     w->weight = gonio_i_allocate(w->context, w->channels, sizeof *w->weight);
-    if (w->vndf == NULL || w->value == NULL || w->luminance == NULL || w->valid == NULL ||
-        w->weight == NULL) {
+    if (w->value == NULL || w->luminance == NULL || w->valid == NULL || w->weight == NULL) {
         return GONIO_ERROR_MEMORY;
-    }
-    for (size_t k = 0; k < VNDF; k++) {
-        w->vndf[k] = 1.0F;
     }
     static const double rgb[GONIO_CHANNELS] = {0.2126, 0.7152, 0.0722};
     for (size_t c = 0; c < w->channels; c++) {
@@ -393,7 +386,7 @@ static gonio_status begin(writer *w)
 
 static void end(writer *w)
 {
-    free(w->vndf);
+    gonio_i_warp_free(&w->warp);
     free(w->value);
     free(w->luminance);
     free(w->valid);
@@ -418,6 +411,9 @@ gonio_status gonio_material_write_rgl(gonio_context *context, const gonio_materi
     }
     if (status == GONIO_OK) {
         find_sigma(w);
+        status = find_vndf(w);
+    }
+    if (status == GONIO_OK) {
         status = find_values(w);
     }
     if (status == GONIO_OK) {
