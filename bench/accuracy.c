@@ -147,9 +147,9 @@ static double coverage(gonio_context *context, const gonio_material *original,
     for (int slab = 0; slab < GONIO_THETA_H_BINS; slab++) {
         double *other = rho + GONIO_SLAB_VALUES;
         double *sigma = other + GONIO_SLAB_VALUES;
-        check(gonio_material_read_slab(original, context, slab, rho));
-        check(gonio_material_read_slab(made, context, slab, other));
-        check(gonio_material_read_slab(deviation, context, slab, sigma));
+        check(gonio_material_read_slab(context, original, slab, rho));
+        check(gonio_material_read_slab(context, made, slab, other));
+        check(gonio_material_read_slab(context, deviation, slab, sigma));
         for (size_t k = 0; k < GONIO_SLAB_VALUES; k++) {
             const int channel = (int)(k / GONIO_SLAB_BINS);
             if (rho[k] >= 0.0 && other[k] >= 0.0) {

@@ -157,10 +157,10 @@ GONIO_API gonio_database_view gonio_database_describe(const gonio_database *data
 /* Reads rows first .. first + count - 1 of H into block[column][count] (column-major), for the
  * columns of the given materials (indices into names) in that order; subset NULL for all materials.
  * Errors: _ARGUMENT (outside the matrix), _IO. */
-GONIO_API gonio_status gonio_database_read_rows(const gonio_database *database,
-                                                gonio_context *context, size_t first, size_t count,
-                                                const size_t *subset, size_t subset_count,
-                                                double *block);
+GONIO_API gonio_status gonio_database_read_rows(gonio_context *context,
+                                                const gonio_database *database, size_t first,
+                                                size_t count, const size_t *subset,
+                                                size_t subset_count, double *block);
 
 #ifdef __cplusplus
 }

@@ -102,8 +102,9 @@ typedef enum gonio_illuminant {
  * in which a flat spectrum is white; one channel as grey; 0 in a channel without data where others
  * have some; no data beyond theta_limit. Errors: _ARGUMENT (theta_h outside 0 .. 89), and those of
  * the source (_IO, _FORMAT). */
-GONIO_API gonio_status gonio_material_read_slab(const gonio_material *material,
-                                                gonio_context *context, int theta_h, double *rho);
+GONIO_API gonio_status gonio_material_read_slab(gonio_context *context,
+                                                const gonio_material *material, int theta_h,
+                                                double *rho);
 
 /* A 64-bit fingerprint of a material's values: XXH3 over the slabs in order, as little-endian
  * doubles in 1/sr. Copies of a MERL table have the same fingerprint; a neural BRDF and the table

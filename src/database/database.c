@@ -326,7 +326,7 @@ static gonio_status read_slab(gonio_context *context, const gonio_database *data
                               const gonio_material *material, int theta_h, const reader *r,
                               gonio_fingerprint *fingerprint, size_t *with_data)
 {
-    gonio_status status = gonio_material_read_slab(material, context, theta_h, r->rho);
+    gonio_status status = gonio_material_read_slab(context, material, theta_h, r->rho);
     if (status != GONIO_OK) {
         return status;
     }
@@ -708,7 +708,7 @@ static void copy_rows(gonio_i_row_range rows, const float *values, size_t column
     }
 }
 
-gonio_status gonio_database_read_rows(const gonio_database *database, gonio_context *context,
+gonio_status gonio_database_read_rows(gonio_context *context, const gonio_database *database,
                                       size_t first, size_t count, const size_t *subset,
                                       size_t subset_count, double *block)
 {

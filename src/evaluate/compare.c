@@ -61,9 +61,9 @@ static gonio_status sum_slab(gonio_context *context, const gonio_material *refer
                              const gonio_material *other, int theta_h, const scratch *s,
                              slab_sums *sums)
 {
-    gonio_status status = gonio_material_read_slab(reference, context, theta_h, s->reference);
+    gonio_status status = gonio_material_read_slab(context, reference, theta_h, s->reference);
     if (status == GONIO_OK) {
-        status = gonio_material_read_slab(other, context, theta_h, s->other);
+        status = gonio_material_read_slab(context, other, theta_h, s->other);
     }
     if (status != GONIO_OK) {
         return status;

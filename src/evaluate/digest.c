@@ -109,7 +109,7 @@ static void fill_own(slab *s)
 static gonio_status read_slab(gonio_context *context, const gonio_material *material, int theta_h,
                               gonio_fingerprint *fingerprint, slab *s)
 {
-    const gonio_status status = gonio_material_read_slab(material, context, theta_h, s->rho);
+    const gonio_status status = gonio_material_read_slab(context, material, theta_h, s->rho);
     if (status != GONIO_OK) {
         return status;
     }

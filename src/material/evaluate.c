@@ -81,7 +81,7 @@ static gonio_status hold(gonio_context *context, const gonio_material *material,
     }
     w->held[at] = theta_h;
     w->slab[theta_h] = w->buffer[at];
-    return gonio_material_read_slab(material, context, theta_h, w->buffer[at]);
+    return gonio_material_read_slab(context, material, theta_h, w->buffer[at]);
 }
 
 static gonio_status look_up_places(gonio_context *context, const gonio_material *material,

@@ -129,7 +129,7 @@ gonio_status gonio_i_slab_evaluate(gonio_context *context, const gonio_material_
     return status;
 }
 
-gonio_status gonio_material_read_slab(const gonio_material *material, gonio_context *context,
+gonio_status gonio_material_read_slab(gonio_context *context, const gonio_material *material,
                                       int theta_h, double *rho)
 {
     if (theta_h < 0 || theta_h >= GONIO_THETA_H_BINS) {

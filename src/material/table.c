@@ -22,7 +22,7 @@ static void load_slabs(gonio_context *team, const gonio_material *material, int 
 #pragma omp atomic read
         mine = *status;
         if (mine == GONIO_OK) {
-            mine = gonio_material_read_slab(material, team, theta_h,
+            mine = gonio_material_read_slab(team, material, theta_h,
                                             rho + (size_t)theta_h * GONIO_SLAB_VALUES);
         }
         int done;

@@ -39,7 +39,7 @@ static int slab_of(const reader *r, int32_t cell)
 
 static gonio_status read_slab(reader *r, int theta_h)
 {
-    const gonio_status status = gonio_material_read_slab(r->material, r->context, theta_h, r->g);
+    const gonio_status status = gonio_material_read_slab(r->context, r->material, theta_h, r->g);
     if (status == GONIO_OK) {
         gonio_slab_mask(theta_h, r->g, r->data);
         gonio_slab_to_mapped(r->basis.mapping, theta_h, r->g, r->g);

@@ -210,7 +210,7 @@ static gonio_status read_average(void *self, gonio_context *context, int theta_h
         return GONIO_ERROR_MEMORY;
     }
     const gonio_material *const *original = self;
-    const gonio_status status = gonio_material_read_slab(*original, context, theta_h, rho);
+    const gonio_status status = gonio_material_read_slab(context, *original, theta_h, rho);
     if (status == GONIO_OK) {
         gonio_slab_statistics statistics;
         gonio_slab_mask(theta_h, rho, data);

@@ -49,7 +49,7 @@ static void sky(const double d[3], double rgb[3])
     static const double horizon[3] = {0.85, 0.90, 1.00};
     static const double ground[3] = {0.20, 0.16, 0.12};
     static const double warm[3] = {1.0, 0.92, 0.78};
-    const double cosine = fmin(gonio_i_dot(d, sun), 1.0);
+    const double cosine = fmin(gonio_i_dot3(d, sun), 1.0);
     const double height = fmax(d[1], 0.0);
     const double above = smooth_step(-0.02, 0.02, d[1]);
     const double disc = 260.0 * smooth_step(3.4, 2.6, acos(cosine) * 180.0 / M_PI);

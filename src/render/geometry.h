@@ -4,14 +4,14 @@
 
 #include <math.h>
 
-static inline double gonio_i_dot(const double a[3], const double b[3])
+static inline double gonio_i_dot3(const double a[3], const double b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 static inline double gonio_i_length(const double a[3])
 {
-    return sqrt(gonio_i_dot(a, a));
+    return sqrt(gonio_i_dot3(a, a));
 }
 
 /* a + s b; result may be a. */
@@ -50,9 +50,9 @@ static inline gonio_i_frame gonio_i_frame_about(const double z[3])
 static inline void gonio_i_to_local(const gonio_i_frame *frame, const double world[3],
                                     double local[3])
 {
-    local[0] = gonio_i_dot(world, frame->x);
-    local[1] = gonio_i_dot(world, frame->y);
-    local[2] = gonio_i_dot(world, frame->z);
+    local[0] = gonio_i_dot3(world, frame->x);
+    local[1] = gonio_i_dot3(world, frame->y);
+    local[2] = gonio_i_dot3(world, frame->z);
 }
 
 static inline void gonio_i_to_world(const gonio_i_frame *frame, const double local[3],

@@ -70,7 +70,7 @@ static void mean_normal(const neighbours *n, size_t triangle, uint32_t corner, f
     for (size_t k = n->first[corner]; k < n->first[corner + 1]; k++) {
         const double *other = n->face + 3 * (size_t)n->triangle[k];
         const double lengths = gonio_i_length(own) * gonio_i_length(other);
-        if (gonio_i_dot(own, other) >= crease * lengths) {
+        if (gonio_i_dot3(own, other) >= crease * lengths) {
             gonio_i_along(sum, 1.0, other, sum);
         }
     }

@@ -86,7 +86,7 @@ typedef struct place {
 /* Whether light from a direction (of the world) arrives, after so long a way. */
 static bool arrives(const view *v, const place *p, const double world[3], double distance)
 {
-    return gonio_i_dot(p->frame.z, world) > 0.0 && gonio_i_dot(p->hit->face, world) > 0.0 &&
+    return gonio_i_dot3(p->frame.z, world) > 0.0 && gonio_i_dot3(p->hit->face, world) > 0.0 &&
            gonio_i_scene_is_free(v->scene, p->hit, world, distance);
 }
 
@@ -112,7 +112,7 @@ static void add_lamp(const view *v, const place *p, double sum[3])
     if (o->lamp == GONIO_LAMP_POINT) {
         gonio_i_along(o->lamp_position, -1.0, p->hit->point, direction);
         distance = gonio_i_length(direction);
-        strength *= gonio_i_dot(o->lamp_position, o->lamp_position) / (distance * distance);
+        strength *= gonio_i_dot3(o->lamp_position, o->lamp_position) / (distance * distance);
     }
     gonio_i_normalise(direction);
     if (arrives(v, p, direction, distance)) {

@@ -114,7 +114,7 @@ static struct RTCRay ray_from(const double origin[3], const double direction[3],
 
 static void turn_towards(const double side[3], double v[3])
 {
-    const double sign = gonio_i_dot(side, v) < 0.0 ? -1.0 : 1.0;
+    const double sign = gonio_i_dot3(side, v) < 0.0 ? -1.0 : 1.0;
     for (int k = 0; k < 3; k++) {
         v[k] *= sign;
     }
@@ -163,7 +163,7 @@ bool gonio_i_scene_trace(const gonio_i_scene *scene, const double origin[3],
     }
     interpolate_normal(scene->mesh, &found.hit, hit);
     turn_towards(hit->face, hit->normal);
-    if (gonio_i_dot(hit->normal, back) <= 0.0) { /* at the rim of a coarse mesh */
+    if (gonio_i_dot3(hit->normal, back) <= 0.0) { /* at the rim of a coarse mesh */
         memcpy(hit->normal, hit->face, sizeof hit->normal);
     }
     return true;

@@ -285,7 +285,7 @@ bool gonio_i_surface_sample(const gonio_i_surface *surface, const double outgoin
     }
     double half[3];
     sample_half(surface, uniform, half);
-    const double cosine = gonio_i_dot(outgoing, half);
+    const double cosine = gonio_i_dot3(outgoing, half);
     for (int k = 0; k < 3; k++) {
         incident[k] = 2.0 * cosine * half[k] - outgoing[k];
     }

@@ -136,7 +136,7 @@ static void assert_relative_rows(gonio_representation representation)
                 bins++;
             }
         }
-        assert_int_equal(gonio_database_read_rows(database, NULL, i, 1, NULL, 0, row), GONIO_OK);
+        assert_int_equal(gonio_database_read_rows(NULL, database, i, 1, NULL, 0, row), GONIO_OK);
         assert_close(row[1], sum / bins, 2e-6);
     }
     gonio_table_free(&table);
@@ -178,7 +178,7 @@ static void test_medians_of_what_is_learned(void **state)
         assert_int_equal(view.variance_count, 3 * count);
         for (size_t i = 0; i < view.rows; i += 211) {
             double x[MOST];
-            assert_int_equal(gonio_database_read_rows(database, NULL, i, 1, subset, count, x),
+            assert_int_equal(gonio_database_read_rows(NULL, database, i, 1, subset, count, x),
                              GONIO_OK);
             for (size_t j = 0; j < 3 * count; j++) {
                 x[j] = 0.001 * expm1(x[j]); /* rho w */
@@ -207,7 +207,7 @@ static void test_loadings(void **state)
         double *vectors = support_vectors(basis);
         for (size_t i = 0; i < view.rows; i += 97) {
             double h[MATERIALS];
-            assert_int_equal(gonio_database_read_rows(database, NULL, i, 1, NULL, 0, h), GONIO_OK);
+            assert_int_equal(gonio_database_read_rows(NULL, database, i, 1, NULL, 0, h), GONIO_OK);
             assert_true(!without_mean || view.mean[i] == 0.0);
             for (size_t column = 0; column < MATERIALS; column++) {
                 double sum = view.mean[i];
@@ -689,7 +689,7 @@ static void test_material_rows_are_the_databases(void **state)
         }
         assert_int_equal(gonio_material_rows(f->context, basis, material, rows, 11, b), GONIO_OK);
         for (size_t i = 0; i < 11; i++) {
-            assert_int_equal(gonio_database_read_rows(database, NULL, rows[i], 1, NULL, 0, h),
+            assert_int_equal(gonio_database_read_rows(NULL, database, rows[i], 1, NULL, 0, h),
                              GONIO_OK);
             for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
                 assert_close(b[channel * 11 + i], h[3 * 2 + channel], 2e-6);

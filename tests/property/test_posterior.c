@@ -1023,7 +1023,7 @@ static void assert_sane(const gonio_reconstruction *made)
     assert_int_equal(gonio_reconstruction_material(context, basis, made, "made", &material),
                      GONIO_OK);
     for (int theta_h = 0; theta_h < GONIO_THETA_H_BINS; theta_h++) {
-        assert_int_equal(gonio_material_read_slab(material, context, theta_h, rho), GONIO_OK);
+        assert_int_equal(gonio_material_read_slab(context, material, theta_h, rho), GONIO_OK);
         for (int k = 0; k < GONIO_CHANNELS * GONIO_SLAB_BINS; k++) {
             const int inside = k % GONIO_SLAB_BINS;
             const gonio_bin bin = {theta_h, inside / GONIO_PHI_D_BINS, inside % GONIO_PHI_D_BINS};

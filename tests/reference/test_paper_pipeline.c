@@ -60,7 +60,7 @@ static void summarise(const char *name, summary *s)
     bool *mask = malloc(GONIO_SLAB_BINS * sizeof *mask);
     gonio_slab_statistics statistics;
     for (int h = 0; h < GONIO_THETA_H_BINS; h++) {
-        assert_int_equal(gonio_material_read_slab(material, data.context, h, rho), GONIO_OK);
+        assert_int_equal(gonio_material_read_slab(data.context, material, h, rho), GONIO_OK);
         gonio_slab_mask(h, rho, mask);
         gonio_slab_to_log(rho, rho);
         gonio_slab_reduce(rho, mask, &statistics);

@@ -78,7 +78,7 @@ static void assert_projection(const gonio_database *database, const gonio_basis 
     double *c = calloc(k, sizeof *c);
     double *variance = calloc(k, sizeof *variance);
     assert_true(h != NULL && c != NULL && variance != NULL);
-    assert_int_equal(gonio_database_read_rows(database, NULL, 0, data.rows, NULL, 0, h), GONIO_OK);
+    assert_int_equal(gonio_database_read_rows(NULL, database, 0, data.rows, NULL, 0, h), GONIO_OK);
     for (size_t column = 0; column < data.columns; column++) {
         double *x = h + column * data.rows;
         double scatter = 0.0;

@@ -37,7 +37,7 @@ static double *plain_log(const char *path, gonio_representation representation)
     assert_int_equal(gonio_material_open(NULL, path, &material), GONIO_OK);
     for (int h = 0; h < GONIO_THETA_H_BINS; h++) {
         gonio_slab_statistics statistics;
-        assert_int_equal(gonio_material_read_slab(material, NULL, h, rho), GONIO_OK);
+        assert_int_equal(gonio_material_read_slab(NULL, material, h, rho), GONIO_OK);
         gonio_slab_mask(h, rho, data);
         gonio_slab_to_log(rho, rho);
         gonio_slab_reduce(rho, data, &statistics);
@@ -67,7 +67,7 @@ static void assert_rows(const gonio_database *database, const char *const *files
     const size_t per_material = joint ? 1 : GONIO_CHANNELS;
     double *block = malloc(per_material * subset_count * count * sizeof *block);
     assert_int_equal(
-        gonio_database_read_rows(database, NULL, first, count, subset, subset_count, block),
+        gonio_database_read_rows(NULL, database, first, count, subset, subset_count, block),
         GONIO_OK);
     for (size_t j = 0; j < per_material * subset_count; j++) {
         double *g = plain_log(files[subset[j / per_material]], view.representation);
@@ -162,11 +162,11 @@ static void test_what_cannot_be_read(void **state)
     gonio_context *context = support_context();
     gonio_database *database = make_database(paths, MATERIALS, GONIO_BIVARIATE, GONIO_JOINT);
     const size_t rows = gonio_database_describe(database).rows;
-    assert_int_equal(gonio_database_read_rows(database, context, rows, 1, NULL, 0, &value),
+    assert_int_equal(gonio_database_read_rows(context, database, rows, 1, NULL, 0, &value),
                      GONIO_ERROR_ARGUMENT);
-    assert_int_equal(gonio_database_read_rows(database, context, 0, rows + 1, NULL, 0, &value),
+    assert_int_equal(gonio_database_read_rows(context, database, 0, rows + 1, NULL, 0, &value),
                      GONIO_ERROR_ARGUMENT);
-    assert_int_equal(gonio_database_read_rows(database, context, 0, 1, no_such, 1, &value),
+    assert_int_equal(gonio_database_read_rows(context, database, 0, 1, no_such, 1, &value),
                      GONIO_ERROR_ARGUMENT);
     assert_non_null(strstr(support_message(), "material 3 of a database of 3"));
     gonio_database_free(&database);
@@ -205,9 +205,9 @@ static void test_materials_in_memory(void **state)
     for (size_t k = 0; k < MATERIALS; k++) {
         assert_string_equal(a.names[k], b.names[k]);
     }
-    assert_int_equal(gonio_database_read_rows(from_files, NULL, 100, COUNT, NULL, 0, block[0]),
+    assert_int_equal(gonio_database_read_rows(NULL, from_files, 100, COUNT, NULL, 0, block[0]),
                      GONIO_OK);
-    assert_int_equal(gonio_database_read_rows(from_materials, NULL, 100, COUNT, NULL, 0, block[1]),
+    assert_int_equal(gonio_database_read_rows(NULL, from_materials, 100, COUNT, NULL, 0, block[1]),
                      GONIO_OK);
     assert_memory_equal(block[0], block[1], sizeof block[0]);
     gonio_database_free(&from_materials);

@@ -53,7 +53,7 @@ static fixture make(gonio_context *context, int kind)
     f.h = malloc(f.view.columns * f.view.rows * sizeof *f.h);
     float *values = malloc(f.view.mixtures * f.view.rows * sizeof *values);
     assert_true(f.h != NULL && values != NULL);
-    assert_int_equal(gonio_database_read_rows(f.database, NULL, 0, f.view.rows, NULL, 0, f.h),
+    assert_int_equal(gonio_database_read_rows(NULL, f.database, 0, f.view.rows, NULL, 0, f.h),
                      GONIO_OK);
     gonio_i_mixtures *mixtures = NULL;
     assert_int_equal(gonio_i_mixtures_create(context, f.basis, f.database, &options, &mixtures),

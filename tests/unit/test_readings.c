@@ -547,7 +547,7 @@ static void test_a_single_channel(void **state)
     assert_true(fabs(value / green[0] - 1.0) < 0.05);
     assert_int_equal(gonio_reconstruction_material(context, basis, made, "grey", &material),
                      GONIO_OK);
-    assert_int_equal(gonio_material_read_slab(material, context, 20, slab), GONIO_OK);
+    assert_int_equal(gonio_material_read_slab(context, material, 20, slab), GONIO_OK);
     for (size_t k = 0; k < GONIO_SLAB_BINS; k++) {
         off = fmax(off, fabs(slab[k] - slab[GONIO_SLAB_BINS + k]) / fabs(slab[k]));
     }

@@ -121,14 +121,14 @@ static void test_table_on_disk(void **state)
     double *b = a + GONIO_SLAB_VALUES;
     assert_non_null(a);
     for (int theta_h = 0; theta_h < GONIO_THETA_H_BINS; theta_h += 11) {
-        assert_int_equal(gonio_material_read_slab(material, NULL, theta_h, a), GONIO_OK);
-        assert_int_equal(gonio_material_read_slab(again, NULL, theta_h, b), GONIO_OK);
+        assert_int_equal(gonio_material_read_slab(NULL, material, theta_h, a), GONIO_OK);
+        assert_int_equal(gonio_material_read_slab(NULL, again, theta_h, b), GONIO_OK);
         for (int k = 0; k < GONIO_SLAB_VALUES; k++) {
             assert_close(b[k], a[k], 1e-15 * fabs(a[k]));
         }
     }
-    assert_int_equal(gonio_material_read_slab(again, NULL, 90, a), GONIO_ERROR_ARGUMENT);
-    assert_int_equal(gonio_material_read_slab(again, NULL, -1, a), GONIO_ERROR_ARGUMENT);
+    assert_int_equal(gonio_material_read_slab(NULL, again, 90, a), GONIO_ERROR_ARGUMENT);
+    assert_int_equal(gonio_material_read_slab(NULL, again, -1, a), GONIO_ERROR_ARGUMENT);
     free(a);
     gonio_material_free(&again);
     gonio_material_free(&material);
@@ -165,7 +165,7 @@ static void test_slabs_in_log_space(void **state)
     static gonio_slab_statistics statistics;
     assert_non_null(rho);
     for (int theta_h = 5; theta_h < GONIO_THETA_H_BINS; theta_h += 20) {
-        assert_int_equal(gonio_material_read_slab(material, NULL, theta_h, rho), GONIO_OK);
+        assert_int_equal(gonio_material_read_slab(NULL, material, theta_h, rho), GONIO_OK);
         rho[7] = -1.0; /* one hole */
         rho[7 + GONIO_SLAB_BINS] = -1.0;
         rho[7 + 2 * GONIO_SLAB_BINS] = -1.0;

@@ -256,7 +256,7 @@ static gonio_status report_slab(const writer *w)
 
 static gonio_status write_slab(const writer *w, int theta_h, double *rho)
 {
-    gonio_status status = gonio_material_read_slab(w->material, w->context, theta_h, rho);
+    gonio_status status = gonio_material_read_slab(w->context, w->material, theta_h, rho);
     for (int channel = 0; channel < GONIO_CHANNELS && status == GONIO_OK; channel++) {
         double *plane = rho + (size_t)channel * GONIO_SLAB_BINS;
         to_stored(plane, channel);
