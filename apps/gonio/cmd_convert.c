@@ -42,8 +42,8 @@ int cmd_convert(int argc, const char **argv)
         .table = table,
         .usage = "[OPTION...] IN OUT",
         .text =
-            "IN is a MERL .binary table, a neural BRDF .h5, an RGL .bsdf or atlas:NAME (a built-in "
-            "material; 'gonio info atlas:' lists them).\n"
+            "IN is a MERL .binary table, a neural BRDF .h5, an RGL .bsdf, a KAIST .pbsdf, a UTIA "
+            ".bin, a BSDF-XML matrix or atlas:NAME (a built-in material; 'gonio info atlas:' lists them).\n"
             "OUT becomes an RGL .bsdf, for Mitsuba 3 and pbrt-v4, if its name ends in .bsdf, and a "
             "MERL .binary table otherwise.",
         .work = run};

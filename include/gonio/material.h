@@ -56,7 +56,8 @@ typedef struct gonio_material_view {
 } gonio_material_view;
 
 /* Opens a material: a MERL .binary table (phi_d of 180 bins, or 360 folded by reciprocity), a
- * neural BRDF .h5, an RGL .bsdf (RGB or spectral, isotropic or not), recognised by content, or
+ * neural BRDF .h5, an RGL .bsdf (RGB or spectral, isotropic or not), the unpolarised part of a KAIST
+ * .pbsdf, a UTIA .bin, the reflection of a BSDF-XML matrix (Klems), recognised by content, or
  * "atlas:NAME" for a built-in one. The path is copied.
  * Errors: _IO (missing, unreadable, a directory), _FORMAT (not a known format, truncated,
  * oversized, non-finite weights), _ARGUMENT (no such built-in material), _MEMORY. */

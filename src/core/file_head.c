@@ -6,6 +6,22 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "gzip.h"
+
+/* Of a text compressed with gzip, the text's beginning. Other content stays as it is. */
+static void decompress_head(gonio_i_file *file)
+{
+    char text[GONIO_I_HEAD];
+    if (!gonio_i_gzip_begins(file->head, file->head_size)) {
+        return;
+    }
+    const size_t size = gonio_i_gzip_head(file->head, file->head_size, text, sizeof text);
+    if (size > 0 && memchr(text, '\0', size) == NULL) {
+        memcpy(file->head, text, size);
+        file->head_size = size;
+    }
+}
+
 gonio_status gonio_i_file_look(gonio_context *context, const char *path, gonio_i_file *file)
 {
     struct stat status;
@@ -23,8 +39,9 @@ gonio_status gonio_i_file_look(gonio_context *context, const char *path, gonio_i
     file->path = path;
     file->size = (uint64_t)status.st_size;
     file->head_size = fread(file->head, 1, GONIO_I_HEAD, stream);
-    file->head[file->head_size] = '\0';
     fclose(stream);
+    decompress_head(file);
+    file->head[file->head_size] = '\0';
     return GONIO_OK;
 }
 

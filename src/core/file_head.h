@@ -13,8 +13,8 @@ typedef struct gonio_i_file {
     uint64_t size;               /* of the whole file */
 } gonio_i_file;
 
-/* Looks at a regular file; `path` is kept. Errors: _IO (missing, unreadable, a directory, or a
- * pipe, which could not be read again). */
+/* Looks at a regular file; `path` is kept. Of a text compressed with gzip, `head` is the text.
+ * Errors: _IO (missing, unreadable, a directory, or a pipe, which could not be read again). */
 gonio_status gonio_i_file_look(gonio_context *context, const char *path, gonio_i_file *file);
 
 /* Whether a file begins with these bytes. */

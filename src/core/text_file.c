@@ -8,6 +8,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "gzip.h"
+
 enum { MOST_BYTES = 1 << 30, LEAST_ROOM = 1 << 16 };
 
 /* What a regular file holds, and a byte more that tells its end; a guess for others. */
@@ -58,6 +60,17 @@ static gonio_status read_descriptor(gonio_context *context, const char *path, in
     return gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", path);
 }
 
+/* Puts the decompressed text in place of a gzip file. */
+static gonio_status decompress(gonio_context *context, const char *path, char **text, size_t *size)
+{
+    char *plain = NULL;
+    const gonio_status status =
+        gonio_i_gzip_text(context, path, *text, *size, MOST_BYTES, &plain, size);
+    free(*text);
+    *text = plain;
+    return status;
+}
+
 gonio_status gonio_i_text_read(gonio_context *context, const char *path, char **text, size_t *size)
 {
     *text = NULL;
@@ -66,8 +79,11 @@ gonio_status gonio_i_text_read(gonio_context *context, const char *path, char **
     if (descriptor < 0) {
         return gonio_i_fail(context, GONIO_ERROR_IO, "%s: cannot read: %s", path, strerror(errno));
     }
-    const gonio_status status = read_descriptor(context, path, descriptor, text, size);
+    gonio_status status = read_descriptor(context, path, descriptor, text, size);
     close(descriptor);
+    if (status == GONIO_OK && gonio_i_gzip_begins(*text, *size)) {
+        status = decompress(context, path, text, size);
+    }
     if (status != GONIO_OK) {
         free(*text);
         *text = NULL;

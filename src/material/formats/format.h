@@ -19,6 +19,9 @@ typedef struct gonio_i_format_reader {
 extern const gonio_i_format_reader gonio_i_merl_reader;
 extern const gonio_i_format_reader gonio_i_neural_reader;
 extern const gonio_i_format_reader gonio_i_rgl_reader;
+extern const gonio_i_format_reader gonio_i_kaist_reader;
+extern const gonio_i_format_reader gonio_i_utia_reader;
+extern const gonio_i_format_reader gonio_i_bsdf_xml_reader;
 
 /* The name of the format that a file is of; NULL if of none. */
 const char *gonio_i_material_format_of(const gonio_i_file *file);

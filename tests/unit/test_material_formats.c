@@ -1,0 +1,529 @@
+/* Materials in the formats of other databases and programs: made files with known values, and files
+ * that lie. */
+#include <gonio/material.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <zlib.h>
+
+#include "core/random.h"
+#include "material/tensor_write.h"
+
+#include "../support.h"
+
+static const double degree = M_PI / 180.0;
+
+static void write_bytes(const char *path, const void *bytes, size_t size)
+{
+    FILE *stream = fopen(path, "wb");
+    assert_non_null(stream);
+    assert_int_equal(fwrite(bytes, 1, size, stream), size);
+    assert_int_equal(fclose(stream), 0);
+}
+
+static unsigned char *read_bytes(const char *path, size_t *size)
+{
+    FILE *stream = fopen(path, "rb");
+    assert_non_null(stream);
+    assert_int_equal(fseek(stream, 0, SEEK_END), 0);
+    *size = (size_t)ftell(stream);
+    rewind(stream);
+    unsigned char *bytes = malloc(*size + 1);
+    assert_non_null(bytes);
+    assert_int_equal(fread(bytes, 1, *size, stream), *size);
+    assert_int_equal(fclose(stream), 0);
+    return bytes;
+}
+
+static gonio_material *open_good(const char *path)
+{
+    gonio_material *material = NULL;
+    assert_int_equal(gonio_material_open(NULL, path, &material), GONIO_OK);
+    return material;
+}
+
+/* Refused, with a message that has `part` in it. */
+static void check_refused(const char *path, const char *part)
+{
+    gonio_context *context = support_context();
+    gonio_material *material = NULL;
+    const gonio_status status = gonio_material_open(context, path, &material);
+    assert_int_equal(status, GONIO_ERROR_FORMAT);
+    assert_non_null(strstr(support_message(), part));
+    assert_null(material);
+    gonio_context_free(&context);
+}
+
+/* Copies of a file cut short, and with bytes changed at random, are refused or read, and what is
+ * read can be evaluated. */
+static void check_mutations(const char *path, const char *folder)
+{
+    enum { TIMES = 60 };
+    char mutated[4096];
+    size_t size = 0;
+    unsigned char *bytes = read_bytes(path, &size);
+    gonio_i_random random;
+    gonio_i_random_seed(&random, 5, 0);
+    snprintf(mutated, sizeof mutated, "%s/mutated", folder);
+    for (int k = 0; k < TIMES; k++) {
+        unsigned char *copy = malloc(size);
+        assert_non_null(copy);
+        memcpy(copy, bytes, size);
+        const size_t most = size < 600 ? size : 600;
+        for (int n = 0; n < 1 + k % 4; n++) {
+            copy[gonio_i_random_below(&random, k % 2 ? most : size)] =
+                (unsigned char)gonio_i_random_below(&random, 256);
+        }
+        write_bytes(mutated, copy, k % 3 == 0 ? gonio_i_random_below(&random, size) : size);
+        free(copy);
+        gonio_material *material = NULL;
+        if (gonio_material_open(NULL, mutated, &material) == GONIO_OK) {
+            const gonio_pair pair = {{0.3, 0.1}, {0.7, 2.0}};
+            const size_t channels = gonio_material_describe(material).channels;
+            double *values = calloc(channels, sizeof *values);
+            assert_int_equal(gonio_material_evaluate(NULL, material, &pair, 1, values), GONIO_OK);
+            free(values);
+            gonio_material_free(&material);
+        }
+    }
+    free(bytes);
+}
+
+/* ---- KAIST ---- */
+
+enum { PHIS = 5, DIFFERENCES = 4, HALVES = 4, LINES = 2 };
+
+/* Linear in the coordinates, so that interpolation between nodes is exact. */
+static double kaist_value(double phi_d, double theta_d, double theta_h, size_t line)
+{
+    return 0.5 + 0.1 * phi_d + 0.2 * theta_d + 0.3 * theta_h + 0.01 * (double)line;
+}
+
+static void make_kaist(const char *path, double hole)
+{
+    static float m[PHIS][DIFFERENCES][HALVES][LINES][16];
+    for (size_t p = 0; p < PHIS; p++) {
+        for (size_t d = 0; d < DIFFERENCES; d++) {
+            for (size_t h = 0; h < HALVES; h++) {
+                for (size_t c = 0; c < LINES; c++) {
+                    for (size_t k = 1; k < 16; k++) {
+                        m[p][d][h][c][k] = -77.0F;
+                    }
+                    m[p][d][h][c][0] =
+                        (float)kaist_value(((double)p / (PHIS - 1) * 2.0 - 1.0) * M_PI,
+                                           (double)d / (DIFFERENCES - 1) * M_PI / 2.0,
+                                           (double)h / (HALVES - 1) * M_PI / 2.0, c);
+                }
+            }
+        }
+    }
+    if (!isinf(hole)) {
+        m[3][1][1][0][0] = (float)hole;
+    }
+    const uint16_t wavelength[LINES] = {450, 622};
+    const gonio_i_tensor_field fields[] = {
+        {"theta_d", GONIO_I_TENSOR_F32, 2, {0, DIFFERENCES}, m},
+        {"theta_h", GONIO_I_TENSOR_F32, 2, {0, HALVES}, m},
+        {"phi_d", GONIO_I_TENSOR_F32, 2, {0, PHIS}, m},
+        {"wvls", GONIO_I_TENSOR_U16, 1, {LINES}, wavelength},
+        {"M", GONIO_I_TENSOR_F32, 6, {PHIS, DIFFERENCES, HALVES, LINES, 4, 4}, m},
+    };
+    assert_int_equal(gonio_i_tensor_write(NULL, path, fields, 5), GONIO_OK);
+}
+
+static void test_kaist(void **state)
+{
+    (void)state;
+    char *folder = support_folder();
+    char path[4096];
+    snprintf(path, sizeof path, "%s/x.pbsdf", folder);
+    make_kaist(path, INFINITY);
+    gonio_material *material = open_good(path);
+    const gonio_material_view view = gonio_material_describe(material);
+    assert_int_equal(view.channels, LINES);
+    assert_true(view.wavelength[0] == 450.0 && view.wavelength[1] == 622.0);
+    assert_false(view.anisotropic);
+    for (int k = 1; k < 12; k++) {
+        const gonio_half_difference at = {0.03 * k, 0.6 - 0.04 * k, 0.25 * k};
+        gonio_pair pair = gonio_pair_from_half_difference(at);
+        const gonio_pair back = {pair.outgoing, pair.incident};
+        double values[LINES];
+        pair.incident.phi += 1.0; /* isotropic */
+        pair.outgoing.phi += 1.0;
+        assert_int_equal(gonio_material_evaluate(NULL, material, &pair, 1, values), GONIO_OK);
+        for (size_t c = 0; c < LINES; c++) {
+            const double expected = kaist_value(at.phi_d, at.theta_d, at.theta_h, c);
+            assert_true(fabs(values[c] - expected) < 1e-6);
+        }
+        assert_int_equal(gonio_material_evaluate(NULL, material, &back, 1, values), GONIO_OK);
+        const double expected = kaist_value(at.phi_d - M_PI, at.theta_d, at.theta_h, 0);
+        assert_true(fabs(values[0] - expected) < 1e-6);
+    }
+    gonio_material_free(&material);
+    check_mutations(path, folder);
+    support_remove(folder);
+}
+
+/* A node without data: the others stand in for it, and at the node itself there is nothing. */
+static void test_kaist_without_data(void **state)
+{
+    (void)state;
+    static const double holes[] = {0.0, NAN};
+    char *folder = support_folder();
+    char path[4096];
+    snprintf(path, sizeof path, "%s/x.pbsdf", folder);
+    for (int k = 0; k < 2; k++) {
+        make_kaist(path, holes[k]);
+        gonio_material *material = open_good(path);
+        const gonio_pair pair = gonio_pair_from_half_difference(
+            (gonio_half_difference){M_PI / 6.0, M_PI / 6.0, M_PI / 2.0});
+        double values[LINES];
+        assert_int_equal(gonio_material_evaluate(NULL, material, &pair, 1, values), GONIO_OK);
+        /* rounding puts a trace of the weight on nodes around */
+        assert_true(isnan(values[0]) || fabs(values[0] - values[1]) < 0.5);
+        assert_true(fabs(values[1] - kaist_value(M_PI / 2.0, M_PI / 6.0, M_PI / 6.0, 1)) < 1e-6);
+        gonio_material_free(&material);
+    }
+    support_remove(folder);
+}
+
+/* ---- UTIA ---- */
+
+enum { UTIA_DIRECTIONS = 288, UTIA_VALUES = 3 * 288 * 288 };
+
+static double utia_value(size_t channel, size_t in, size_t out)
+{
+    return 0.01 * (double)(channel + 1) + 1e-4 * (double)in + 1e-7 * (double)out;
+}
+
+static double *make_utia(double unit)
+{
+    double *values = malloc(UTIA_VALUES * sizeof *values);
+    assert_non_null(values);
+    for (size_t k = 0; k < UTIA_VALUES; k++) {
+        values[k] = unit * utia_value(k / (UTIA_DIRECTIONS * UTIA_DIRECTIONS),
+                                      k / UTIA_DIRECTIONS % UTIA_DIRECTIONS, k % UTIA_DIRECTIONS);
+    }
+    return values;
+}
+
+static gonio_angles utia_direction(double theta, double phi)
+{
+    return (gonio_angles){15.0 * degree * theta, 7.5 * degree * phi};
+}
+
+static void check_utia(const char *path, bool scaled)
+{
+    gonio_material *material = open_good(path);
+    assert_true(gonio_material_describe(material).anisotropic);
+    assert_int_equal(strstr(gonio_material_format(material), "140") != NULL, scaled);
+    const gonio_pair pairs[3] = {
+        {utia_direction(2.0, 5.0), utia_direction(4.0, 47.0)},  /* measured ones */
+        {utia_direction(2.0, 5.0), utia_direction(4.0, 47.5)},  /* between the last and the first */
+        {utia_direction(1.5, -48.0), utia_direction(5.0, 3.0)}, /* between 1 and 2; a turn back */
+    };
+    double values[3][3];
+    assert_int_equal(gonio_material_evaluate(NULL, material, pairs, 3, values[0]), GONIO_OK);
+    for (size_t c = 0; c < 3; c++) {
+        const size_t in = 2 * 48 + 5;
+        const double first = utia_value(c, in, 4 * 48 + 47);
+        const double between = 0.5 * (first + utia_value(c, in, 4 * 48));
+        const double last =
+            0.5 * (utia_value(c, 48, 5 * 48 + 3) + utia_value(c, 2 * 48, 5 * 48 + 3));
+        assert_true(fabs(values[0][c] - first) < 1e-12);
+        assert_true(fabs(values[1][c] - between) < 1e-12);
+        assert_true(fabs(values[2][c] - last) < 1e-12);
+    }
+    const gonio_pair steep = {{76.0 * degree, 0.0}, {0.1, 0.0}};
+    assert_int_equal(gonio_material_evaluate(NULL, material, &steep, 1, values[0]), GONIO_OK);
+    assert_true(isnan(values[0][0]));
+    gonio_material_free(&material);
+}
+
+static void test_utia(void **state)
+{
+    (void)state;
+    char *folder = support_folder();
+    char path[4096];
+    snprintf(path, sizeof path, "%s/x.bin", folder);
+    for (int k = 0; k < 2; k++) {
+        double *values = make_utia(k == 0 ? 1.0 : 140.0);
+        write_bytes(path, values, UTIA_VALUES * sizeof *values);
+        check_utia(path, k == 1);
+        free(values);
+    }
+    double *values = make_utia(1.0);
+    values[70000] = NAN;
+    write_bytes(path, values, UTIA_VALUES * sizeof *values);
+    check_refused(path, "value 70000");
+    values[70000] = -0.5;
+    values[1] = 1e300;
+    write_bytes(path, values, UTIA_VALUES * sizeof *values);
+    check_refused(path, "not a material");
+    write_bytes(path, values, UTIA_VALUES * sizeof *values - 8);
+    check_refused(path, "not a material");
+    free(values);
+    support_remove(folder);
+}
+
+/* ---- BSDF-XML ---- */
+
+static const int rings[9] = {1, 8, 16, 20, 24, 24, 24, 16, 12};
+static const double bounds[10] = {0.0, 5.0, 15.0, 25.0, 35.0, 45.0, 55.0, 65.0, 75.0, 90.0};
+
+enum { PATCHES = 145, TEXT = 4 << 20 };
+
+/* What a matrix holds: an incident and an outgoing patch can be told from it. */
+static double klems_value(size_t in, size_t out)
+{
+    return 0.001 * (double)in + 0.000001 * (double)out;
+}
+
+typedef struct xml {
+    char *text;
+    size_t length;
+} xml;
+
+static void say(xml *x, const char *text)
+{
+    const size_t size = strlen(text);
+    assert_true(x->length + size < TEXT);
+    memcpy(x->text + x->length, text, size + 1);
+    x->length += size;
+}
+
+static void say_matrix(xml *x, const char *unit, const char *wavelength, const char *direction,
+                       double factor, const char *between)
+{
+    char number[64];
+    say(x, "<WavelengthData><LayerNumber>System</LayerNumber><Wavelength unit=\"");
+    say(x, unit);
+    say(x, "\">");
+    say(x, wavelength);
+    say(x, "</Wavelength><WavelengthDataBlock><WavelengthDataDirection>");
+    say(x, direction);
+    say(x, "</WavelengthDataDirection><ColumnAngleBasis>LBNL/Klems Full</ColumnAngleBasis>"
+           "<RowAngleBasis>LBNL/Klems Full</RowAngleBasis>"
+           "<ScatteringDataType>BTDF</ScatteringDataType><ScatteringData>\n");
+    for (size_t row = 0; row < PATCHES; row++) {
+        for (size_t column = 0; column < PATCHES; column++) {
+            snprintf(number, sizeof number, "%.6f%s", factor * klems_value(column, row), between);
+            say(x, number);
+        }
+        say(x, "\n");
+    }
+    say(x, "</ScatteringData></WavelengthDataBlock></WavelengthData>\n");
+}
+
+static xml begin_xml(const char *prolog, const char *structure)
+{
+    xml x = {malloc(TEXT), 0};
+    assert_non_null(x.text);
+    say(&x, "<?xml version=\"1.0\"?>\n");
+    say(&x, prolog);
+    say(&x, "<WindowElement xmlns=\"http://windows.lbl.gov\"><Optical><Layer><DataDefinition>"
+            "<IncidentDataStructure>");
+    say(&x, structure);
+    say(&x, "</IncidentDataStructure></DataDefinition>\n");
+    return x;
+}
+
+static void end_xml(xml *x, const char *path)
+{
+    say(x, "</Layer></Optical></WindowElement>\n");
+    write_bytes(path, x->text, x->length);
+    free(x->text);
+}
+
+/* Independent of the reader: the patch by a search through all. */
+static size_t patch_of(double theta, double phi)
+{
+    size_t first = 0;
+    for (size_t r = 0; r < 9; r++) {
+        for (int j = 0; j < rings[r]; j++) {
+            const double apart = remainder(phi / degree - 360.0 * j / rings[r], 360.0);
+            if (theta / degree >= bounds[r] && theta / degree < bounds[r + 1] &&
+                fabs(apart) <= 180.0 / rings[r]) {
+                return first + (size_t)j;
+            }
+        }
+        first += (size_t)rings[r];
+    }
+    return first;
+}
+
+static void check_klems(const char *path, double factor, bool rows)
+{
+    gonio_material *material = open_good(path);
+    gonio_i_random random;
+    gonio_i_random_seed(&random, 3, 0);
+    for (int k = 0; k < 500; k++) {
+        const gonio_pair pair = {
+            {1.5 * gonio_i_random_uniform(&random), 9.0 * k / 500.0 - 3.0},
+            {1.5 * gonio_i_random_uniform(&random), 2.0 * M_PI * gonio_i_random_uniform(&random)}};
+        const size_t in = patch_of(pair.incident.theta, pair.incident.phi + M_PI);
+        const size_t out = patch_of(pair.outgoing.theta, pair.outgoing.phi);
+        double value[3];
+        assert_int_equal(gonio_material_evaluate(NULL, material, &pair, 1, value), GONIO_OK);
+        const double expected = factor * (rows ? klems_value(out, in) : klems_value(in, out));
+        assert_true(fabs(value[0] - expected) < 1e-9);
+    }
+    gonio_material_free(&material);
+}
+
+static void test_klems(void **state)
+{
+    (void)state;
+    char *folder = support_folder();
+    char path[4096];
+    snprintf(path, sizeof path, "%s/x.xml", folder);
+    xml x = begin_xml("", "Columns");
+    say_matrix(&x, "Integral", "Solar", "Reflection Front", 3.0, ",\t");
+    say_matrix(&x, "Integral", "Visible", "Transmission Front", 4.0, ",");
+    say_matrix(&x, "Integral", "Visible", "Reflection Back", 5.0, ",");
+    say_matrix(&x, "Integral", "Visible", "Reflection Front", 2.0, "\n");
+    end_xml(&x, path);
+    check_klems(path, 2.0, false);
+    gonio_material *material = open_good(path);
+    assert_int_equal(gonio_material_describe(material).channels, 1);
+    assert_true(gonio_material_describe(material).anisotropic);
+    assert_non_null(strstr(gonio_material_format(material), "Front"));
+    gonio_material_free(&material);
+    check_mutations(path, folder);
+
+    x = begin_xml("", "Rows");
+    say_matrix(&x, "Integral", "Visible", "Reflection Back", 5.0, " ");
+    end_xml(&x, path);
+    check_klems(path, 5.0, true);
+    support_remove(folder);
+}
+
+static void test_klems_in_channels(void **state)
+{
+    (void)state;
+    char *folder = support_folder();
+    char path[4096];
+    snprintf(path, sizeof path, "%s/x.xml", folder);
+    xml x = begin_xml("", "Columns");
+    say_matrix(&x, "Micrometer", "0.55", "Reflection Front", 1.0, ",");
+    say_matrix(&x, "Nanometer", "650", "Reflection Front", 2.0, ",");
+    end_xml(&x, path);
+    gonio_material *material = open_good(path);
+    gonio_material_view view = gonio_material_describe(material);
+    assert_int_equal(view.channels, 2);
+    assert_true(fabs(view.wavelength[0] - 550.0) < 1e-9 && view.wavelength[1] == 650.0);
+    gonio_material_free(&material);
+
+    /* X, Y and Z alike are white. */
+    x = begin_xml("", "Columns");
+    say_matrix(&x, "Integral", "CIE-X", "Reflection Front", 1.0, ",");
+    say_matrix(&x, "Integral", "Visible", "Reflection Front", 1.0, ",");
+    say_matrix(&x, "Integral", "CIE-Z", "Reflection Front", 1.0, ",");
+    end_xml(&x, path);
+    material = open_good(path);
+    view = gonio_material_describe(material);
+    assert_int_equal(view.channels, 3);
+    assert_null(view.wavelength);
+    const gonio_pair pair = {{0.5, 0.0}, {0.7, 1.0}};
+    double value[3];
+    assert_int_equal(gonio_material_evaluate(NULL, material, &pair, 1, value), GONIO_OK);
+    const double expected = klems_value(patch_of(0.5, M_PI), patch_of(0.7, 1.0));
+    for (int c = 0; c < 3; c++) {
+        assert_true(fabs(value[c] - expected) < 1e-9);
+    }
+    gonio_material_free(&material);
+    support_remove(folder);
+}
+
+static void test_compressed_klems(void **state)
+{
+    (void)state;
+    char *folder = support_folder();
+    char path[4096];
+    snprintf(path, sizeof path, "%s/x.xml", folder);
+    xml x = begin_xml("", "Columns");
+    say_matrix(&x, "Integral", "Visible", "Reflection Front", 1.0, ",");
+    end_xml(&x, path);
+    size_t size = 0;
+    unsigned char *bytes = read_bytes(path, &size);
+    snprintf(path, sizeof path, "%s/x.xml.gz", folder);
+    gzFile out = gzopen(path, "wb");
+    assert_non_null(out);
+    assert_int_equal(gzwrite(out, bytes, (unsigned)size), (int)size);
+    assert_int_equal(gzclose(out), Z_OK);
+    free(bytes);
+    check_klems(path, 1.0, false);
+    bytes = read_bytes(path, &size);
+    write_bytes(path, bytes, size - 9);
+    check_refused(path, "gzip");
+    free(bytes);
+    check_mutations(path, folder);
+    support_remove(folder);
+}
+
+static void test_xml_that_lies(void **state)
+{
+    (void)state;
+    static const char bomb[] = "<!DOCTYPE b [<!ENTITY a \"ha\"><!ENTITY b \"&a;&a;&a;&a;&a;&a;\">"
+                               "<!ENTITY c \"&b;&b;&b;&b;&b;&b;\">]>";
+    static const char outside[] = "<!DOCTYPE b [<!ENTITY a SYSTEM \"file:///etc/passwd\">]>";
+    char *folder = support_folder();
+    char path[4096];
+    snprintf(path, sizeof path, "%s/x.xml", folder);
+    xml x = begin_xml(bomb, "&c;");
+    end_xml(&x, path);
+    check_refused(path, "entity");
+    x = begin_xml(outside, "&a;");
+    end_xml(&x, path);
+    check_refused(path, "entity");
+    x = begin_xml("", "Columns");
+    end_xml(&x, path);
+    check_refused(path, "no block of reflection");
+    x = begin_xml("", "TensorTree9");
+    say_matrix(&x, "Integral", "Visible", "Reflection Front", 1.0, ",");
+    end_xml(&x, path);
+    check_refused(path, "TensorTree9");
+    x = begin_xml("", "Columns");
+    say_matrix(&x, "Integral", "Visible", "Reflection Front", 1.0, ",");
+    char *number = strstr(x.text, "0.001000,");
+    assert_non_null(number);
+    memcpy(number, "nan     ", 8);
+    end_xml(&x, path);
+    check_refused(path, "finite");
+    x = begin_xml("", "Columns");
+    say_matrix(&x, "Integral", "Visible", "Reflection Front", 1.0, ",");
+    number = strstr(x.text, "0.001000,");
+    memset(number, ' ', 8);
+    end_xml(&x, path);
+    check_refused(path, "145 x 145");
+    x = begin_xml("", "Columns");
+    for (int k = 0; k < 100; k++) {
+        say(&x, "<Deep>");
+    }
+    end_xml(&x, path);
+    check_refused(path, "deep");
+    x = begin_xml("", "Columns");
+    say(&x, "<AngleBasis><AngleBasisName>LBNL/Klems Full</AngleBasisName><AngleBasisBlock>"
+            "<ThetaBounds><LowerTheta>0</LowerTheta><UpperTheta>90</UpperTheta></ThetaBounds>"
+            "<nPhis>1e9</nPhis></AngleBasisBlock></AngleBasis>");
+    end_xml(&x, path);
+    check_refused(path, "patches");
+    support_remove(folder);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_kaist),
+        cmocka_unit_test(test_kaist_without_data),
+        cmocka_unit_test(test_utia),
+        cmocka_unit_test(test_klems),
+        cmocka_unit_test(test_klems_in_channels),
+        cmocka_unit_test(test_compressed_klems),
+        cmocka_unit_test(test_xml_that_lies),
+    };
+    return cmocka_run_group_tests_name("material_formats", tests, NULL, NULL);
+}
