@@ -188,7 +188,8 @@ static gonio_readings *read_first(gonio_context *context, const subject *it, con
                                   size_t n)
 {
     gonio_readings *readings = first_of(context, plan, n);
-    const gonio_instrument_options instrument = {.noise = it->s->noise,
+    const gonio_instrument_options instrument = {.size = sizeof instrument,
+                                                 .noise = it->s->noise,
                                                  .floor = it->s->floor,
                                                  .seed = (uint64_t)it->split,
                                                  .outliers = it->s->outliers};
@@ -342,7 +343,7 @@ int main(int argc, char **argv)
         return 2;
     }
     gonio_context *context = NULL;
-    const gonio_context_options options = {.message = on_message};
+    const gonio_context_options options = {.size = sizeof options, .message = on_message};
     setting s = {.folder = argv[1], .method = "expected-error"};
     json_t *file = json_load_file(argv[2], 0, NULL);
     const json_t *splits = json_is_array(file) ? file : json_object_get(file, "splits");

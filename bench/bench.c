@@ -75,7 +75,7 @@ static void report(bench *b, const char *name, double value, const char *unit)
 static gonio_context *make_context(int threads)
 {
     gonio_context *context = NULL;
-    const gonio_context_options options = {.threads = threads};
+    const gonio_context_options options = {.size = sizeof options, .threads = threads};
     check(gonio_context_create(&context, &options) == GONIO_OK, "making a context");
     return context;
 }

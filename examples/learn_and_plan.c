@@ -35,7 +35,7 @@ int main(int argc, char **argv)
     gonio_database *database = NULL;
     gonio_basis *basis = NULL;
     gonio_plan *plan = NULL;
-    const gonio_context_options talk = {.message = show};
+    const gonio_context_options talk = {.size = sizeof talk, .message = show};
     /* Sectors of phi_d, each channel a column of its own, and mixtures of the materials: what
      * `gonio learn` makes, with fewer mixtures. */
     gonio_database_options grid;

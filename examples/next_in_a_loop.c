@@ -41,8 +41,11 @@ static gonio_status measure(gonio_context *context, const gonio_basis *basis,
         gonio_plan *next = NULL;
         double error = 0.0;
         read_at(sample, pair[n - 1], value[n - 1]);
-        const gonio_readings_arrays arrays = {
-            .count = n, .channels = CHANNELS, .pair = pair, .value = value[0]};
+        const gonio_readings_arrays arrays = {.size = sizeof arrays,
+                                              .count = n,
+                                              .channels = CHANNELS,
+                                              .pair = pair,
+                                              .value = value[0]};
         status = gonio_readings_create(context, &arrays, NULL, &readings);
         if (status == GONIO_OK) {
             status = gonio_plan_next(context, basis, readings, &how, &one, &error, NULL, &next);
@@ -65,7 +68,7 @@ int main(int argc, char **argv)
     gonio_basis *basis = NULL;
     gonio_material *material = NULL;
     gonio_table *sample = NULL;
-    const gonio_context_options talk = {.message = show};
+    const gonio_context_options talk = {.size = sizeof talk, .message = show};
     const bool done = argc == 2 && gonio_context_create(&context, &talk) == GONIO_OK &&
                       gonio_basis_read(context, argv[1], &basis) == GONIO_OK &&
                       gonio_material_open(context, "atlas:gold-polished", &material) == GONIO_OK &&

@@ -43,9 +43,9 @@ static gonio_status open_phong(gonio_context *context, const char *path, gonio_m
         fclose(file);
     }
     const gonio_material_source source = {
-        .evaluate = evaluate, .release = free, .self = p, .channels = 1};
+        .size = sizeof source, .evaluate = evaluate, .release = free, .self = p, .channels = 1};
     const gonio_status status =
-        read ? gonio_material_create(context, "phong", "Phong's model", source, material)
+        read ? gonio_material_create(context, "phong", "Phong's model", &source, material)
              : GONIO_ERROR_FORMAT;
     if (status != GONIO_OK) {
         free(p); /* the material owns it only on success */

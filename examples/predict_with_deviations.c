@@ -47,7 +47,7 @@ int main(int argc, char **argv)
     gonio_material *material = NULL;
     gonio_table *table = NULL;
     gonio_reconstruction *made = NULL;
-    const gonio_context_options talk = {.message = show};
+    const gonio_context_options talk = {.size = sizeof talk, .message = show};
     gonio_plan_options where;
     gonio_plan_options_default(&where);
     where.count = 8;

@@ -42,14 +42,17 @@ int main(int argc, char **argv)
             value[k][c] = read[k][3 + c];
         }
     }
-    const gonio_readings_arrays arrays = {
-        .count = READINGS, .channels = CHANNELS, .pair = pair, .value = value[0]};
+    const gonio_readings_arrays arrays = {.size = sizeof arrays,
+                                          .count = READINGS,
+                                          .channels = CHANNELS,
+                                          .pair = pair,
+                                          .value = value[0]};
     gonio_context *context = NULL;
     gonio_basis *basis = NULL;
     gonio_readings *readings = NULL;
     gonio_reconstruction *made = NULL;
     gonio_material *material = NULL;
-    const gonio_context_options talk = {.message = show};
+    const gonio_context_options talk = {.size = sizeof talk, .message = show};
     gonio_reconstruct_options how;
     gonio_reconstruct_options_default(&how);
     how.method = "posterior"; /* works with any number of readings at any directions */

@@ -48,7 +48,7 @@ static void keep_message(void *user, gonio_message_level level, const char *text
 gonio_context *support_context(void)
 {
     gonio_context *context = NULL;
-    const gonio_context_options options = {.message = keep_message};
+    const gonio_context_options options = {.size = sizeof options, .message = keep_message};
     last_message[0] = '\0';
     assert_int_equal(gonio_context_create(&context, &options), GONIO_OK);
     return context;
@@ -81,9 +81,9 @@ gonio_material *support_load(gonio_context *context, const char *path)
     assert_int_equal(gonio_material_open(context, path, &file), GONIO_OK);
     assert_int_equal(gonio_table_load(context, file, &table), GONIO_OK);
     const gonio_material_source source = {
-        .read_slab = read_loaded, .release = release_loaded, .self = table};
+        .size = sizeof source, .read_slab = read_loaded, .release = release_loaded, .self = table};
     assert_int_equal(gonio_material_create(context, gonio_material_name(file),
-                                           gonio_material_format(file), source, &loaded),
+                                           gonio_material_format(file), &source, &loaded),
                      GONIO_OK);
     gonio_material_free(&file);
     return loaded;

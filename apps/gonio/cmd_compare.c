@@ -95,8 +95,10 @@ static gonio_status compare_one(tool *t, const gonio_material *reference,
 
 /* ---- readings ---- */
 
-static const gonio_readings_options any_values = {
-    .values_needed = true, .average_repeats = true, .negative_to_zero = true};
+static const gonio_readings_options any_values = {.size = sizeof any_values,
+                                                  .values_needed = true,
+                                                  .average_repeats = true,
+                                                  .negative_to_zero = true};
 
 /* The other's values at the directions of the reference. */
 static gonio_status read_like(tool *t, const char *reference, const char *path,
@@ -142,7 +144,8 @@ static gonio_status find_left_out(tool *t, const gonio_readings *reference, cons
                                   bool **left_out)
 {
     gonio_readings *used = NULL;
-    const gonio_readings_options directions = {.average_repeats = true, .negative_to_zero = true};
+    const gonio_readings_options directions = {
+        .size = sizeof directions, .average_repeats = true, .negative_to_zero = true};
     *left_out = calloc(gonio_readings_describe(reference).count, sizeof **left_out);
     gonio_status status = *left_out == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
     if (status == GONIO_OK && used_path != NULL) {

@@ -226,7 +226,8 @@ static int info_basis(const tool *t, const char *path, json_t *results)
 
 static int info_readings(const tool *t, const char *path, json_t *results)
 {
-    const gonio_readings_options how = {.average_repeats = true, .negative_to_zero = true};
+    const gonio_readings_options how = {
+        .size = sizeof how, .average_repeats = true, .negative_to_zero = true};
     gonio_readings *readings = NULL;
     const gonio_status status = tool_read_readings(t, path, &how, &readings);
     if (status != GONIO_OK) {

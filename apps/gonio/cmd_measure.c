@@ -35,8 +35,10 @@ static int report(const tool *t, const options *o, const gonio_readings *reading
 /* Takes the values from readings that were made at more directions. */
 static gonio_status look_up(const tool *t, const char *path, gonio_readings *plan)
 {
-    const gonio_readings_options any = {
-        .values_needed = true, .average_repeats = true, .negative_to_zero = true};
+    const gonio_readings_options any = {.size = sizeof any,
+                                        .values_needed = true,
+                                        .average_repeats = true,
+                                        .negative_to_zero = true};
     gonio_readings *known = NULL;
     gonio_status status = tool_read_readings(t, path, &any, &known);
     if (status == GONIO_OK) {
@@ -50,8 +52,11 @@ static gonio_status look_up(const tool *t, const char *path, gonio_readings *pla
 static gonio_status read_material(const tool *t, const options *o, const char *path,
                                   gonio_readings *plan, char **name)
 {
-    const gonio_instrument_options instrument = {o->noise / 100.0, o->floor, (uint64_t)o->seed,
-                                                 o->outliers / 100.0};
+    const gonio_instrument_options instrument = {.size = sizeof instrument,
+                                                 .noise = o->noise / 100.0,
+                                                 .floor = o->floor,
+                                                 .seed = (uint64_t)o->seed,
+                                                 .outliers = o->outliers / 100.0};
     gonio_material *material = NULL;
     gonio_table *table = NULL;
     gonio_status status = tool_open_material(t, path, &material);
@@ -72,7 +77,8 @@ static gonio_status read_material(const tool *t, const options *o, const char *p
 
 static int measure(const tool *t, const options *o, const char *plan, const char *path)
 {
-    const gonio_readings_options how = {.values_needed = false, .negative_to_zero = true};
+    const gonio_readings_options how = {
+        .size = sizeof how, .values_needed = false, .negative_to_zero = true};
     gonio_readings *readings = NULL;
     char *name = NULL;
     gonio_kind kind = GONIO_KIND_UNKNOWN;

@@ -64,7 +64,8 @@ static gonio_status find_next(tool *t, const options *o, const gonio_basis *basi
 
 static int next(tool *t, const options *o, const char *basis_path, const char *path)
 {
-    const gonio_readings_options any = {.values_needed = true, .average_repeats = true};
+    const gonio_readings_options any = {
+        .size = sizeof any, .values_needed = true, .average_repeats = true};
     gonio_readings *readings = NULL;
     gonio_basis *basis = NULL;
     answer a = {0};

@@ -148,7 +148,8 @@ static void report(const gonio_basis *basis, const gonio_reconstruction *r, cons
 
 static gonio_reconstruct_options settings(const options *o)
 {
-    gonio_reconstruct_options how = {.components = (size_t)o->components,
+    gonio_reconstruct_options how = {.size = sizeof how,
+                                     .components = (size_t)o->components,
                                      .all_channels = o->all_channels,
                                      .other_basis = o->other_basis,
                                      .method = o->method,
@@ -162,7 +163,8 @@ static gonio_reconstruct_options settings(const options *o)
 static gonio_status write_more(tool *t, const options *o, const gonio_basis *basis,
                                const gonio_reconstruction *made)
 {
-    const gonio_readings_options any = {.average_repeats = true, .negative_to_zero = true};
+    const gonio_readings_options any = {
+        .size = sizeof any, .average_repeats = true, .negative_to_zero = true};
     gonio_material *deviation = NULL;
     gonio_readings *at = NULL;
     gonio_status status = GONIO_OK;
@@ -260,7 +262,8 @@ static int reconstruct_all(tool *t, const options *o, const char *basis_path,
                            const char *const *paths, char *const *outputs, size_t count,
                            json_t *results)
 {
-    const gonio_readings_options how = {.values_needed = true,
+    const gonio_readings_options how = {.size = sizeof how,
+                                        .values_needed = true,
                                         .average_repeats = o->average_repeats,
                                         .negative_to_zero = o->negative_to_zero};
     gonio_readings **readings = calloc(count, sizeof *readings);

@@ -362,7 +362,8 @@ static gonio_status write_picture(const tool *t, const options *o, picture *p)
             return GONIO_ERROR_MEMORY;
         }
     }
-    const gonio_sheet sheet = {.rows = p->rows,
+    const gonio_sheet sheet = {.size = sizeof sheet,
+                               .rows = p->rows,
                                .columns = p->columns,
                                .row_names = (const char *const *)p->row_name,
                                .column_names = (const char *const *)p->column_name,

@@ -26,8 +26,10 @@ static gonio_status open_material(const tool *t, const char *path, gonio_materia
 
 static gonio_status read_readings(const tool *t, const char *path, gonio_readings **readings)
 {
-    const gonio_readings_options how = {
-        .values_needed = false, .average_repeats = true, .negative_to_zero = true};
+    const gonio_readings_options how = {.size = sizeof how,
+                                        .values_needed = false,
+                                        .average_repeats = true,
+                                        .negative_to_zero = true};
     return path == NULL ? GONIO_OK : tool_read_readings(t, path, &how, readings);
 }
 
@@ -52,8 +54,12 @@ static gonio_status write_page(const tool *t, const options *o, const shown *s)
     if (status == GONIO_OK) {
         status = read_readings(t, o->readings, &readings);
     }
-    const gonio_page_content content = {materials[0], materials[1], materials[2], readings,
-                                        s->folder};
+    const gonio_page_content content = {.size = sizeof content,
+                                        .reference = materials[0],
+                                        .reconstruction = materials[1],
+                                        .deviation = materials[2],
+                                        .readings = readings,
+                                        .folder = s->folder};
     if (status == GONIO_OK) {
         status = gonio_page_write(t->context, &content, o->output);
     }

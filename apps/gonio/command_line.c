@@ -155,8 +155,11 @@ static int begin(tool *t, int argc, const char **argv, const tool_command_line *
     if (code >= 0) {
         return code;
     }
-    const gonio_context_options options = {tool_on_message, tool_on_progress, &t->messages,
-                                           tool_threads};
+    const gonio_context_options options = {.size = sizeof options,
+                                           .message = tool_on_message,
+                                           .progress = tool_on_progress,
+                                           .user = &t->messages,
+                                           .threads = tool_threads};
     tool_catch_signals();
     return gonio_context_create(&t->context, &options) == GONIO_OK ? -1 : EXIT_DATA;
 }

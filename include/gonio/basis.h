@@ -40,6 +40,7 @@ enum { GONIO_DEFAULT_COMPONENTS = 45 };
 #define GONIO_USUAL_MIXTURES SIZE_MAX
 
 typedef struct gonio_basis_options {
+    size_t size;          /* of this struct, which gonio_basis_options_default sets */
     size_t components;    /* K; 0 for 300 with mixtures, 45 without, or as many as there are;
                            * without mean all of them */
     const size_t *subset; /* learn from these materials of the database only; NULL for all */
@@ -63,7 +64,7 @@ GONIO_API gonio_status gonio_basis_learn(gonio_context *context, const gonio_dat
 
 /* How a basis is learned from materials. Set one by a function below, then change fields. */
 typedef struct gonio_recipe {
-    size_t size; /* of this struct */
+    size_t size; /* of this struct, which the functions below set */
     gonio_representation representation;
     gonio_channel_model channels;
     gonio_mapping mapping;

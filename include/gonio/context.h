@@ -5,6 +5,8 @@
 #ifndef GONIO_CONTEXT_H
 #define GONIO_CONTEXT_H
 
+#include <stddef.h>
+
 #include <gonio/status.h>
 
 #ifdef __cplusplus
@@ -20,6 +22,7 @@ typedef enum gonio_message_level {
 } gonio_message_level;
 
 typedef struct gonio_context_options {
+    size_t size; /* of this struct, which gonio_context_options_default sets */
     /* Called with one line of UTF-8 text without a newline; NULL for silence. */
     void (*message)(void *user, gonio_message_level level, const char *text);
     /* Called now and then during long work with 0 <= fraction <= 1 (1 exactly once, at the end);

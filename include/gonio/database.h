@@ -108,6 +108,7 @@ GONIO_API void gonio_slab_reduce(const double *g, const bool *data,
 typedef struct gonio_database gonio_database;
 
 typedef struct gonio_database_options {
+    size_t size; /* of this struct, which gonio_database_options_default sets */
     gonio_representation representation;
     gonio_channel_model channels;
     const char *scratch; /* folder for the scratch files; NULL for $TMPDIR or /tmp */

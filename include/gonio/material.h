@@ -29,6 +29,7 @@ typedef struct gonio_material gonio_material;
 /* Where a material's values come from: at least one of read_slab and evaluate. Both may be called
  * from several threads at once and must give the same values every time. */
 typedef struct gonio_material_source {
+    size_t size; /* sizeof(gonio_material_source) */
     /* Fills rho (GONIO_SLAB_VALUES) for one theta_h index in 0 .. 89. NULL: made from evaluate, as
      * gonio_material_read_slab says. */
     gonio_status (*read_slab)(void *self, gonio_context *context, int theta_h, double *rho);
@@ -67,7 +68,8 @@ GONIO_API gonio_status gonio_material_open(gonio_context *context, const char *p
 /* Wraps a source, for materials that come from elsewhere. On success the material owns source.self
  * and releases it with itself; on failure the caller still owns it. The strings are copied. */
 GONIO_API gonio_status gonio_material_create(gonio_context *context, const char *name,
-                                             const char *format, gonio_material_source source,
+                                             const char *format,
+                                             const gonio_material_source *source,
                                              gonio_material **material);
 
 GONIO_API void gonio_material_free(gonio_material **material);

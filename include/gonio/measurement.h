@@ -19,6 +19,7 @@ extern "C" {
 typedef struct gonio_readings gonio_readings;
 
 typedef struct gonio_readings_options {
+    size_t size;           /* of this struct, which gonio_readings_options_default sets */
     bool values_needed;    /* of files: false: a plan will do */
     bool average_repeats;  /* a direction read more than once in the same channel: true to accept
                             * (least squares averages it), false to refuse */
@@ -32,6 +33,7 @@ GONIO_API void gonio_readings_options_default(gonio_readings_options *options);
 
 /* What readings are made of; all arrays stay the caller's. */
 typedef struct gonio_readings_arrays {
+    size_t size;            /* sizeof(gonio_readings_arrays) */
     size_t count;           /* readings, at least 1 */
     size_t channels;        /* 3 without wavelengths: R, G, B; at least 1 */
     const gonio_pair *pair; /* [count], radians: theta in [0, pi/2), phi in [-2 pi, 2 pi] */
@@ -158,6 +160,7 @@ GONIO_API gonio_status gonio_readings_look_up(gonio_context *context, gonio_read
 /* ---- the simulated instrument ---- */
 
 typedef struct gonio_instrument_options {
+    size_t size;  /* of this struct, which gonio_instrument_options_default sets */
     double noise; /* standard deviation relative to the value: 0.01 is 1 per cent */
     double floor; /* standard deviation of the additive noise, 1/sr */
     uint64_t seed;

@@ -11,6 +11,7 @@ extern "C" {
 /* What an interactive page shows. Nothing is owned; everything may be NULL, but not both reference
  * and folder, and what is compared needs a reference. */
 typedef struct gonio_page_content {
+    size_t size; /* sizeof(gonio_page_content) */
     const gonio_material *reference;
     const gonio_material *reconstruction; /* shown beside the reference */
     /* A table whose stored numbers are the standard deviations of g = ln(1 + rho/s) of the

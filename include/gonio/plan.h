@@ -53,6 +53,7 @@ typedef struct gonio_plan {
 #define GONIO_USUAL_COUNT SIZE_MAX
 
 typedef struct gonio_plan_options {
+    size_t size;        /* of this struct, which gonio_plan_options_default sets */
     const char *method; /* NULL: what suits the basis, expected-error for one with mixtures and
                          * condition for others; gonio_plan_method_name */
     const char *start;  /* of the swaps: "random" (default): gonio_plan_start_name */

@@ -18,6 +18,7 @@ extern "C" {
 #endif
 
 typedef struct gonio_reconstruct_options {
+    size_t size;        /* of this struct, which gonio_reconstruct_options_default sets */
     size_t components;  /* K; 0 for the plan's, or if it states none as many as the basis has, with
                          * ridge no more than there are readings */
     bool all_channels;  /* use all that was read, not only the planned channel of each direction */

@@ -132,6 +132,7 @@ typedef enum gonio_lamp {
 } gonio_lamp;
 
 typedef struct gonio_render_options {
+    size_t size;            /* of this struct, which gonio_render_options_default sets */
     int width, height;      /* pixels */
     int samples;            /* a pixel */
     uint64_t seed;          /* of the samples */
@@ -205,6 +206,7 @@ typedef struct gonio_sheet_cell {
  * column is the reference, by which the others are tone-mapped and with which they are compared.
  * Below each of the others stand E6, PSNR and Delta E_ITP. */
 typedef struct gonio_sheet {
+    size_t size; /* sizeof(gonio_sheet) */
     size_t rows, columns;
     const char *const *row_names;    /* [rows]; UTF-8 */
     const char *const *column_names; /* [columns] */

@@ -6,6 +6,11 @@
  *     place, goes to the context's message callback (context.h).
  *   - Objects made by gonio_X_create, _open, _read, _learn ... are owned by the caller and released
  *     by gonio_X_free(&x), which accepts NULL and nulls the pointer.
+ *   - A struct of options begins with its size. Call its gonio_X_options_default, then change
+ *     fields. NULL in place of options means the defaults. Structs of input without such a call are
+ *     zeros but for the fields that are set, .size = sizeof(gonio_X) among them. A size that was not
+ *     set is GONIO_ERROR_ARGUMENT. Options are copied: they need not outlive the call, but for what
+ *     their pointers point to where a comment says so.
  *   - The library prints nothing, never exits, and keeps no global state of its own.
  *   - Angles are radians, reflectances 1/sr; arrays are contiguous, the last index fastest. */
 #ifndef GONIO_STATUS_H

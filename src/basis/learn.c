@@ -15,6 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../core/options.h"
 #include "../database/tiles.h"
 #include "../linalg/linalg.h"
 #include "mixtures.h"
@@ -43,7 +44,7 @@ typedef struct learner {
 
 void gonio_basis_options_default(gonio_basis_options *options)
 {
-    *options = (gonio_basis_options){.mixtures = GONIO_USUAL_MIXTURES};
+    *options = (gonio_basis_options){.size = sizeof *options, .mixtures = GONIO_USUAL_MIXTURES};
 }
 
 /* What a thread works on. */
@@ -528,8 +529,10 @@ gonio_status gonio_basis_learn(gonio_context *context, const gonio_database *dat
                                const gonio_basis_options *options, gonio_basis **basis)
 {
     gonio_basis_options how;
-    gonio_basis_options_default(&how);
-    how = options != NULL ? *options : how;
+    gonio_status status = GONIO_I_TAKE(context, gonio_basis_options, options, &how);
+    if (status != GONIO_OK) {
+        return status;
+    }
     options = &how;
     learner l = {.context = context, .database = database, .subset = options->subset};
     l.view = gonio_database_describe(database);
@@ -539,7 +542,7 @@ gonio_status gonio_basis_learn(gonio_context *context, const gonio_database *dat
     l.columns = l.measured + options->mixtures;
     l.any_rank = options->mixtures > 0 && options->components == 0;
     size_t components = 0;
-    gonio_status status = check_mixtures(context, &l.view, options);
+    status = check_mixtures(context, &l.view, options);
     if (status == GONIO_OK) {
         status = choose_components(context, l.columns, options, &components);
     }

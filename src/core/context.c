@@ -1,5 +1,6 @@
 /* The context: messages, progress, threads; and the library's status texts and version. */
 #include "core.h"
+#include "options.h"
 
 #include <ctype.h>
 #include <pthread.h>
@@ -62,21 +63,21 @@ const char *gonio_status_text(gonio_status status)
 
 void gonio_context_options_default(gonio_context_options *options)
 {
-    *options = (gonio_context_options){0};
+    *options = (gonio_context_options){.size = sizeof *options};
 }
 
 gonio_status gonio_context_create(gonio_context **context, const gonio_context_options *options)
 {
-    if (options != NULL && options->threads < 0) {
+    gonio_context_options taken;
+    gonio_context_options_default(&taken);
+    if (!gonio_i_copy_known(options, &taken, sizeof taken) || taken.threads < 0) {
         return GONIO_ERROR_ARGUMENT;
     }
     gonio_context *made = calloc(1, sizeof *made);
     if (made == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    if (options != NULL) {
-        made->options = *options;
-    }
+    made->options = taken;
     made->task = "";
     pthread_mutex_init(&made->callbacks, NULL);
     openblas_set_num_threads(1);

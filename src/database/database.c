@@ -14,6 +14,7 @@
 #include <string.h>
 
 #include "../core/core.h"
+#include "../core/options.h"
 #include "../core/vector_math.h"
 #include "../direction/grid.h"
 #include "layout.h"
@@ -52,8 +53,8 @@ struct gonio_database {
 
 void gonio_database_options_default(gonio_database_options *options)
 {
-    *options =
-        (gonio_database_options){.representation = GONIO_SECTORED, .channels = GONIO_SEPARATE};
+    *options = (gonio_database_options){
+        .size = sizeof *options, .representation = GONIO_SECTORED, .channels = GONIO_SEPARATE};
 }
 
 /* ---- tiles ---- */
@@ -533,13 +534,15 @@ static gonio_status fill(gonio_context *context, gonio_database *database, const
 static gonio_status create(gonio_context *context, const sources *from, size_t count,
                            const gonio_database_options *options, gonio_database **database)
 {
+    gonio_database_options how;
+    const gonio_status given = GONIO_I_TAKE(context, gonio_database_options, options, &how);
+    if (given != GONIO_OK) {
+        return given;
+    }
     if (count == 0) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "no materials given");
     }
-    gonio_database_options defaults;
-    gonio_database_options_default(&defaults);
-    options = options != NULL ? options : &defaults;
-    if (options->representation == GONIO_SECTORED && options->mapping == GONIO_LOG_RELATIVE) {
+    if (how.representation == GONIO_SECTORED && how.mapping == GONIO_LOG_RELATIVE) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
                             "the relative mapping is for the full and the bivariate grid, not for "
                             "sectors (gonio learn --grid full)");
@@ -548,7 +551,7 @@ static gonio_status create(gonio_context *context, const sources *from, size_t c
     if (made == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    made->options = *options;
+    made->options = how;
     gonio_i_scratch_init(&made->scratch);
     made->materials = count;
     made->names = gonio_i_allocate(context, count, sizeof *made->names);

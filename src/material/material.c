@@ -9,6 +9,7 @@
 #include <xxhash.h>
 
 #include "../core/core.h"
+#include "../core/options.h"
 #include "colour.h"
 #include "formats/format.h"
 #include "inside.h"
@@ -73,17 +74,21 @@ static gonio_status keep_names(gonio_context *context, const char *name, const c
 }
 
 gonio_status gonio_material_create(gonio_context *context, const char *name, const char *format,
-                                   gonio_material_source source, gonio_material **material)
+                                   const gonio_material_source *source, gonio_material **material)
 {
-    source.channels = source.channels == 0 ? GONIO_CHANNELS : source.channels;
-    gonio_status status = check_source(context, &source);
+    gonio_material_source taken;
     gonio_material *made = NULL;
+    gonio_status status = GONIO_I_TAKE_PLAIN(context, gonio_material_source, source, &taken);
+    taken.channels = taken.channels == 0 ? GONIO_CHANNELS : taken.channels;
+    if (status == GONIO_OK) {
+        status = check_source(context, &taken);
+    }
     if (status == GONIO_OK) {
         made = gonio_i_allocate(context, 1, sizeof *made);
         status = made != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
     }
     if (status == GONIO_OK) {
-        made->source = source;
+        made->source = taken;
         status = keep_names(context, name, format, made);
     }
     if (status == GONIO_OK) {
@@ -164,11 +169,11 @@ static gonio_status open_atlas(gonio_context *context, const char *name, gonio_m
     }
     *self = index;
     const gonio_material_source source = {
-        .read_slab = read_atlas_slab, .release = free, .self = self};
+        .size = sizeof source, .read_slab = read_atlas_slab, .release = free, .self = self};
     char *format = gonio_i_format("built-in %s", gonio_atlas_class(index));
     const gonio_status status =
         format == NULL ? GONIO_ERROR_MEMORY
-                       : gonio_material_create(context, name, format, source, material);
+                       : gonio_material_create(context, name, format, &source, material);
     free(format);
     if (status != GONIO_OK) {
         free(self);
@@ -221,7 +226,7 @@ static gonio_status open_file(gonio_context *context, const gonio_i_file *file,
     if (reader == NULL) {
         return not_recognised(context, file);
     }
-    gonio_material_source source = {0};
+    gonio_material_source source = {.size = sizeof source};
     char *description = NULL;
     gonio_status status = reader->open(context, file, &source, &description);
     if (status != GONIO_OK) {
@@ -229,7 +234,7 @@ static gonio_status open_file(gonio_context *context, const gonio_i_file *file,
     }
     char *name = gonio_i_base_name(file->path, false);
     status = name == NULL ? GONIO_ERROR_MEMORY
-                          : gonio_material_create(context, name, description, source, material);
+                          : gonio_material_create(context, name, description, &source, material);
     if (status != GONIO_OK) {
         source.release(source.self);
     }

@@ -1,12 +1,13 @@
 /* The simulated instrument: reads a known material at given directions, with noise. */
 #include <math.h>
 
+#include "../core/options.h"
 #include "../core/random.h"
 #include "readings.h"
 
 void gonio_instrument_options_default(gonio_instrument_options *options)
 {
-    *options = (gonio_instrument_options){0};
+    *options = (gonio_instrument_options){.size = sizeof *options};
 }
 
 /* Noise belongs to a direction, not to a line: the same directions give the same reading. */
@@ -50,12 +51,8 @@ static gonio_status read_one(gonio_context *context, gonio_readings *readings, s
     return GONIO_OK;
 }
 
-gonio_status gonio_measure(gonio_context *context, gonio_readings *readings,
-                           const gonio_table *table, const gonio_instrument_options *options)
+static gonio_status check(gonio_context *context, const gonio_instrument_options *options)
 {
-    gonio_instrument_options defaults;
-    gonio_instrument_options_default(&defaults);
-    options = options != NULL ? options : &defaults;
     if (!(options->noise >= 0.0 && isfinite(options->noise)) ||
         !(options->floor >= 0.0 && isfinite(options->floor))) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
@@ -65,9 +62,22 @@ gonio_status gonio_measure(gonio_context *context, gonio_readings *readings,
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
                             "the share of outliers is a number from 0 to 1");
     }
-    gonio_status status = gonio_i_readings_set_channels(context, readings, GONIO_CHANNELS, NULL);
+    return GONIO_OK;
+}
+
+gonio_status gonio_measure(gonio_context *context, gonio_readings *readings,
+                           const gonio_table *table, const gonio_instrument_options *options)
+{
+    gonio_instrument_options how;
+    gonio_status status = GONIO_I_TAKE(context, gonio_instrument_options, options, &how);
+    if (status == GONIO_OK) {
+        status = check(context, &how);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_readings_set_channels(context, readings, GONIO_CHANNELS, NULL);
+    }
     for (size_t k = 0; k < readings->count && status == GONIO_OK; k++) {
-        status = read_one(context, readings, k, table, options);
+        status = read_one(context, readings, k, table, &how);
     }
     return status;
 }

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../core/options.h"
 #include "../plan/plan_file.h"
 #include "rules.h"
 
@@ -14,25 +15,27 @@ enum { FIRST_ROOM = 64 };
 
 void gonio_readings_options_default(gonio_readings_options *options)
 {
-    *options = (gonio_readings_options){.values_needed = true};
+    *options = (gonio_readings_options){.size = sizeof *options, .values_needed = true};
 }
 
-gonio_readings *gonio_i_readings_new(gonio_context *context, const char *path,
-                                     const gonio_readings_options *options)
+gonio_status gonio_i_readings_new(gonio_context *context, const char *path,
+                                  const gonio_readings_options *options, gonio_readings **readings)
 {
-    gonio_readings *made = gonio_i_allocate(context, 1, sizeof *made);
+    gonio_readings_options how;
+    const gonio_status status = GONIO_I_TAKE(context, gonio_readings_options, options, &how);
+    gonio_readings *made = status == GONIO_OK ? gonio_i_allocate(context, 1, sizeof *made) : NULL;
     if (made == NULL) {
-        return NULL;
+        return status != GONIO_OK ? status : GONIO_ERROR_MEMORY;
     }
-    gonio_readings_options_default(&made->options);
-    made->options = options != NULL ? *options : made->options;
+    made->options = how;
     made->method = "";
     made->path = strdup(path);
     if (made->path == NULL) {
-        gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", path);
         gonio_readings_free(&made);
+        return gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", path);
     }
-    return made;
+    *readings = made;
+    return GONIO_OK;
 }
 
 void gonio_readings_free(gonio_readings **readings)
@@ -436,8 +439,15 @@ static gonio_status fill(gonio_context *context, gonio_readings *r, const gonio_
 gonio_status gonio_readings_create(gonio_context *context, const gonio_readings_arrays *arrays,
                                    const gonio_readings_options *options, gonio_readings **readings)
 {
-    gonio_readings *made = gonio_i_readings_new(context, "readings", options);
-    const gonio_status status = made != NULL ? fill(context, made, arrays) : GONIO_ERROR_MEMORY;
+    gonio_readings_arrays taken;
+    gonio_readings *made = NULL;
+    gonio_status status = GONIO_I_TAKE_PLAIN(context, gonio_readings_arrays, arrays, &taken);
+    if (status == GONIO_OK) {
+        status = gonio_i_readings_new(context, "readings", options, &made);
+    }
+    if (status == GONIO_OK) {
+        status = fill(context, made, &taken);
+    }
     if (status != GONIO_OK) {
         gonio_readings_free(&made);
         return status;
@@ -471,10 +481,12 @@ static gonio_status fill_from_plan(gonio_context *context, gonio_readings *r,
 gonio_status gonio_readings_create_from_plan(gonio_context *context, const gonio_plan *plan,
                                              gonio_readings **readings)
 {
-    const gonio_readings_options any = {.average_repeats = true};
-    gonio_readings *made = gonio_i_readings_new(context, "plan", &any);
-    const gonio_status status =
-        made != NULL ? fill_from_plan(context, made, plan) : GONIO_ERROR_MEMORY;
+    const gonio_readings_options any = {.size = sizeof any, .average_repeats = true};
+    gonio_readings *made = NULL;
+    gonio_status status = gonio_i_readings_new(context, "plan", &any, &made);
+    if (status == GONIO_OK) {
+        status = fill_from_plan(context, made, plan);
+    }
     if (status != GONIO_OK) {
         gonio_readings_free(&made);
         return status;
@@ -489,16 +501,18 @@ gonio_status gonio_readings_set_values(gonio_context *context, gonio_readings *r
                                        size_t channels, const double *wavelength,
                                        const double *value, const gonio_readings_options *options)
 {
-    gonio_readings_options defaults;
-    gonio_readings_options_default(&defaults);
+    gonio_readings_options how;
+    gonio_status status = GONIO_I_TAKE(context, gonio_readings_options, options, &how);
+    if (status != GONIO_OK) {
+        return status;
+    }
     gonio_readings changed = *readings; /* what fails leaves the readings as they are */
     changed.value = NULL;
     changed.deviation = NULL;
     changed.wavelength = NULL;
-    gonio_status status = gonio_i_readings_set_channels(context, &changed, channels, wavelength);
+    status = gonio_i_readings_set_channels(context, &changed, channels, wavelength);
     if (status == GONIO_OK && value != NULL) {
-        status = copy_values(context, &changed, options != NULL ? options : &defaults, value,
-                             changed.value);
+        status = copy_values(context, &changed, &how, value, changed.value);
     }
     gonio_readings *dropped = status == GONIO_OK ? readings : &changed;
     free(dropped->value);

@@ -38,9 +38,9 @@ struct gonio_readings {
 
 /* ---- making them ---- */
 
-/* options may be NULL. NULL when out of memory. */
-gonio_readings *gonio_i_readings_new(gonio_context *context, const char *path,
-                                     const gonio_readings_options *options);
+/* options may be NULL. Errors: _ARGUMENT (options that were not initialised), _MEMORY. */
+gonio_status gonio_i_readings_new(gonio_context *context, const char *path,
+                                  const gonio_readings_options *options, gonio_readings **readings);
 
 /* The channels of readings that hold nothing yet. wavelength[channels] or NULL. */
 gonio_status gonio_i_readings_begin(gonio_context *context, gonio_readings *readings,

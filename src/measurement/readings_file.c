@@ -106,9 +106,11 @@ gonio_status gonio_readings_read(gonio_context *context, const char *path,
                                  const gonio_readings_options *options, gonio_readings **readings)
 {
     gonio_i_readings_file file = {.context = context, .path = path};
-    gonio_readings *made = gonio_i_readings_new(context, path, options);
-    gonio_status status = made != NULL ? gonio_i_text_read(context, path, &file.text, &file.size)
-                                       : GONIO_ERROR_MEMORY;
+    gonio_readings *made = NULL;
+    gonio_status status = gonio_i_readings_new(context, path, options, &made);
+    if (status == GONIO_OK) {
+        status = gonio_i_text_read(context, path, &file.text, &file.size);
+    }
     if (status == GONIO_OK) {
         status = read_text(&file, made);
     }

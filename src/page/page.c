@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../core/options.h"
 #include "../core/output.h"
 #include "page.h"
 
@@ -222,11 +223,15 @@ static gonio_status check(gonio_context *context, const gonio_page_content *cont
 gonio_status gonio_page_write(gonio_context *context, const gonio_page_content *content,
                               const char *path)
 {
-    gonio_status status = check(context, content);
+    gonio_page_content taken;
+    gonio_status status = GONIO_I_TAKE_PLAIN(context, gonio_page_content, content, &taken);
+    if (status == GONIO_OK) {
+        status = check(context, &taken);
+    }
     if (status != GONIO_OK) {
         return status;
     }
-    page p = {.context = context, .content = content};
+    page p = {.context = context, .content = &taken};
     p.data = json_pack("{s:s}", "version", gonio_version());
     status =
         p.data == NULL ? gonio_i_fail(context, GONIO_ERROR_MEMORY, "out of memory") : collect(&p);

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../core/options.h"
 #include "method.h"
 #include "plan.h"
 #include "starting_rows.h"
@@ -54,21 +55,23 @@ bool gonio_plan_method_basis(const char *method, gonio_plan_basis *basis)
 
 void gonio_plan_options_default(gonio_plan_options *options)
 {
-    *options = (gonio_plan_options){.count = GONIO_USUAL_COUNT,
+    *options = (gonio_plan_options){.size = sizeof *options,
+                                    .count = GONIO_USUAL_COUNT,
                                     .restarts = 5,
                                     .keep_history = true,
                                     .start = "random",
                                     .phi_d = M_PI / 2.0};
 }
 
-/* The options with the number of readings that is usual, unless another was asked for. */
-static gonio_plan_options counted(const gonio_plan_options *asked)
+/* The options that were asked for, with what is usual for those that were left open. */
+static gonio_status take(gonio_context *context, const gonio_plan_options *asked,
+                         gonio_plan_options *options)
 {
-    gonio_plan_options options = *asked;
-    if (options.count == GONIO_USUAL_COUNT) {
-        options.count = options.target > 0.0 ? 300 : 80;
+    const gonio_status status = GONIO_I_TAKE(context, gonio_plan_options, asked, options);
+    if (status == GONIO_OK && options->count == GONIO_USUAL_COUNT) {
+        options->count = options->target > 0.0 ? 300 : 80;
     }
-    return options;
+    return status;
 }
 
 /* The first that is made for bases with mixtures, or for those without. */
@@ -172,14 +175,18 @@ gonio_status gonio_plan_select(gonio_context *context, const double *vectors, si
                                size_t leading, size_t components, const gonio_plan_options *asked,
                                size_t *chosen, gonio_selection_report *report)
 {
-    const gonio_plan_options options = counted(asked);
+    gonio_plan_options options;
+    gonio_status status = take(context, asked, &options);
+    if (status != GONIO_OK) {
+        return status;
+    }
     gonio_i_selection_problem problem = {.context = context,
                                          .vectors = vectors,
                                          .rows = rows,
                                          .components = components,
                                          .stride = leading};
     const gonio_i_method *method = NULL;
-    gonio_status status = choose_method(context, NULL, &options, &method);
+    status = choose_method(context, NULL, &options, &method);
     if (status == GONIO_OK && method->select == NULL) {
         status = gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
                               "%s works on a basis, not on bare rows", method->name);
@@ -285,10 +292,13 @@ static gonio_status plan_rows(gonio_context *context, const gonio_i_method *meth
 gonio_status gonio_plan_create(gonio_context *context, const gonio_basis *basis,
                                const gonio_plan_options *asked, gonio_plan **plan)
 {
-    const gonio_plan_options options = counted(asked);
+    gonio_plan_options options;
     const gonio_basis_view view = gonio_basis_describe(basis);
     const gonio_i_method *method = NULL;
-    const gonio_status status = choose_method(context, &view, &options, &method);
+    gonio_status status = take(context, asked, &options);
+    if (status == GONIO_OK) {
+        status = choose_method(context, &view, &options, &method);
+    }
     if (status != GONIO_OK) {
         return status;
     }

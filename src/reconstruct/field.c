@@ -231,9 +231,10 @@ static gonio_status create(gonio_context *context, const gonio_basis *basis,
     f->plain = plain;
     f->g = gonio_i_allocate(context, GONIO_CHANNELS * f->view.cells, sizeof *f->g);
     gonio_status status = f->g == NULL ? GONIO_ERROR_MEMORY : fill_field(context, r, from, f);
-    const gonio_material_source source = {.read_slab = read_field, .release = release, .self = f};
+    const gonio_material_source source = {
+        .size = sizeof source, .read_slab = read_field, .release = release, .self = f};
     if (status == GONIO_OK) {
-        status = gonio_material_create(context, name, "reconstruction", source, material);
+        status = gonio_material_create(context, name, "reconstruction", &source, material);
     }
     if (status != GONIO_OK) {
         release(f);

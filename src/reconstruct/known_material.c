@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "../basis/basis.h"
-#include "../core/core.h"
+#include "../core/options.h"
 
 /* A cell to read. */
 typedef struct place {
@@ -161,19 +161,24 @@ gonio_status gonio_reconstruct_material(gonio_context *context, const gonio_basi
                                         size_t count, const gonio_reconstruct_options *options,
                                         gonio_material **material)
 {
+    gonio_reconstruct_options how;
+    gonio_status status = GONIO_I_TAKE(context, gonio_reconstruct_options, options, &how);
+    if (status != GONIO_OK) {
+        return status;
+    }
     const bool joint = gonio_basis_describe(basis).channels == GONIO_JOINT;
-    const bool more = joint && options != NULL && options->all_channels;
+    const bool more = joint && how.all_channels;
     size_t *used = gonio_i_allocate(context, GONIO_CHANNELS * count, sizeof *used);
     double *b = gonio_i_allocate(context, GONIO_CHANNELS * GONIO_CHANNELS * count, sizeof *b);
     gonio_reconstruction *made = NULL;
-    gonio_status status = GONIO_ERROR_MEMORY;
+    status = GONIO_ERROR_MEMORY;
     if (used != NULL && b != NULL) {
         memcpy(used, rows, count * sizeof *used);
         count = more ? all_channels(rows, count, used) : count;
         status = gonio_material_rows(context, basis, original, used, count, b);
     }
     if (status == GONIO_OK) {
-        status = gonio_reconstruct_rows_with(context, basis, options, used, count, b, &made);
+        status = gonio_reconstruct_rows_with(context, basis, &how, used, count, b, &made);
     }
     if (status == GONIO_OK) {
         status = gonio_reconstruction_material(context, basis, made, gonio_material_name(original),

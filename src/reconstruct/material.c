@@ -192,9 +192,9 @@ gonio_status gonio_reconstruction_material(gonio_context *context, const gonio_b
     r->columns = reconstruction->columns;
     memcpy(r->coefficients, reconstruction->coefficients, count * sizeof(double));
     const gonio_material_source source = {
-        .read_slab = read_reconstructed, .release = free, .self = r};
+        .size = sizeof source, .read_slab = read_reconstructed, .release = free, .self = r};
     const gonio_status status =
-        gonio_material_create(context, name, "reconstruction", source, material);
+        gonio_material_create(context, name, "reconstruction", &source, material);
     if (status != GONIO_OK) {
         free(r);
     }
@@ -241,9 +241,10 @@ gonio_status gonio_bivariate_material(gonio_context *context, const gonio_materi
         return GONIO_ERROR_MEMORY;
     }
     *self = original;
-    const gonio_material_source source = {.read_slab = read_average, .release = free, .self = self};
+    const gonio_material_source source = {
+        .size = sizeof source, .read_slab = read_average, .release = free, .self = self};
     const gonio_status status = gonio_material_create(context, gonio_material_name(original),
-                                                      "bivariate average", source, material);
+                                                      "bivariate average", &source, material);
     if (status != GONIO_OK) {
         free(self);
     }

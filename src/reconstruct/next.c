@@ -5,6 +5,7 @@
  * database's columns the material is like, and the covariance left is theirs. */
 #include <stdlib.h>
 
+#include "../core/options.h"
 #include "../measurement/readings.h"
 #include "../plan/expected_error_plan.h"
 #include "../posterior/interpret.h"
@@ -80,6 +81,32 @@ static gonio_status find_posterior(next *n, const gonio_reconstruct_options *opt
     return status;
 }
 
+static gonio_status plan_more(const next *n, const gonio_plan_options *options, gonio_plan **plan)
+{
+    const gonio_i_known known = {n->posterior.covariance,
+                                 n->read,
+                                 n->readings->count,
+                                 n->posterior.predicted,
+                                 n->posterior.predicted_by_variance,
+                                 n->posterior.norm};
+    gonio_plan_options all = *options;
+    all.count = all.count != GONIO_USUAL_COUNT ? all.count : 5;
+    all.target = 0.0; /* what was read counts; the plan is as long as asked for */
+    return gonio_i_expected_error_next(n->context, n->basis, &all, &known, plan);
+}
+
+static void hand_out(const next *n, gonio_plan *made, double *expected_now, const char **suspicion,
+                     gonio_plan **plan)
+{
+    *plan = made;
+    if (expected_now != NULL) {
+        *expected_now = n->posterior.predicted;
+    }
+    if (suspicion != NULL) {
+        *suspicion = n->suspicion;
+    }
+}
+
 gonio_status gonio_plan_next(gonio_context *context, const gonio_basis *basis,
                              const gonio_readings *readings,
                              const gonio_reconstruct_options *options,
@@ -90,26 +117,21 @@ gonio_status gonio_plan_next(gonio_context *context, const gonio_basis *basis,
               .basis = basis,
               .readings = readings,
               .view = gonio_basis_describe(basis)};
-    gonio_status status = find_posterior(&n, options);
-    *plan = NULL;
-    if (suspicion != NULL) {
-        *suspicion = n.suspicion;
+    gonio_reconstruct_options how;
+    gonio_plan_options wanted;
+    gonio_plan *made = NULL;
+    gonio_status status = GONIO_I_TAKE(context, gonio_reconstruct_options, options, &how);
+    if (status == GONIO_OK) {
+        status = GONIO_I_TAKE(context, gonio_plan_options, plan_options, &wanted);
     }
     if (status == GONIO_OK) {
-        *expected_now = n.posterior.predicted;
+        status = find_posterior(&n, &how);
     }
-    if (status == GONIO_OK &&
-        !(plan_options->target > 0.0 && *expected_now <= plan_options->target)) {
-        const gonio_i_known known = {n.posterior.covariance,
-                                     n.read,
-                                     readings->count,
-                                     *expected_now,
-                                     n.posterior.predicted_by_variance,
-                                     n.posterior.norm};
-        gonio_plan_options all = *plan_options;
-        all.count = all.count != GONIO_USUAL_COUNT ? all.count : 5;
-        all.target = 0.0; /* what was read counts; the plan is as long as asked for */
-        status = gonio_i_expected_error_next(context, basis, &all, &known, plan);
+    if (status == GONIO_OK && !(wanted.target > 0.0 && n.posterior.predicted <= wanted.target)) {
+        status = plan_more(&n, &wanted, &made);
+    }
+    if (status == GONIO_OK) {
+        hand_out(&n, made, expected_now, suspicion, plan);
     }
     release(&n);
     return status;

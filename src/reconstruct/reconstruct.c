@@ -7,11 +7,13 @@
 #include <string.h>
 
 #include "equations.h"
+#include "../core/options.h"
 #include "method.h"
 
 void gonio_reconstruct_options_default(gonio_reconstruct_options *options)
 {
-    *options = (gonio_reconstruct_options){.eta = 40.0, .noise = 0.01, .floor = 1e-5};
+    *options = (gonio_reconstruct_options){
+        .size = sizeof *options, .eta = 40.0, .noise = 0.01, .floor = 1e-5};
 }
 
 /* ---- methods ---- */
@@ -186,17 +188,18 @@ gonio_status gonio_reconstruct(gonio_context *context, const gonio_basis *basis,
                                const gonio_reconstruct_options *options,
                                gonio_reconstruction **reconstruction)
 {
-    gonio_reconstruct_options defaults;
+    gonio_reconstruct_options how;
     gonio_i_reconstruct_task task;
     const gonio_readings_view view = gonio_readings_describe(readings);
-    gonio_reconstruct_options_default(&defaults);
-    options = options != NULL ? options : &defaults;
-    gonio_status status = check_fingerprint(context, basis, &view, options);
+    gonio_status status = GONIO_I_TAKE(context, gonio_reconstruct_options, options, &how);
     if (status == GONIO_OK) {
-        status = begin(context, basis, options, view.method, &task);
+        status = check_fingerprint(context, basis, &view, &how);
     }
     if (status == GONIO_OK) {
-        status = gonio_i_reconstruct_check(context, task.method, basis, readings, options);
+        status = begin(context, basis, &how, view.method, &task);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_reconstruct_check(context, task.method, basis, readings, &how);
     }
     return status == GONIO_OK ? task.method->from_readings(&task, readings, reconstruction)
                               : status;
@@ -218,13 +221,14 @@ gonio_status gonio_reconstruct_rows_with(gonio_context *context, const gonio_bas
                                          const size_t *rows, size_t count, const double *b,
                                          gonio_reconstruction **reconstruction)
 {
-    gonio_reconstruct_options defaults;
+    gonio_reconstruct_options how;
     gonio_i_reconstruct_task task;
-    gonio_reconstruct_options_default(&defaults);
-    options = options != NULL ? options : &defaults;
-    gonio_status status = begin(context, basis, options, NULL, &task);
+    gonio_status status = GONIO_I_TAKE(context, gonio_reconstruct_options, options, &how);
     if (status == GONIO_OK) {
-        status = gonio_i_reconstruct_check(context, task.method, basis, NULL, options);
+        status = begin(context, basis, &how, NULL, &task);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_reconstruct_check(context, task.method, basis, NULL, &how);
     }
     return status == GONIO_OK ? task.method->from_rows(&task, rows, count, b, reconstruction)
                               : status;

@@ -5,6 +5,7 @@
 void gonio_render_options_default(gonio_render_options *options)
 {
     *options = (gonio_render_options){
+        .size = sizeof *options,
         .width = 512,
         .height = 512,
         .samples = 64,

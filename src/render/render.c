@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../core/core.h"
+#include "../core/options.h"
 #include "../core/random.h"
 #include "environment.h"
 #include "geometry.h"
@@ -333,16 +334,17 @@ static gonio_status render_surface(gonio_context *context, const gonio_i_surface
 gonio_status gonio_render(gonio_context *context, const gonio_material *material,
                           const gonio_render_options *options, gonio_image **image)
 {
-    gonio_render_options defaults;
-    gonio_render_options_default(&defaults);
-    options = options != NULL ? options : &defaults;
+    gonio_render_options how;
     gonio_i_surface *surface = NULL;
-    gonio_status status = check(context, options);
+    gonio_status status = GONIO_I_TAKE(context, gonio_render_options, options, &how);
+    if (status == GONIO_OK) {
+        status = check(context, &how);
+    }
     if (status == GONIO_OK) {
         status = gonio_i_surface_create(context, material, &surface);
     }
     if (status == GONIO_OK) {
-        status = render_surface(context, surface, surface, options, image);
+        status = render_surface(context, surface, surface, &how, image);
     }
     gonio_i_surface_free(&surface);
     return status;
@@ -372,7 +374,6 @@ void gonio_reference_free(gonio_reference **reference)
 
 static gonio_status set_yardstick(gonio_context *context, gonio_reference *reference)
 {
-    gonio_render_options_default(&reference->options);
     reference->options.width = reference->options.height = 256;
     const gonio_status status =
         gonio_environment_open(context, "studio", false, &reference->environment);
@@ -388,10 +389,8 @@ gonio_status gonio_reference_create(gonio_context *context, const gonio_material
     if (made == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    gonio_status status = GONIO_OK;
-    if (options != NULL) {
-        made->options = *options;
-    } else {
+    gonio_status status = GONIO_I_TAKE(context, gonio_render_options, options, &made->options);
+    if (options == NULL) {
         status = set_yardstick(context, made);
     }
     if (status == GONIO_OK) {

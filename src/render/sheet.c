@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../core/options.h"
 #include "image.h"
 
 enum { GAP = 8, MARGIN = 14, MOST_SIDE = 32767, SCALE_HEIGHT = 10 }; /* pixels */
@@ -355,11 +356,15 @@ static gonio_status write_surface(const drawing *d, const char *path)
 gonio_status gonio_sheet_write_png(gonio_context *context, const gonio_sheet *sheet,
                                    const char *path)
 {
-    drawing d = {.context = context, .sheet = sheet};
-    d.largest = sheet->largest_difference > 0.0 ? sheet->largest_difference : 20.0;
-    gonio_status status = check(context, sheet);
+    gonio_sheet taken;
+    drawing d = {.context = context, .sheet = &taken};
+    gonio_status status = GONIO_I_TAKE_PLAIN(context, gonio_sheet, sheet, &taken);
     if (status == GONIO_OK) {
-        status = lay_out(context, sheet, &d.at);
+        status = check(context, &taken);
+    }
+    if (status == GONIO_OK) {
+        d.largest = taken.largest_difference > 0.0 ? taken.largest_difference : 20.0;
+        status = lay_out(context, &taken, &d.at);
     }
     if (status != GONIO_OK) {
         return status;

@@ -127,8 +127,8 @@ static gonio_status write_deviation(const char *folder)
     char path[4096];
     snprintf(path, sizeof path, "%s/deviation.binary", folder);
     gonio_material *material = NULL;
-    const gonio_material_source source = {.read_slab = read_deviation};
-    gonio_status status = gonio_material_create(NULL, "deviation", "made", source, &material);
+    const gonio_material_source source = {.size = sizeof source, .read_slab = read_deviation};
+    gonio_status status = gonio_material_create(NULL, "deviation", "made", &source, &material);
     if (status == GONIO_OK) {
         status = gonio_material_write_merl(NULL, material, path);
     }

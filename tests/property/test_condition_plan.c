@@ -239,7 +239,7 @@ static void test_any_number_of_threads(void **state)
         options.restarts = cases[c].restarts;
         for (int threads = 1; threads <= (support_small() ? 2 : 4); threads++) {
             gonio_context *context = NULL;
-            const gonio_context_options settings = {.threads = threads};
+            const gonio_context_options settings = {.size = sizeof settings, .threads = threads};
             size_t chosen[N];
             gonio_selection_report report;
             assert_int_equal(gonio_context_create(&context, &settings), GONIO_OK);

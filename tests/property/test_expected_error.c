@@ -221,7 +221,7 @@ static void test_prefixes_and_threads(void **state)
         assert_memory_equal(chosen, long_plan, n * sizeof *chosen);
     }
     for (int threads = 1; threads <= 3; threads += 2) {
-        const gonio_context_options options = {.threads = threads};
+        const gonio_context_options options = {.size = sizeof options, .threads = threads};
         gonio_context *context = NULL;
         size_t chosen[40];
         assert_int_equal(gonio_context_create(&context, &options), GONIO_OK);
@@ -244,7 +244,7 @@ static gonio_basis *basis;
 static int set_up(void **state)
 {
     (void)state;
-    const gonio_context_options options = {.threads = 1};
+    const gonio_context_options options = {.size = sizeof options, .threads = 1};
     assert_int_equal(gonio_context_create(&one_thread, &options), GONIO_OK);
     basis = made_basis(one_thread, GONIO_BIVARIATE, GONIO_SEPARATE, 0);
     return 0;

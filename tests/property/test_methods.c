@@ -26,8 +26,10 @@ typedef struct fixture {
 static gonio_database *make_database(gonio_representation representation,
                                      gonio_channel_model channels, gonio_mapping mapping)
 {
-    const gonio_database_options how = {
-        .representation = representation, .channels = channels, .mapping = mapping};
+    const gonio_database_options how = {.size = sizeof how,
+                                        .representation = representation,
+                                        .channels = channels,
+                                        .mapping = mapping};
     gonio_database *database = NULL;
     assert_int_equal(gonio_database_create(NULL, paths, MATERIALS, &how, &database), GONIO_OK);
     return database;
@@ -49,8 +51,11 @@ static int set_up(void **state)
     assert_non_null(f);
     f->context = support_context();
     f->relative =
-        learn(GONIO_SEPARATE, GONIO_LOG_RELATIVE, (gonio_basis_options){.components = 12});
-    f->plain = learn(GONIO_JOINT, GONIO_LOG, (gonio_basis_options){.without_mean = true});
+        learn(GONIO_SEPARATE, GONIO_LOG_RELATIVE,
+              (gonio_basis_options){.size = sizeof(gonio_basis_options), .components = 12});
+    f->plain =
+        learn(GONIO_JOINT, GONIO_LOG,
+              (gonio_basis_options){.size = sizeof(gonio_basis_options), .without_mean = true});
     *state = f;
     return 0;
 }
@@ -169,7 +174,7 @@ static void test_medians_of_what_is_learned(void **state)
     gonio_database *database = make_database(GONIO_BIVARIATE, GONIO_SEPARATE, GONIO_LOG_RELATIVE);
     for (size_t count = 3; count <= 4; count++) {
         const gonio_basis_options options = {
-            .subset = subset, .subset_count = count, .without_mean = true};
+            .size = sizeof options, .subset = subset, .subset_count = count, .without_mean = true};
         gonio_basis *basis = NULL;
         assert_int_equal(gonio_basis_learn(NULL, database, &options, &basis), GONIO_OK);
         const gonio_basis_view view = gonio_basis_describe(basis);
@@ -198,7 +203,7 @@ static void test_loadings(void **state)
     (void)state;
     for (int without_mean = 0; without_mean < 2; without_mean++) {
         gonio_database *database = make_database(GONIO_BIVARIATE, GONIO_JOINT, GONIO_LOG);
-        const gonio_basis_options options = {.without_mean = without_mean};
+        const gonio_basis_options options = {.size = sizeof options, .without_mean = without_mean};
         gonio_basis *basis = NULL;
         assert_int_equal(gonio_basis_learn(NULL, database, &options, &basis), GONIO_OK);
         const gonio_basis_view view = gonio_basis_describe(basis);
@@ -236,9 +241,10 @@ static void test_every_kind_has_a_fingerprint_of_its_own(void **state)
     (void)state;
     uint64_t seen[4];
     for (size_t kind = 0; kind < 4; kind++) {
-        gonio_basis *basis =
-            learn(GONIO_JOINT, (gonio_mapping)(kind % 2),
-                  (gonio_basis_options){.components = 2, .without_mean = kind > 1});
+        gonio_basis *basis = learn(GONIO_JOINT, (gonio_mapping)(kind % 2),
+                                   (gonio_basis_options){.size = sizeof(gonio_basis_options),
+                                                         .components = 2,
+                                                         .without_mean = kind > 1});
         seen[kind] = gonio_basis_describe(basis).fingerprint;
         for (size_t j = 0; j < kind; j++) {
             assert_true(seen[j] != seen[kind]);
@@ -498,7 +504,7 @@ static void test_any_number_of_threads(void **state)
         const gonio_basis *basis = m == 0 ? f->plain : f->relative;
         size_t *first = NULL;
         for (int threads = 1; threads <= 3; threads++) {
-            const gonio_context_options options = {.threads = threads};
+            const gonio_context_options options = {.size = sizeof options, .threads = threads};
             fixture other = {0};
             double condition = 0.0;
             assert_int_equal(gonio_context_create(&other.context, &options), GONIO_OK);
@@ -600,7 +606,8 @@ static void test_ridge_solves_the_normal_equations(void **state)
         for (size_t i = 0; i < GONIO_CHANNELS * count; i++) {
             b[i] = 5.0 * gonio_i_random_uniform(&random);
         }
-        const gonio_reconstruct_options options = {.method = "ridge", .eta = eta};
+        const gonio_reconstruct_options options = {
+            .size = sizeof options, .method = "ridge", .eta = eta};
         gonio_reconstruction *r = NULL;
         assert_int_equal(
             gonio_reconstruct_rows_with(f->context, f->relative, &options, rows, count, b, &r),
@@ -638,16 +645,18 @@ static void test_ridge_solves_the_normal_equations(void **state)
 static void test_what_ridge_refuses(void **state)
 {
     const fixture *f = *state;
+    enum { size = sizeof(gonio_reconstruct_options) };
     const size_t row = 5;
     const double b[GONIO_CHANNELS] = {1.0, 1.0, 1.0};
     static const struct {
         gonio_reconstruct_options options;
         const char *message;
     } cases[] = {
-        {{.method = "lasso"}, "no reconstruction method is called 'lasso'"},
-        {{.method = "ridge", .eta = -1.0}, "eta has to be a number above 0"},
-        {{.method = "ridge", .eta = INFINITY}, "eta has to be a number above 0"},
-        {{.method = "ridge", .components = 13}, "13 components asked for, but the basis has 12"},
+        {{.size = size, .method = "lasso"}, "no reconstruction method is called 'lasso'"},
+        {{.size = size, .method = "ridge", .eta = -1.0}, "eta has to be a number above 0"},
+        {{.size = size, .method = "ridge", .eta = INFINITY}, "eta has to be a number above 0"},
+        {{.size = size, .method = "ridge", .components = 13},
+         "13 components asked for, but the basis has 12"},
     };
     gonio_reconstruction *r = NULL;
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
@@ -677,7 +686,7 @@ static void test_material_rows_are_the_databases(void **state)
         gonio_database *database =
             make_database((gonio_representation)kind, GONIO_SEPARATE, mapping);
         gonio_basis *basis = NULL;
-        const gonio_basis_options options = {.components = 3};
+        const gonio_basis_options options = {.size = sizeof options, .components = 3};
         gonio_material *material = NULL;
         size_t rows[11];
         double b[GONIO_CHANNELS * 11];
@@ -707,7 +716,7 @@ static void test_all_channels_of_a_known_material(void **state)
     const fixture *f = *state;
     size_t few[4] = {30, 9000, 31, 15001};
     size_t all[9] = {30, 31, 32, 9000, 9001, 9002, 15000, 15001, 15002};
-    const gonio_reconstruct_options more = {.all_channels = true};
+    const gonio_reconstruct_options more = {.size = sizeof more, .all_channels = true};
     gonio_material *original = NULL;
     gonio_material *a = NULL;
     gonio_material *b = NULL;

@@ -890,8 +890,11 @@ static gonio_readings *read_in_the_dark(const double *z, uint64_t seed, double d
             read[i][c] = fmax(gonio_log_scale(c) * expm1(fmax(g, 0.0)) - dark / cos(theta_i), 0.0);
         }
     }
-    const gonio_readings_arrays arrays = {
-        .count = DIRECTIONS, .channels = GONIO_CHANNELS, .pair = pair, .value = &read[0][0]};
+    const gonio_readings_arrays arrays = {.size = sizeof arrays,
+                                          .count = DIRECTIONS,
+                                          .channels = GONIO_CHANNELS,
+                                          .pair = pair,
+                                          .value = &read[0][0]};
     gonio_readings *readings = NULL;
     assert_int_equal(gonio_readings_create(context, &arrays, NULL, &readings), GONIO_OK);
     return readings;
@@ -1098,7 +1101,8 @@ static void test_what_is_refused(void **state)
     static const double rows[][7] = {{30, 0, 30, 180, 0.2, 0.1, 0.05}};
     gonio_readings *readings = made_colours(rows, 1);
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        const gonio_reconstruct_options options = {.method = "posterior",
+        const gonio_reconstruct_options options = {.size = sizeof options,
+                                                   .method = "posterior",
                                                    .noise = cases[k].noise,
                                                    .floor = cases[k].floor,
                                                    .saturation = cases[k].saturation};

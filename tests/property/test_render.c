@@ -283,8 +283,8 @@ static void a_tabulated_model_renders_like_itself(void **state)
     (void)state;
     enum { SIDE = 48 };
     gonio_material *material = NULL;
-    const gonio_material_source source = {.read_slab = read_ggx};
-    assert_int_equal(gonio_material_create(NULL, "ggx", "made", source, &material), GONIO_OK);
+    const gonio_material_source source = {.size = sizeof source, .read_slab = read_ggx};
+    assert_int_equal(gonio_material_create(NULL, "ggx", "made", &source, &material), GONIO_OK);
     gonio_render_options options = small(SIDE, 512);
     options.field_of_view = 0.0;
     const double lamp[3] = {-0.48, 0.6, 0.64};
@@ -365,7 +365,7 @@ static void threads_and_repetition_change_nothing(void **state)
     options.environment = sky;
     options.show_environment = true;
     for (int k = 0; k < 3; k++) {
-        const gonio_context_options how = {.threads = k == 0 ? 1 : 4};
+        const gonio_context_options how = {.size = sizeof how, .threads = k == 0 ? 1 : 4};
         gonio_context *context = NULL;
         assert_int_equal(gonio_context_create(&context, &how), GONIO_OK);
         options.seed = k == 2 ? 1 : 0;

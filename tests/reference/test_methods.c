@@ -54,9 +54,11 @@ static int set_up(void **state)
     for (size_t k = 0; k < count; k++) {
         paths[k] = path_of(json_array_get(names, k));
     }
-    const gonio_database_options how = {
-        .representation = GONIO_FULL, .channels = GONIO_SEPARATE, .mapping = GONIO_LOG_RELATIVE};
-    const gonio_basis_options options = {.components = counts[COUNTS - 1]};
+    const gonio_database_options how = {.size = sizeof how,
+                                        .representation = GONIO_FULL,
+                                        .channels = GONIO_SEPARATE,
+                                        .mapping = GONIO_LOG_RELATIVE};
+    const gonio_basis_options options = {.size = sizeof options, .components = counts[COUNTS - 1]};
     gonio_database *database = NULL;
     assert_int_equal(
         gonio_database_create(data.context, (const char *const *)paths, count, &how, &database),
@@ -99,7 +101,8 @@ static double error_of(const char *method, size_t count)
     assert_int_equal(gonio_plan_create(data.context, data.basis, &how, &plan), GONIO_OK);
     size_t *rows = malloc(count * sizeof *rows);
     gonio_plan_rows(plan, data.basis, rows);
-    const gonio_reconstruct_options options = {.components = plan->components,
+    const gonio_reconstruct_options options = {.size = sizeof options,
+                                               .components = plan->components,
                                                .method = gonio_plan_method_reconstruction(method)};
     double sum = 0.0;
     for (size_t k = 0; k < data.tests; k++) {

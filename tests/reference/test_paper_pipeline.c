@@ -110,8 +110,8 @@ static int set_up(void **state)
     for (size_t k = 0; k < MATERIALS; k++) {
         paths[k] = path_of(json_string_value(json_array_get(names, k)));
     }
-    const gonio_database_options grid = {.representation = GONIO_BIVARIATE,
-                                         .channels = GONIO_JOINT};
+    const gonio_database_options grid = {
+        .size = sizeof grid, .representation = GONIO_BIVARIATE, .channels = GONIO_JOINT};
     assert_int_equal(gonio_database_create(data.context, (const char *const *)paths, MATERIALS,
                                            &grid, &data.database),
                      GONIO_OK);
@@ -234,8 +234,10 @@ static void learn_split(size_t index, split *s)
     for (size_t k = 0; k < s->tests; k++) {
         s->test[k] = index_of(json_string_value(json_array_get(test, k)));
     }
-    const gonio_basis_options options = {
-        .components = COMPONENTS, .subset = subset, .subset_count = json_array_size(basis)};
+    const gonio_basis_options options = {.size = sizeof options,
+                                         .components = COMPONENTS,
+                                         .subset = subset,
+                                         .subset_count = json_array_size(basis)};
     assert_int_equal(gonio_basis_learn(data.context, data.database, &options, &s->basis), GONIO_OK);
     s->view = gonio_basis_describe(s->basis);
     s->vectors = support_vectors(s->basis);

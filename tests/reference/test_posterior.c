@@ -72,8 +72,10 @@ static gonio_readings *read_plan(const gonio_plan *plan)
 
 static gonio_readings *read_file(const char *path)
 {
-    const gonio_readings_options options = {
-        .values_needed = true, .average_repeats = true, .negative_to_zero = true};
+    const gonio_readings_options options = {.size = sizeof options,
+                                            .values_needed = true,
+                                            .average_repeats = true,
+                                            .negative_to_zero = true};
     gonio_readings *readings = NULL;
     assert_int_equal(gonio_readings_read(context, path, &options, &readings), GONIO_OK);
     return readings;

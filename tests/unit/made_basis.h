@@ -12,7 +12,8 @@ static const char *const made_paths[MADE_MATERIALS] = {
 static inline gonio_database *made_database(gonio_representation representation,
                                             gonio_channel_model channels)
 {
-    const gonio_database_options how = {.representation = representation, .channels = channels};
+    const gonio_database_options how = {
+        .size = sizeof how, .representation = representation, .channels = channels};
     gonio_database *database = NULL;
     assert_int_equal(gonio_database_create(NULL, made_paths, MADE_MATERIALS, &how, &database),
                      GONIO_OK);

@@ -34,8 +34,8 @@ static inline gonio_material *made_material(made_constant values)
     assert_non_null(self);
     *self = values;
     const gonio_material_source source = {
-        .read_slab = made_read_slab, .release = free, .self = self};
-    assert_int_equal(gonio_material_create(NULL, "made", "made for a test", source, &material),
+        .size = sizeof source, .read_slab = made_read_slab, .release = free, .self = self};
+    assert_int_equal(gonio_material_create(NULL, "made", "made for a test", &source, &material),
                      GONIO_OK);
     return material;
 }

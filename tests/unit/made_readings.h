@@ -22,7 +22,8 @@ static inline gonio_pair made_pair(const double degrees[4])
 static inline gonio_readings *made_spectra(const double *row, size_t count, size_t channels,
                                            const double *wavelength, bool has_values)
 {
-    const gonio_readings_options any = {.average_repeats = true, .negative_to_zero = true};
+    const gonio_readings_options any = {
+        .size = sizeof any, .average_repeats = true, .negative_to_zero = true};
     const size_t width = 4 + (has_values ? channels : 0);
     gonio_pair *pair = calloc(count, sizeof *pair);
     double *value = calloc(count * channels, sizeof *value);
@@ -33,7 +34,8 @@ static inline gonio_readings *made_spectra(const double *row, size_t count, size
             value[k * channels + c] = row[k * width + 4 + c];
         }
     }
-    const gonio_readings_arrays arrays = {.count = count,
+    const gonio_readings_arrays arrays = {.size = sizeof arrays,
+                                          .count = count,
                                           .channels = channels,
                                           .pair = pair,
                                           .wavelength = wavelength,

@@ -71,7 +71,8 @@ int main(int argc, char **argv)
     process_group team;
     int code = 1;
     gonio_context *context = NULL;
-    const gonio_context_options options = {.message = on_message, .threads = 1};
+    const gonio_context_options options = {
+        .size = sizeof options, .message = on_message, .threads = 1};
     if (argc > 1 && process_group_join(&team, "team-pieces") &&
         gonio_context_create(&context, &options) == GONIO_OK) {
         task t = {team.rank, argc > 2 ? atoi(argv[2]) : -1};

@@ -29,7 +29,8 @@ static gonio_database *make_database(gonio_context *context, size_t count,
                                      gonio_representation representation,
                                      gonio_channel_model channels)
 {
-    const gonio_database_options options = {.representation = representation, .channels = channels};
+    const gonio_database_options options = {
+        .size = sizeof options, .representation = representation, .channels = channels};
     gonio_database *database = NULL;
     assert_int_equal(gonio_database_create(context, paths, count, &options, &database), GONIO_OK);
     return database;
@@ -37,7 +38,7 @@ static gonio_database *make_database(gonio_context *context, size_t count,
 
 static gonio_basis *learn(gonio_context *context, const gonio_database *database, size_t components)
 {
-    const gonio_basis_options options = {.components = components};
+    const gonio_basis_options options = {.size = sizeof options, .components = components};
     gonio_basis *basis = NULL;
     assert_int_equal(gonio_basis_learn(context, database, &options, &basis), GONIO_OK);
     return basis;
@@ -152,7 +153,7 @@ static void test_threads_and_subsets_do_not_matter(void **state)
     (void)state;
     uint64_t fingerprint = 0;
     for (int threads = 1; threads <= 3; threads++) {
-        const gonio_context_options options = {.threads = threads};
+        const gonio_context_options options = {.size = sizeof options, .threads = threads};
         gonio_context *context = NULL;
         assert_int_equal(gonio_context_create(&context, &options), GONIO_OK);
         gonio_database *database = make_database(context, 4, GONIO_BIVARIATE, GONIO_JOINT);
@@ -165,7 +166,8 @@ static void test_threads_and_subsets_do_not_matter(void **state)
         gonio_context_free(&context);
     }
     const size_t subset[] = {0, 1, 2, 3};
-    const gonio_basis_options some = {.components = 3, .subset = subset, .subset_count = 4};
+    const gonio_basis_options some = {
+        .size = sizeof some, .components = 3, .subset = subset, .subset_count = 4};
     gonio_database *database = make_database(NULL, MATERIALS, GONIO_BIVARIATE, GONIO_JOINT);
     gonio_basis *basis = NULL;
     assert_int_equal(gonio_basis_learn(NULL, database, &some, &basis), GONIO_OK);
@@ -179,7 +181,7 @@ static void test_the_full_grid_on_any_number_of_threads(void **state)
     (void)state;
     uint64_t checksum = 0;
     for (int threads = 1; threads <= 3; threads++) {
-        const gonio_context_options options = {.threads = threads};
+        const gonio_context_options options = {.size = sizeof options, .threads = threads};
         gonio_context *context = NULL;
         assert_int_equal(gonio_context_create(&context, &options), GONIO_OK);
         gonio_database *database = make_database(context, 3, GONIO_FULL, GONIO_SEPARATE);
@@ -214,7 +216,7 @@ static void test_nearly_dependent_columns(void **state)
         assert_int_equal(gonio_material_write_merl(NULL, material, names[k]), GONIO_OK);
         gonio_material_free(&material);
     }
-    const gonio_database_options options = {.channels = GONIO_JOINT};
+    const gonio_database_options options = {.size = sizeof options, .channels = GONIO_JOINT};
     gonio_database *database = NULL;
     assert_int_equal(gonio_database_create(NULL, files, 4, &options, &database), GONIO_OK);
     gonio_basis *basis = learn(NULL, database, 2);
@@ -240,7 +242,8 @@ static void test_learning_can_be_stopped(void **state)
 {
     (void)state;
     double last = 0.0;
-    const gonio_context_options options = {.progress = stop_learning, .user = &last};
+    const gonio_context_options options = {
+        .size = sizeof options, .progress = stop_learning, .user = &last};
     gonio_context *context = NULL;
     assert_int_equal(gonio_context_create(&context, &options), GONIO_OK);
     gonio_database *database = make_database(context, 3, GONIO_BIVARIATE, GONIO_JOINT);
@@ -255,15 +258,20 @@ static void test_learning_can_be_stopped(void **state)
 static void test_what_cannot_be_learned(void **state)
 {
     (void)state;
+    enum { size = sizeof(gonio_basis_options) };
     static const size_t twice[] = {0, 1, 0, 1};
     const struct {
         gonio_basis_options options;
         gonio_status status;
         const char *message;
     } cases[] = {
-        {{.components = MATERIALS}, GONIO_ERROR_ARGUMENT, "give at most 5"},
-        {{.subset = twice, .subset_count = 1}, GONIO_ERROR_ARGUMENT, "at least 2 materials"},
-        {{.subset = twice, .subset_count = 4}, GONIO_ERROR_DATA, "span only 1 dimensions"},
+        {{.size = size, .components = MATERIALS}, GONIO_ERROR_ARGUMENT, "give at most 5"},
+        {{.size = size, .subset = twice, .subset_count = 1},
+         GONIO_ERROR_ARGUMENT,
+         "at least 2 materials"},
+        {{.size = size, .subset = twice, .subset_count = 4},
+         GONIO_ERROR_DATA,
+         "span only 1 dimensions"},
     };
     gonio_context *context = support_context();
     gonio_database *database = make_database(NULL, MATERIALS, GONIO_BIVARIATE, GONIO_JOINT);
@@ -385,7 +393,8 @@ static void assert_nearest(gonio_representation representation, const char *cons
                            int trials)
 {
     const bool full = representation == GONIO_FULL;
-    const gonio_database_options options = {.representation = representation};
+    const gonio_database_options options = {.size = sizeof options,
+                                            .representation = representation};
     gonio_database *database = NULL;
     assert_int_equal(gonio_database_create(NULL, files, 2, &options, &database), GONIO_OK);
     gonio_basis *basis = learn(NULL, database, 1);
@@ -485,13 +494,15 @@ static void assert_learns(const gonio_recipe *recipe, gonio_basis *expected)
 static void test_recipes(void **state)
 {
     (void)state;
-    const gonio_database_options papers = {.representation = GONIO_BIVARIATE,
-                                           .channels = GONIO_JOINT};
-    const gonio_database_options relative = {.representation = GONIO_BIVARIATE,
+    const gonio_database_options papers = {
+        .size = sizeof papers, .representation = GONIO_BIVARIATE, .channels = GONIO_JOINT};
+    const gonio_database_options relative = {.size = sizeof relative,
+                                             .representation = GONIO_BIVARIATE,
                                              .channels = GONIO_SEPARATE,
                                              .mapping = GONIO_LOG_RELATIVE};
-    const gonio_basis_options nothing = {.components = 0};
-    const gonio_basis_options without_mean = {.without_mean = true, .components = 4};
+    const gonio_basis_options nothing = {.size = sizeof nothing, .components = 0};
+    const gonio_basis_options without_mean = {
+        .size = sizeof without_mean, .without_mean = true, .components = 4};
     gonio_recipe recipe;
     gonio_recipe_paper(&recipe);
     assert_learns(&recipe, learn_by_steps(&papers, &nothing));

@@ -118,7 +118,11 @@ static gonio_context *listen(listener *l, int threads)
 {
     gonio_context *context = NULL;
     *l = (listener){.stop_at = 2.0};
-    const gonio_context_options options = {on_message, on_progress, l, threads};
+    const gonio_context_options options = {.size = sizeof options,
+                                           .message = on_message,
+                                           .progress = on_progress,
+                                           .user = l,
+                                           .threads = threads};
     assert_int_equal(gonio_context_create(&context, &options), GONIO_OK);
     return context;
 }

@@ -110,7 +110,7 @@ static void test_threads_do_not_matter(void **state)
     (void)state;
     gonio_comparison first = {0};
     for (int threads = 1; threads <= 3; threads++) {
-        const gonio_context_options options = {.threads = threads};
+        const gonio_context_options options = {.size = sizeof options, .threads = threads};
         gonio_context *context = NULL;
         gonio_material *a = NULL;
         gonio_material *b = NULL;

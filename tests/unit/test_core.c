@@ -41,7 +41,8 @@ static void test_a_team_tells_its_first_error_only(void **state)
 {
     (void)state;
     gonio_context *context = NULL;
-    const gonio_context_options options = {.message = count_message, .threads = 2};
+    const gonio_context_options options = {
+        .size = sizeof options, .message = count_message, .threads = 2};
     assert_int_equal(gonio_context_create(&context, &options), GONIO_OK);
     for (int time = 1; time <= 2; time++) {
         gonio_context *team = gonio_i_team_begin(context);
@@ -74,7 +75,7 @@ static void test_a_team_can_be_cancelled(void **state)
 {
     (void)state;
     gonio_context *context = NULL;
-    const gonio_context_options options = {.progress = stop_at_half};
+    const gonio_context_options options = {.size = sizeof options, .progress = stop_at_half};
     assert_int_equal(gonio_context_create(&context, &options), GONIO_OK);
     gonio_context *team = gonio_i_team_begin(context);
     assert_int_equal(gonio_i_progress(team, "work", 0.2), GONIO_OK);
@@ -104,7 +105,8 @@ static void test_a_piece_is_part_of_a_whole(void **state)
 {
     (void)state;
     gonio_context *context = NULL;
-    const gonio_context_options options = {note_message, note_progress, NULL, 2};
+    const gonio_context_options options = {
+        .size = sizeof options, .message = note_message, .progress = note_progress, .threads = 2};
     assert_int_equal(gonio_context_create(&context, &options), GONIO_OK);
     gonio_context *team = gonio_i_team_begin(context);
     gonio_context *piece = NULL, *inner = NULL;
@@ -138,7 +140,7 @@ static void test_threads(void **state)
 {
     (void)state;
     gonio_context *context = NULL;
-    gonio_context_options options = {.threads = 1000000};
+    gonio_context_options options = {.size = sizeof options, .threads = 1000000};
     assert_int_equal(gonio_context_create(&context, &options), GONIO_OK);
     assert_true(gonio_context_threads(context) <= 16 * omp_get_num_procs());
     gonio_context_free(&context);

@@ -19,7 +19,8 @@ static gonio_database *make_database(const char *const *files, size_t count,
                                      gonio_representation representation,
                                      gonio_channel_model channels)
 {
-    const gonio_database_options options = {.representation = representation, .channels = channels};
+    const gonio_database_options options = {
+        .size = sizeof options, .representation = representation, .channels = channels};
     gonio_database *database = NULL;
     assert_int_equal(gonio_database_create(NULL, files, count, &options, &database), GONIO_OK);
     return database;
@@ -170,7 +171,7 @@ static void test_what_cannot_be_read(void **state)
                      GONIO_ERROR_ARGUMENT);
     assert_non_null(strstr(support_message(), "material 3 of a database of 3"));
     gonio_database_free(&database);
-    const gonio_database_options nowhere = {.scratch = "/nonexistent"};
+    const gonio_database_options nowhere = {.size = sizeof nowhere, .scratch = "/nonexistent"};
     assert_int_equal(gonio_database_create(context, paths, MATERIALS, &nowhere, &database),
                      GONIO_ERROR_IO);
     assert_non_null(strstr(support_message(), "set TMPDIR"));
@@ -183,7 +184,7 @@ static void test_materials_in_memory(void **state)
 {
     (void)state;
     enum { COUNT = 30 };
-    const gonio_database_options how = {.channels = GONIO_SEPARATE};
+    const gonio_database_options how = {.size = sizeof how, .channels = GONIO_SEPARATE};
     gonio_material *material[MATERIALS];
     gonio_database *from_files = make_database(paths, MATERIALS, how.representation, how.channels);
     gonio_database *from_materials = NULL;

@@ -27,9 +27,9 @@ enum { PATHS = sizeof paths / sizeof *paths, COMPONENTS = 3 };
 static int set_up(void **state)
 {
     (void)state;
-    const gonio_basis_options options = {.components = COMPONENTS};
-    const gonio_database_options grid = {.representation = GONIO_BIVARIATE,
-                                         .channels = GONIO_JOINT};
+    const gonio_basis_options options = {.size = sizeof options, .components = COMPONENTS};
+    const gonio_database_options grid = {
+        .size = sizeof grid, .representation = GONIO_BIVARIATE, .channels = GONIO_JOINT};
     assert_int_equal(gonio_database_create(NULL, paths, PATHS, &grid, &data.database), GONIO_OK);
     assert_int_equal(gonio_basis_learn(NULL, data.database, &options, &data.basis), GONIO_OK);
     data.view = gonio_basis_describe(data.basis);

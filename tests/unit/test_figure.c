@@ -47,7 +47,8 @@ static int set_up(void **state)
     f->folder = support_folder();
     snprintf(f->figures_path, sizeof f->figures_path, "%s/figures", f->folder);
     f->figures.folder = f->figures_path;
-    const gonio_context_options options = {.message = on_message, .user = f};
+    const gonio_context_options options = {
+        .size = sizeof options, .message = on_message, .user = f};
     assert_int_equal(gonio_context_create(&f->context, &options), GONIO_OK);
     *state = f;
     return 0;

@@ -23,7 +23,7 @@ static gonio_i_splits splits;
 static int set_up(void **state)
 {
     (void)state;
-    const gonio_context_options options = {.threads = 1};
+    const gonio_context_options options = {.size = sizeof options, .threads = 1};
     assert_int_equal(gonio_context_create(&context, &options), GONIO_OK);
     assert_int_equal(gonio_i_collect(context, paths, PATHS, false, &collection), GONIO_OK);
     assert_int_equal(gonio_i_splits_make(context, &collection, 10, 3, &splits), GONIO_OK);
@@ -166,8 +166,9 @@ static void test_shelf(void **state)
     (void)state;
     gonio_i_shelf shelf = {0};
     const size_t subsets[2][3] = {{0, 1, 2}, {0, 1, 3}};
-    const gonio_database_options how = {0};
-    gonio_basis_options options = {.components = 2, .subset = subsets[0], .subset_count = 3};
+    const gonio_database_options how = {.size = sizeof how};
+    gonio_basis_options options = {
+        .size = sizeof options, .components = 2, .subset = subsets[0], .subset_count = 3};
     const gonio_basis *basis[4];
     uint64_t fingerprint[4];
     for (int k = 0; k < 4; k++) {

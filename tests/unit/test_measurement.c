@@ -44,7 +44,7 @@ static int tear_down(void **state)
 
 static gonio_readings *read_back(const fixture *f, bool values_needed)
 {
-    const gonio_readings_options options = {.values_needed = values_needed};
+    const gonio_readings_options options = {.size = sizeof options, .values_needed = values_needed};
     gonio_readings *readings = NULL;
     gonio_context *context = support_context();
     if (gonio_readings_read(context, f->path, &options, &readings) != GONIO_OK) {
@@ -69,7 +69,8 @@ static gonio_readings *make_plan(bool backwards)
 static void measure(gonio_readings *readings, const fixture *f, double noise, double floor,
                     uint64_t seed)
 {
-    const gonio_instrument_options options = {noise, floor, seed, 0.0};
+    const gonio_instrument_options options = {
+        .size = sizeof options, .noise = noise, .floor = floor, .seed = seed};
     assert_int_equal(gonio_measure(NULL, readings, f->table, &options), GONIO_OK);
 }
 
@@ -198,11 +199,12 @@ static void test_readings_are_written_and_read(void **state)
 static void test_negative_noise_is_refused(void **state)
 {
     const fixture *f = *state;
-    static const gonio_instrument_options bad[] = {{-0.1, 0.0, 0, 0.0},
-                                                   {0.0, -0.1, 0, 0.0},
-                                                   {NAN, 0.0, 0, 0.0},
-                                                   {0.0, INFINITY, 0, 0.0},
-                                                   {0.0, 0.0, 0, -0.1}};
+    enum { size = sizeof(gonio_instrument_options) };
+    static const gonio_instrument_options bad[] = {{size, -0.1, 0.0, 0, 0.0},
+                                                   {size, 0.0, -0.1, 0, 0.0},
+                                                   {size, NAN, 0.0, 0, 0.0},
+                                                   {size, 0.0, INFINITY, 0, 0.0},
+                                                   {size, 0.0, 0.0, 0, -0.1}};
     gonio_readings *readings = make_plan(false);
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
         assert_int_equal(gonio_measure(NULL, readings, f->table, &bad[k]), GONIO_ERROR_ARGUMENT);

@@ -105,7 +105,7 @@ static gonio_material *open(const char *path)
 
 static gonio_error compare(const gonio_material *a, const gonio_material *b, int threads)
 {
-    const gonio_context_options options = {.threads = threads};
+    const gonio_context_options options = {.size = sizeof options, .threads = threads};
     gonio_context *context = NULL;
     gonio_comparison comparison;
     assert_int_equal(gonio_context_create(&context, &options), GONIO_OK);

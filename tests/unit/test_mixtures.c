@@ -47,7 +47,8 @@ static fixture make(gonio_context *context, int kind)
     fixture f = {.database = made_database(kinds[kind].representation, kinds[kind].channels),
                  .basis =
                      made_basis(context, kinds[kind].representation, kinds[kind].channels, SEED)};
-    const gonio_basis_options options = {.mixtures = MADE_MIXTURES, .seed = SEED};
+    const gonio_basis_options options = {
+        .size = sizeof options, .mixtures = MADE_MIXTURES, .seed = SEED};
     f.view = gonio_basis_describe(f.basis);
     f.measured = f.view.columns - f.view.mixtures;
     f.h = malloc(f.view.columns * f.view.rows * sizeof *f.h);
@@ -72,7 +73,7 @@ static fixture made[KINDS];
 /* A context, as BLAS is on one thread from the first one on. */
 static gonio_context *context_of(int threads)
 {
-    const gonio_context_options options = {.threads = threads};
+    const gonio_context_options options = {.size = sizeof options, .threads = threads};
     gonio_context *context = NULL;
     assert_int_equal(gonio_context_create(&context, &options), GONIO_OK);
     return context;
@@ -249,14 +250,17 @@ static void test_threads_and_seeds(void **state)
 static void test_what_has_no_mixtures(void **state)
 {
     (void)state;
+    enum { size = sizeof(gonio_database_options) };
     static const struct {
         gonio_database_options kind;
         bool without_mean;
-    } cases[] = {{{.representation = GONIO_BIVARIATE, .mapping = GONIO_LOG_RELATIVE}, false},
-                 {{.representation = GONIO_SECTORED}, true}};
+    } cases[] = {
+        {{.size = size, .representation = GONIO_BIVARIATE, .mapping = GONIO_LOG_RELATIVE}, false},
+        {{.size = size, .representation = GONIO_SECTORED}, true}};
     gonio_context *context = support_context();
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        const gonio_basis_options options = {.mixtures = 4, .without_mean = cases[k].without_mean};
+        const gonio_basis_options options = {
+            .size = sizeof options, .mixtures = 4, .without_mean = cases[k].without_mean};
         gonio_database *database = NULL;
         gonio_basis *basis = NULL;
         assert_int_equal(

@@ -22,8 +22,12 @@ static const double value[COUNT * CHANNELS] = {0.1, 0.2, 0.0, 6.0, NAN, 0.4};
 
 static gonio_readings *make(gonio_context *context, const double *deviation)
 {
-    const gonio_readings_arrays arrays = {
-        .count = COUNT, .channels = CHANNELS, .pair = pair, .value = value, .deviation = deviation};
+    const gonio_readings_arrays arrays = {.size = sizeof arrays,
+                                          .count = COUNT,
+                                          .channels = CHANNELS,
+                                          .pair = pair,
+                                          .value = value,
+                                          .deviation = deviation};
     gonio_readings *readings = NULL;
     assert_int_equal(gonio_readings_create(context, &arrays, NULL, &readings), GONIO_OK);
     return readings;

@@ -31,9 +31,9 @@ static void open_materials(gonio_material *material[MATERIALS])
 /* Materials in memory -> database -> basis. */
 static gonio_basis *learn(void)
 {
-    const gonio_database_options grid = {.representation = GONIO_SECTORED,
-                                         .channels = GONIO_SEPARATE};
-    const gonio_basis_options how = {.mixtures = 30};
+    const gonio_database_options grid = {
+        .size = sizeof grid, .representation = GONIO_SECTORED, .channels = GONIO_SEPARATE};
+    const gonio_basis_options how = {.size = sizeof how, .mixtures = 30};
     gonio_material *material[MATERIALS];
     gonio_database *database = NULL;
     gonio_basis *learned = NULL;
@@ -168,7 +168,8 @@ static void test_arrays_and_files_agree(void **state)
     const gonio_readings_view view = gonio_readings_describe(from_file);
     assert_true(view.basis == plan->basis);
     assert_string_equal(view.method, plan->method);
-    const gonio_readings_arrays arrays = {.count = view.count,
+    const gonio_readings_arrays arrays = {.size = sizeof arrays,
+                                          .count = view.count,
                                           .channels = view.channels,
                                           .pair = view.pair,
                                           .planned = view.planned,
@@ -196,7 +197,8 @@ static void test_azimuths_are_within_a_turn(void **state)
 {
     (void)state;
     const gonio_pair pair = {{0.5, -0.5}, {0.25, 2.0 * M_PI}};
-    const gonio_readings_arrays arrays = {.count = 1, .channels = 1, .pair = &pair};
+    const gonio_readings_arrays arrays = {
+        .size = sizeof arrays, .count = 1, .channels = 1, .pair = &pair};
     gonio_readings *readings = NULL;
     assert_int_equal(gonio_readings_create(context, &arrays, NULL, &readings), GONIO_OK);
     const gonio_readings_view view = gonio_readings_describe(readings);
@@ -215,6 +217,7 @@ static void test_what_arrays_may_not_hold(void **state)
     static const gonio_pair far[2] = {{{0.1, 0.0}, {0.2, 3.0}}, {{0.1, 7.0}, {0.2, 0.0}}};
     static const gonio_pair same[2] = {{{0.1, 0.0}, {0.2, 3.0}}, {{0.1, 0.0}, {0.2, 3.0}}};
     const gonio_pair lost[2] = {{{0.1, NAN}, {0.2, 3.0}}, {{0.1, 0.0}, {0.2, 3.0}}};
+    enum { size = sizeof(gonio_readings_arrays) };
     static const double waves[2] = {400.0, 500.0};
     static const double twice[2] = {400.0, 400.0};
     static const double no_waves[2] = {400.0, -1.0};
@@ -227,24 +230,34 @@ static void test_what_arrays_may_not_hold(void **state)
         gonio_status status;
         const char *message;
     } cases[] = {
-        {{0, 2, two_pairs, NULL, NULL, good, NULL}, GONIO_ERROR_ARGUMENT, "no readings given"},
-        {{2, 0, two_pairs, NULL, NULL, good, NULL}, GONIO_ERROR_ARGUMENT, "no channels"},
-        {{2, 2, low, NULL, waves, good, NULL}, GONIO_ERROR_DATA, "readings:2: theta_o_deg '90' is"},
-        {{2, 2, far, NULL, waves, good, NULL}, GONIO_ERROR_DATA, "is outside -360 to 360"},
-        {{2, 2, lost, NULL, waves, good, NULL}, GONIO_ERROR_FORMAT, "readings:1: phi_i_deg"},
-        {{2, 2, same, NULL, waves, good, NULL},
+        {{size, 0, 2, two_pairs, NULL, NULL, good, NULL},
+         GONIO_ERROR_ARGUMENT,
+         "no readings given"},
+        {{size, 2, 0, two_pairs, NULL, NULL, good, NULL}, GONIO_ERROR_ARGUMENT, "no channels"},
+        {{size, 2, 2, low, NULL, waves, good, NULL},
+         GONIO_ERROR_DATA,
+         "readings:2: theta_o_deg '90' is"},
+        {{size, 2, 2, far, NULL, waves, good, NULL}, GONIO_ERROR_DATA, "is outside -360 to 360"},
+        {{size, 2, 2, lost, NULL, waves, good, NULL}, GONIO_ERROR_FORMAT, "readings:1: phi_i_deg"},
+        {{size, 2, 2, same, NULL, waves, good, NULL},
          GONIO_ERROR_DATA,
          "readings:2: the same directions"},
-        {{2, 2, two_pairs, NULL, twice, good, NULL}, GONIO_ERROR_ARGUMENT, "400 nm occurs twice"},
-        {{2, 2, two_pairs, NULL, no_waves, good, NULL},
+        {{size, 2, 2, two_pairs, NULL, twice, good, NULL},
+         GONIO_ERROR_ARGUMENT,
+         "400 nm occurs twice"},
+        {{size, 2, 2, two_pairs, NULL, no_waves, good, NULL},
          GONIO_ERROR_ARGUMENT,
          "-1 is no wavelength"},
-        {{2, 2, two_pairs, planned, NULL, good, NULL}, GONIO_ERROR_ARGUMENT, "channel 2 of 2"},
-        {{2, 2, two_pairs, NULL, waves, dark, NULL},
+        {{size, 2, 2, two_pairs, planned, NULL, good, NULL},
+         GONIO_ERROR_ARGUMENT,
+         "channel 2 of 2"},
+        {{size, 2, 2, two_pairs, NULL, waves, dark, NULL},
          GONIO_ERROR_DATA,
          "500nm_per_sr '-2' is negative"},
-        {{2, 2, two_pairs, NULL, NULL, endless, NULL}, GONIO_ERROR_FORMAT, "value2_per_sr 'inf'"},
-        {{2, 2, two_pairs, NULL, waves, good, dark},
+        {{size, 2, 2, two_pairs, NULL, NULL, endless, NULL},
+         GONIO_ERROR_FORMAT,
+         "value2_per_sr 'inf'"},
+        {{size, 2, 2, two_pairs, NULL, waves, good, dark},
          GONIO_ERROR_DATA,
          "500nm_deviation_per_sr '-2'"},
     };
@@ -265,8 +278,10 @@ static void test_repeats_and_negative_values_where_they_may_be(void **state)
     (void)state;
     static const gonio_pair same[2] = {{{0.1, 0.0}, {0.2, 3.0}}, {{0.1, 0.0}, {0.2, 3.0}}};
     static const double value[2] = {0.5, -0.5};
-    const gonio_readings_options any = {.average_repeats = true, .negative_to_zero = true};
-    const gonio_readings_arrays arrays = {.count = 2, .channels = 1, .pair = same, .value = value};
+    const gonio_readings_options any = {
+        .size = sizeof any, .average_repeats = true, .negative_to_zero = true};
+    const gonio_readings_arrays arrays = {
+        .size = sizeof arrays, .count = 2, .channels = 1, .pair = same, .value = value};
     gonio_readings *readings = NULL;
     assert_int_equal(gonio_readings_create(context, &arrays, &any, &readings), GONIO_OK);
     assert_true(gonio_readings_value(readings, 1, 0) == 0.0);
@@ -279,7 +294,8 @@ static void test_values_can_be_set(void **state)
     static const double waves[3] = {500.0, 400.0, 600.0};
     static const double value[6] = {1.0, 2.0, 3.0, 4.0, NAN, 6.0};
     static const double dark[2] = {1.0, -1.0};
-    const gonio_readings_arrays arrays = {.count = 2, .channels = 3, .pair = two_pairs};
+    const gonio_readings_arrays arrays = {
+        .size = sizeof arrays, .count = 2, .channels = 3, .pair = two_pairs};
     gonio_readings *r = NULL;
     assert_int_equal(gonio_readings_create(context, &arrays, NULL, &r), GONIO_OK);
     assert_true(gonio_readings_scale(r, 1) == gonio_log_scale(1));
@@ -306,7 +322,7 @@ static void test_values_can_be_set(void **state)
 
 static gonio_readings *write_and_read(const gonio_readings *readings, bool values_needed)
 {
-    const gonio_readings_options how = {.values_needed = values_needed};
+    const gonio_readings_options how = {.size = sizeof how, .values_needed = values_needed};
     char *folder = support_folder();
     char path[256];
     gonio_readings *again = NULL;
@@ -336,7 +352,8 @@ static void test_arrays_are_written_and_read(void **state)
     static const int planned[2] = {GONIO_ALL_CHANNELS, 0};
     for (size_t channels = 1; channels <= 4; channels++) {
         for (int spectral = 0; spectral < 2; spectral++) {
-            const gonio_readings_arrays arrays = {.count = 2,
+            const gonio_readings_arrays arrays = {.size = sizeof arrays,
+                                                  .count = 2,
                                                   .channels = channels,
                                                   .pair = two_pairs,
                                                   .planned = planned,
@@ -378,7 +395,7 @@ static char *text_of(const gonio_readings *readings)
 
 static gonio_readings *read_text(const char *text, bool values_needed)
 {
-    const gonio_readings_options how = {.values_needed = values_needed};
+    const gonio_readings_options how = {.size = sizeof how, .values_needed = values_needed};
     char *folder = support_folder();
     gonio_readings *readings = NULL;
     if (made_readings(context, folder, "r.csv", text, &how, &readings) != GONIO_OK) {
@@ -423,7 +440,7 @@ static void test_a_planned_channel_that_there_is_no_more(void **state)
     (void)state;
     static const int planned[2] = {GONIO_ALL_CHANNELS, 30};
     const gonio_readings_arrays arrays = {
-        .count = 2, .channels = 31, .pair = two_pairs, .planned = planned};
+        .size = sizeof arrays, .count = 2, .channels = 31, .pair = two_pairs, .planned = planned};
     gonio_readings *r = NULL;
     assert_int_equal(gonio_readings_create(context, &arrays, NULL, &r), GONIO_OK);
     assert_int_equal(gonio_readings_set_values(context, r, 3, NULL, NULL, NULL), GONIO_OK);
@@ -466,7 +483,8 @@ static void test_columns_that_are_not_understood(void **state)
 static void test_notes(void **state)
 {
     (void)state;
-    const gonio_readings_arrays arrays = {.count = 2, .channels = 1, .pair = two_pairs};
+    const gonio_readings_arrays arrays = {
+        .size = sizeof arrays, .count = 2, .channels = 1, .pair = two_pairs};
     gonio_readings *r = NULL;
     assert_int_equal(gonio_readings_create(context, &arrays, NULL, &r), GONIO_OK);
     assert_int_equal(gonio_i_readings_note(context, r, "%d below the horizon left out", 12),
@@ -486,7 +504,8 @@ static gonio_readings *copy_of(const gonio_readings *from, size_t channels, cons
                                const double *deviation)
 {
     const gonio_readings_view view = gonio_readings_describe(from);
-    const gonio_readings_arrays arrays = {.count = view.count,
+    const gonio_readings_arrays arrays = {.size = sizeof arrays,
+                                          .count = view.count,
                                           .channels = channels,
                                           .pair = view.pair,
                                           .value = value,

@@ -26,8 +26,9 @@ static gonio_basis *learn(gonio_representation representation, gonio_channel_mod
     static const char *const paths[MATERIALS] = {
         "atlas:gold-polished", "atlas:red-glossy-plastic", "atlas:burgundy-velvet",
         "atlas:oak-sawn",      "atlas:plaster-cast",       "atlas:steel-brushed"};
-    const gonio_database_options how = {.representation = representation, .channels = channels};
-    const gonio_basis_options options = {.components = K};
+    const gonio_database_options how = {
+        .size = sizeof how, .representation = representation, .channels = channels};
+    const gonio_basis_options options = {.size = sizeof options, .components = K};
     gonio_database *database = NULL;
     gonio_basis *basis = NULL;
     assert_int_equal(gonio_database_create(NULL, paths, MATERIALS, &how, &database), GONIO_OK);
@@ -168,7 +169,8 @@ static gonio_readings *make_plan(const gonio_basis *basis)
 static void assert_chain(const fixture *f, const gonio_basis *basis, bool all_channels,
                          size_t expected_readings)
 {
-    const gonio_reconstruct_options options = {.all_channels = all_channels};
+    const gonio_reconstruct_options options = {.size = sizeof options,
+                                               .all_channels = all_channels};
     gonio_reconstruction *r = NULL;
     gonio_readings *readings = make_plan(basis);
     measure(f, basis, readings);
@@ -199,14 +201,17 @@ static void test_all_channels_may_be_used(void **state)
     static const double row[6][4] = {{10, 0, 10, 180}, {10, 0, 10, 180}, {50, 0, 20, 180},
                                      {10, 0, 10, 180}, {30, 0, 70, 90},  {80, 0, 75, 170}};
     static const int planned[6] = {0, 2, 1, 1, 1, 2};
-    const gonio_reconstruct_options all = {.all_channels = true};
+    const gonio_reconstruct_options all = {.size = sizeof all, .all_channels = true};
     gonio_reconstruction *r = NULL;
     gonio_pair pair[6];
     for (size_t k = 0; k < 6; k++) {
         pair[k] = made_pair(row[k]);
     }
-    const gonio_readings_arrays arrays = {
-        .count = 6, .channels = GONIO_CHANNELS, .pair = pair, .planned = planned};
+    const gonio_readings_arrays arrays = {.size = sizeof arrays,
+                                          .count = 6,
+                                          .channels = GONIO_CHANNELS,
+                                          .pair = pair,
+                                          .planned = planned};
     gonio_readings *readings = NULL;
     assert_int_equal(gonio_readings_create(f->context, &arrays, NULL, &readings), GONIO_OK);
     measure(f, f->basis, readings);
@@ -257,7 +262,8 @@ static void test_directions_between_centres(void **state)
             value[j][k] = k == channel ? gonio_brdf_from_log(g, channel) : NAN;
         }
     }
-    const gonio_readings_arrays arrays = {.count = READINGS,
+    const gonio_readings_arrays arrays = {.size = sizeof arrays,
+                                          .count = READINGS,
                                           .channels = GONIO_CHANNELS,
                                           .pair = pair,
                                           .planned = planned,
@@ -275,7 +281,7 @@ static void test_what_does_not_belong_together(void **state)
 {
     const fixture *f = *state;
     gonio_basis *other = learn(GONIO_BIVARIATE, GONIO_SEPARATE);
-    gonio_reconstruct_options options = {.other_basis = false};
+    gonio_reconstruct_options options = {.size = sizeof options, .other_basis = false};
     gonio_reconstruction *r = NULL;
     gonio_readings *readings = make_plan(f->basis);
     measure(f, f->basis, readings);
@@ -363,7 +369,7 @@ static void make_several(const fixture *f, several *s)
     gonio_material *material = make_truth(f->basis);
     gonio_table *table = made_table(material);
     for (size_t k = 0; k < TABLES; k++) {
-        const gonio_instrument_options noise = {.noise = 0.01, .seed = k};
+        const gonio_instrument_options noise = {.size = sizeof noise, .noise = 0.01, .seed = k};
         s->readings[k] = make_plan(f->basis);
         assert_int_equal(gonio_measure(f->context, s->readings[k], table, &noise), GONIO_OK);
         s->path[k] = malloc(512);
@@ -444,7 +450,7 @@ static void test_tables_are_the_same_on_any_number_of_threads(void **state)
     }
     static const int threads[] = {1, 2, 5};
     for (size_t t = 0; t < sizeof threads / sizeof *threads; t++) {
-        const gonio_context_options options = {.threads = threads[t]};
+        const gonio_context_options options = {.size = sizeof options, .threads = threads[t]};
         gonio_context *context = NULL;
         assert_int_equal(gonio_context_create(&context, &options), GONIO_OK);
         assert_int_equal(write_several(f, context, &s), GONIO_OK);
@@ -507,7 +513,7 @@ static void test_cancelled_tables_leave_nothing(void **state)
     for (int threads = 1; threads <= 2; threads++) {
         progress p = {.most = 10000};
         const gonio_context_options options = {
-            .progress = on_progress, .user = &p, .threads = threads};
+            .size = sizeof options, .progress = on_progress, .user = &p, .threads = threads};
         gonio_context *context = NULL;
         assert_int_equal(gonio_context_create(&context, &options), GONIO_OK);
         assert_int_equal(write_several(f, context, &s), GONIO_OK);

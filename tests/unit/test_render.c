@@ -482,6 +482,31 @@ static void what_cannot_be_rendered_is_said(void **state)
     gonio_material_free(&material);
 }
 
+/* Structs whose size nobody set. */
+static void what_was_not_initialised_is_refused(void **state)
+{
+    (void)state;
+    static const size_t sizes[] = {0, SIZE_MAX};
+    gonio_context *context = support_context();
+    gonio_material *material = made_material((made_constant){{0.3, 0.2, 0.1}, NULL});
+    for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++) {
+        const gonio_render_options options = {.size = sizes[k]};
+        const gonio_sheet sheet = {.size = sizes[k]};
+        gonio_image *image = NULL;
+        gonio_reference *reference = NULL;
+        assert_int_equal(gonio_render(context, material, &options, &image), GONIO_ERROR_ARGUMENT);
+        assert_non_null(strstr(support_message(), "call gonio_render_options_default first"));
+        assert_int_equal(gonio_reference_create(context, material, &options, &reference),
+                         GONIO_ERROR_ARGUMENT);
+        assert_int_equal(gonio_sheet_write_png(context, &sheet, "/nonexistent"),
+                         GONIO_ERROR_ARGUMENT);
+        assert_non_null(strstr(support_message(), "set .size = sizeof(gonio_sheet)"));
+        assert_true(image == NULL && reference == NULL);
+    }
+    gonio_material_free(&material);
+    gonio_context_free(&context);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -499,6 +524,7 @@ int main(void)
         cmocka_unit_test(environments_without_light_are_refused),
         cmocka_unit_test(environments_are_the_right_way_round),
         cmocka_unit_test(what_cannot_be_rendered_is_said),
+        cmocka_unit_test(what_was_not_initialised_is_refused),
     };
     return cmocka_run_group_tests(tests, begin, end);
 }

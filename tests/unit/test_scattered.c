@@ -101,7 +101,8 @@ static void test_bad_files(void **state)
 static void test_negative_values_may_be_taken_as_zero(void **state)
 {
     (void)state;
-    const gonio_readings_options options = {.values_needed = true, .negative_to_zero = true};
+    const gonio_readings_options options = {
+        .size = sizeof options, .values_needed = true, .negative_to_zero = true};
     char *folder = support_folder();
     gonio_readings *readings = NULL;
     assert_int_equal(

@@ -35,7 +35,8 @@ static gonio_status open_and_digest(gonio_context *context, const char *path, ca
 /* A material that cannot be used is no failure yet. */
 static gonio_status read_candidate(const char *path, candidate *c)
 {
-    const gonio_context_options options = {.message = keep_error, .user = c, .threads = 1};
+    const gonio_context_options options = {
+        .size = sizeof options, .message = keep_error, .user = c, .threads = 1};
     gonio_context *context = NULL;
     gonio_status status = gonio_context_create(&context, &options);
     if (status == GONIO_OK) {
@@ -176,8 +177,8 @@ static gonio_status take(gonio_context *context, const char *const *paths, size_
 gonio_status gonio_i_collect(gonio_context *context, const char *const *paths, size_t count,
                              bool skip_bad, gonio_i_collection *collection)
 {
-    const gonio_database_options papers = {.representation = GONIO_BIVARIATE,
-                                           .channels = GONIO_JOINT};
+    const gonio_database_options papers = {
+        .size = sizeof papers, .representation = GONIO_BIVARIATE, .channels = GONIO_JOINT};
     *collection = (gonio_i_collection){0};
     candidate *candidates = gonio_i_allocate(context, count, sizeof *candidates);
     if (candidates == NULL) {

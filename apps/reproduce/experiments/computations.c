@@ -51,7 +51,8 @@ static gonio_status add_variances(gonio_context *context, const gonio_i_study *s
                                   const size_t *subset, size_t count, json_t *list)
 {
     gonio_basis *basis = NULL;
-    const gonio_basis_options options = {.components = 1, .subset = subset, .subset_count = count};
+    const gonio_basis_options options = {
+        .size = sizeof options, .components = 1, .subset = subset, .subset_count = count};
     const gonio_status status =
         gonio_basis_learn(context, study->collection.database, &options, &basis);
     if (status != GONIO_OK) {
@@ -100,7 +101,7 @@ static gonio_status plan_for_all(gonio_context *context, const gonio_basis *basi
 static gonio_status learn_from_all(gonio_context *context, const gonio_i_study *study,
                                    gonio_i_size size, gonio_basis **basis)
 {
-    const gonio_basis_options learning = {.components = size.components};
+    const gonio_basis_options learning = {.size = sizeof learning, .components = size.components};
     return gonio_basis_learn(context, study->collection.database, &learning, basis);
 }
 

@@ -12,7 +12,7 @@ gonio_status gonio_i_trial_begin(gonio_context *context, const gonio_i_collectio
                                  const size_t *test, size_t tests, gonio_i_trial *trial)
 {
     const gonio_basis_options options = {
-        .components = components, .subset = subset, .subset_count = count};
+        .size = sizeof options, .components = components, .subset = subset, .subset_count = count};
     *trial = (gonio_i_trial){.collection = collection, .test = test, .tests = tests};
     const gonio_status status =
         gonio_basis_learn(context, collection->database, &options, &trial->basis);

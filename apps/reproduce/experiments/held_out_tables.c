@@ -39,9 +39,9 @@ static gonio_status load(gonio_context *context, const char *path, gonio_materia
     }
     if (status == GONIO_OK) {
         const gonio_material_source source = {
-            .read_slab = read_table, .release = free_table, .self = table};
+            .size = sizeof source, .read_slab = read_table, .release = free_table, .self = table};
         status =
-            gonio_material_create(context, gonio_material_name(material), "table", source, loaded);
+            gonio_material_create(context, gonio_material_name(material), "table", &source, loaded);
     }
     if (status != GONIO_OK) {
         gonio_table_free(&table);
@@ -115,10 +115,12 @@ static gonio_status learn(gonio_context *context, const gonio_i_collection *coll
                           const gonio_i_method_entry *method, gonio_i_size size,
                           const gonio_i_split *split, const gonio_basis **basis)
 {
-    const gonio_database_options how = {.representation = method->representation,
+    const gonio_database_options how = {.size = sizeof how,
+                                        .representation = method->representation,
                                         .channels = method->channels,
                                         .mapping = method->mapping};
-    const gonio_basis_options options = {.components = size.components,
+    const gonio_basis_options options = {.size = sizeof options,
+                                         .components = size.components,
                                          .subset = split->basis,
                                          .subset_count = split->basis_count,
                                          .without_mean = method->without_mean};

@@ -332,7 +332,8 @@ gonio_status gonio_i_draw_renderings(gonio_context *context, const gonio_i_study
         status = gonio_i_make_folder(context, folder);
     }
     if (status == GONIO_OK) {
-        const gonio_sheet sheet = {.rows = l.rows,
+        const gonio_sheet sheet = {.size = sizeof sheet,
+                                   .rows = l.rows,
                                    .columns = l.columns + 1,
                                    .row_names = (const char *const *)p.row,
                                    .column_names = (const char *const *)p.column,
