@@ -262,7 +262,7 @@ static void run_material(gonio_context *context, const subject *it, gonio_plan *
 static gonio_plan *make_plan(gonio_context *context, const setting *s, const gonio_basis *basis,
                              size_t n, int split)
 {
-    const size_t components = gonio_basis_describe(basis).components;
+    const size_t components = gonio_basis_describe(basis)->components;
     gonio_plan_options options;
     gonio_plan *plan = NULL;
     gonio_plan_options_default(&options);

@@ -133,7 +133,7 @@ static gonio_basis *learn_paper(gonio_context *context, char *const *paths, size
 static double plain_test_seconds(const gonio_basis *basis, size_t k, size_t n)
 {
     enum { SOLVES = 20000 };
-    const size_t rows = gonio_basis_describe(basis).rows;
+    const size_t rows = gonio_basis_describe(basis)->rows;
     double *v = calloc(rows * k, sizeof *v);
     check(gonio_basis_rows(NULL, basis, 0, rows, k, v) == GONIO_OK, "rows");
     double *g = calloc(2 * k * k + k, sizeof *g);
@@ -661,12 +661,12 @@ static void bench_reconstruct_one(bench *b, gonio_context *context, const gonio_
                                   const char *path, const char *data)
 {
     enum { N = 80, TIMES = 15 };
-    const gonio_basis_view view = gonio_basis_describe(basis);
+    const gonio_basis_view *view = gonio_basis_describe(basis);
     size_t rows[N];
     double readings[N];
     for (size_t k = 0; k < N; k++) {
-        rows[k] = k * (view.rows / N);
-        readings[k] = view.mean[rows[k]] + 0.01 * (double)(k % 7);
+        rows[k] = k * (view->rows / N);
+        readings[k] = view->mean[rows[k]] + 0.01 * (double)(k % 7);
     }
     double ratio[TIMES];
     double seconds[TIMES];

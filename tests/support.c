@@ -131,10 +131,10 @@ const char *const support_merl[SUPPORT_MERL] = {
 
 double *support_vectors(const gonio_basis *basis)
 {
-    const gonio_basis_view view = gonio_basis_describe(basis);
-    double *vectors = malloc(view.rows * view.components * sizeof *vectors);
+    const gonio_basis_view *view = gonio_basis_describe(basis);
+    double *vectors = malloc(view->rows * view->components * sizeof *vectors);
     assert_non_null(vectors);
-    assert_int_equal(gonio_basis_rows(NULL, basis, 0, view.rows, view.components, vectors),
+    assert_int_equal(gonio_basis_rows(NULL, basis, 0, view->rows, view->components, vectors),
                      GONIO_OK);
     return vectors;
 }

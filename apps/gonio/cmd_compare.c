@@ -146,7 +146,7 @@ static gonio_status find_left_out(tool *t, const gonio_readings *reference, cons
     gonio_readings *used = NULL;
     const gonio_readings_options directions = {
         .size = sizeof directions, .average_repeats = true, .negative_to_zero = true};
-    *left_out = calloc(gonio_readings_describe(reference).count, sizeof **left_out);
+    *left_out = calloc(gonio_readings_describe(reference)->count, sizeof **left_out);
     gonio_status status = *left_out == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
     if (status == GONIO_OK && used_path != NULL) {
         status = tool_read_readings(t, used_path, &directions, &used);

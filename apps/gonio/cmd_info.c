@@ -159,54 +159,56 @@ static int info_atlas(json_t *results)
 
 static json_t *basis_json(const char *path, const gonio_basis *basis)
 {
-    const gonio_basis_view view = gonio_basis_describe(basis);
+    const gonio_basis_view *view = gonio_basis_describe(basis);
     char fingerprint[20];
-    snprintf(fingerprint, sizeof fingerprint, "%016" PRIx64, view.fingerprint);
+    snprintf(fingerprint, sizeof fingerprint, "%016" PRIx64, view->fingerprint);
     json_t *names = json_array();
-    for (size_t k = 0; k < view.materials; k++) {
-        json_array_append_new(names, json_string(view.names[k]));
+    for (size_t k = 0; k < view->materials; k++) {
+        json_array_append_new(names, json_string(view->names[k]));
     }
-    return json_pack("{s:s, s:s, s:s, s:b, s:b, s:s, s:s, s:I, s:I, s:I, s:f, s:o, s:s, s:s, s:s}",
-                     "file", path, "kind", "basis", "mapping", gonio_mapping_name(view.mapping),
-                     "mean", !view.without_mean, "loadings", view.loadings != NULL,
-                     "representation", gonio_representation_name(view.representation), "channels",
-                     gonio_channel_model_name(view.channels), "components",
-                     (json_int_t)view.components, "cells", (json_int_t)view.cells, "mixtures",
-                     (json_int_t)view.mixtures, "explained_variance",
-                     gonio_basis_cumulative_variance(basis, view.components), "materials", names,
-                     "fingerprint", fingerprint, "program", view.program, "command", view.command);
+    return json_pack(
+        "{s:s, s:s, s:s, s:b, s:b, s:s, s:s, s:I, s:I, s:I, s:f, s:o, s:s, s:s, s:s}", "file", path,
+        "kind", "basis", "mapping", gonio_mapping_name(view->mapping), "mean", !view->without_mean,
+        "loadings", view->loadings != NULL, "representation",
+        gonio_representation_name(view->representation), "channels",
+        gonio_channel_model_name(view->channels), "components", (json_int_t)view->components,
+        "cells", (json_int_t)view->cells, "mixtures", (json_int_t)view->mixtures,
+        "explained_variance", gonio_basis_cumulative_variance(basis, view->components), "materials",
+        names, "fingerprint", fingerprint, "program", view->program, "command", view->command);
 }
 
 static void print_basis(const char *path, const gonio_basis *basis)
 {
-    const gonio_basis_view view = gonio_basis_describe(basis);
+    const gonio_basis_view *view = gonio_basis_describe(basis);
     printf("%s: gonio basis, %s, %s channels\n", path,
-           gonio_representation_name(view.representation), gonio_channel_model_name(view.channels));
-    printf("  mapping      %s, %s mean%s\n", gonio_mapping_name(view.mapping),
-           view.without_mean ? "without" : "with", view.loadings == NULL ? ", no loadings" : "");
-    printf("  components   %zu on %zu cells (%zu rows)\n", view.components, view.cells, view.rows);
-    if (view.mixtures > 0) {
-        printf("  mixtures     %zu, beside the materials\n", view.mixtures);
+           gonio_representation_name(view->representation),
+           gonio_channel_model_name(view->channels));
+    printf("  mapping      %s, %s mean%s\n", gonio_mapping_name(view->mapping),
+           view->without_mean ? "without" : "with", view->loadings == NULL ? ", no loadings" : "");
+    printf("  components   %zu on %zu cells (%zu rows)\n", view->components, view->cells,
+           view->rows);
+    if (view->mixtures > 0) {
+        printf("  mixtures     %zu, beside the materials\n", view->mixtures);
     }
     printf("  variance     ");
-    for (size_t k = 1; k < view.components; k = k < 5 ? 5 : 2 * k) {
+    for (size_t k = 1; k < view->components; k = k < 5 ? 5 : 2 * k) {
         printf("%.4f at %zu, ", gonio_basis_cumulative_variance(basis, k), k);
     }
-    printf("%.4f at %zu\n", gonio_basis_cumulative_variance(basis, view.components),
-           view.components);
-    printf("  materials    %zu:", view.materials);
+    printf("%.4f at %zu\n", gonio_basis_cumulative_variance(basis, view->components),
+           view->components);
+    printf("  materials    %zu:", view->materials);
     int column = 80;
-    for (size_t k = 0; k < view.materials; k++) {
-        const int width = (int)strlen(view.names[k]) + 2;
+    for (size_t k = 0; k < view->materials; k++) {
+        const int width = (int)strlen(view->names[k]) + 2;
         if (column + width > 79) {
             printf("\n    ");
             column = 4;
         }
-        printf("%s%s", view.names[k], k + 1 < view.materials ? ", " : "\n");
+        printf("%s%s", view->names[k], k + 1 < view->materials ? ", " : "\n");
         column += width;
     }
-    printf("  fingerprint  %016" PRIx64 "\n", view.fingerprint);
-    printf("  made by      %s: %s\n", view.program, view.command);
+    printf("  fingerprint  %016" PRIx64 "\n", view->fingerprint);
+    printf("  made by      %s: %s\n", view->program, view->command);
 }
 
 static int info_basis(const tool *t, const char *path, json_t *results)
@@ -233,34 +235,34 @@ static int info_readings(const tool *t, const char *path, json_t *results)
     if (status != GONIO_OK) {
         return tool_exit_code(status);
     }
-    const gonio_readings_view view = gonio_readings_describe(readings);
+    const gonio_readings_view *view = gonio_readings_describe(readings);
     size_t measured = 0;
-    for (size_t k = 0; k < view.count; k++) {
+    for (size_t k = 0; k < view->count; k++) {
         bool any = false;
-        for (size_t c = 0; c < view.channels; c++) {
+        for (size_t c = 0; c < view->channels; c++) {
             any = any || !isnan(gonio_readings_value(readings, k, c));
         }
         measured += any;
     }
     char basis[20] = "not stated";
-    if (view.basis != 0) {
-        snprintf(basis, sizeof basis, "%016" PRIx64, view.basis);
+    if (view->basis != 0) {
+        snprintf(basis, sizeof basis, "%016" PRIx64, view->basis);
     }
     const char *kind = measured > 0 ? "readings" : "plan";
     if (results != NULL) {
         json_array_append_new(results,
                               json_pack("{s:s, s:s, s:I, s:I, s:s, s:I, s:s}", "file", path, "kind",
-                                        kind, "directions", (json_int_t)view.count, "measured",
+                                        kind, "directions", (json_int_t)view->count, "measured",
                                         (json_int_t)measured, "basis", basis, "components",
-                                        (json_int_t)view.components, "method", view.method));
+                                        (json_int_t)view->components, "method", view->method));
     } else {
-        printf("%s: gonio %s, %zu directions, %zu measured\n", path, kind, view.count, measured);
+        printf("%s: gonio %s, %zu directions, %zu measured\n", path, kind, view->count, measured);
         printf("  basis        %s\n", basis);
-        if (view.components > 0) {
-            printf("  components   %zu\n", view.components);
+        if (view->components > 0) {
+            printf("  components   %zu\n", view->components);
         }
-        if (view.method[0] != '\0') {
-            printf("  method       %s\n", view.method);
+        if (view->method[0] != '\0') {
+            printf("  method       %s\n", view->method);
         }
     }
     gonio_readings_free(&readings);

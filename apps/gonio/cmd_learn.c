@@ -58,17 +58,17 @@ static bool leave_out(const tool *t, material_list *list, const char *without)
 
 static int report(const tool *t, const gonio_basis *basis, const options *o)
 {
-    const gonio_basis_view view = gonio_basis_describe(basis);
-    const double share = gonio_basis_cumulative_variance(basis, view.components);
+    const gonio_basis_view *view = gonio_basis_describe(basis);
+    const double share = gonio_basis_cumulative_variance(basis, view->components);
     if (tool_json) {
         return tool_print_json(t, json_pack("{s:s, s:I, s:I, s:I, s:f}", "basis", o->output,
-                                            "materials", (json_int_t)view.materials, "components",
-                                            (json_int_t)view.components, "cells",
-                                            (json_int_t)view.cells, "explained_variance", share));
+                                            "materials", (json_int_t)view->materials, "components",
+                                            (json_int_t)view->components, "cells",
+                                            (json_int_t)view->cells, "explained_variance", share));
     }
     if (!tool_quiet) {
         printf("%s: %zu components from %zu materials on %zu cells, %.2f %% of the variance\n",
-               o->output, view.components, view.materials, view.cells, 100.0 * share);
+               o->output, view->components, view->materials, view->cells, 100.0 * share);
     }
     return 0;
 }

@@ -19,14 +19,14 @@ typedef struct options {
 static int report(const tool *t, const options *o, const gonio_readings *readings,
                   const char *material)
 {
-    const gonio_readings_view view = gonio_readings_describe(readings);
+    const gonio_readings_view *view = gonio_readings_describe(readings);
     if (tool_json) {
         return tool_print_json(t, json_pack("{s:s, s:I, s:I, s:s}", "output", o->output, "readings",
-                                            (json_int_t)view.count, "channels",
-                                            (json_int_t)view.channels, "material", material));
+                                            (json_int_t)view->count, "channels",
+                                            (json_int_t)view->channels, "material", material));
     }
     if (!tool_quiet) {
-        printf("%s: %zu reading%s of %s\n", o->output, view.count, tool_plural(view.count),
+        printf("%s: %zu reading%s of %s\n", o->output, view->count, tool_plural(view->count),
                material);
     }
     return 0;

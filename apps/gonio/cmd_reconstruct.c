@@ -273,7 +273,7 @@ static int reconstruct_all(tool *t, const options *o, const char *basis_path,
         status = tool_read_readings(t, paths[k], &how, &readings[k]);
     }
     if (status == GONIO_OK) {
-        const char *planned = gonio_readings_describe(readings[0]).method;
+        const char *planned = gonio_readings_describe(readings[0])->method;
         status = tool_basis(t, basis_path, o->method != NULL ? o->method : planned, &basis);
     }
     if (status == GONIO_OK) {

@@ -49,11 +49,11 @@ static gonio_status read_directions(const tool *t, const char *path, gonio_pair 
     if (status != GONIO_OK) {
         return status;
     }
-    const gonio_readings_view view = gonio_readings_describe(readings);
-    *pairs = calloc(view.count, sizeof **pairs);
-    *count = view.count;
-    for (size_t k = 0; *pairs != NULL && k < view.count; k++) {
-        (*pairs)[k] = view.pair[k];
+    const gonio_readings_view *view = gonio_readings_describe(readings);
+    *pairs = calloc(view->count, sizeof **pairs);
+    *count = view->count;
+    for (size_t k = 0; *pairs != NULL && k < view->count; k++) {
+        (*pairs)[k] = view->pair[k];
     }
     gonio_readings_free(&readings);
     return *pairs != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;

@@ -105,7 +105,7 @@ GONIO_API gonio_status gonio_basis_write(gonio_context *context, const gonio_bas
 GONIO_API gonio_status gonio_basis_read(gonio_context *context, const char *path,
                                         gonio_basis **basis);
 
-/* What is in it; pointers belong to the basis. */
+/* What is in it. The view and the pointers in it belong to the basis. */
 typedef struct gonio_basis_view {
     gonio_representation representation;
     gonio_channel_model channels;
@@ -133,7 +133,7 @@ typedef struct gonio_basis_view {
     const char *command; /* "" if unknown */
 } gonio_basis_view;
 
-GONIO_API gonio_basis_view gonio_basis_describe(const gonio_basis *basis);
+GONIO_API const gonio_basis_view *gonio_basis_describe(const gonio_basis *basis);
 
 /* Rows first .. first + count - 1 of V, the first `components` values of each:
  * values[count][components]. Threads may call it at the same time. Errors: _ARGUMENT for rows or

@@ -138,7 +138,7 @@ GONIO_API gonio_status gonio_database_create_from_materials(gonio_context *conte
 
 GONIO_API void gonio_database_free(gonio_database **database);
 
-/* What is in it; pointers belong to the database. */
+/* What is in it. The view and the pointers in it belong to the database. */
 typedef struct gonio_database_view {
     gonio_representation representation;
     gonio_channel_model channels;
@@ -153,7 +153,7 @@ typedef struct gonio_database_view {
     size_t rows;         /* 3 x cells if joint, cells if separate */
 } gonio_database_view;
 
-GONIO_API gonio_database_view gonio_database_describe(const gonio_database *database);
+GONIO_API const gonio_database_view *gonio_database_describe(const gonio_database *database);
 
 /* Reads rows first .. first + count - 1 of H into block[column][count] (column-major), for the
  * columns of the given materials (indices into names) in that order; subset NULL for all materials.

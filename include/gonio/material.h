@@ -46,7 +46,7 @@ typedef struct gonio_material_source {
     double theta_limit;       /* polar angle up to which values were measured, radians; 0: all */
 } gonio_material_source;
 
-/* What a material is; pointers belong to it. */
+/* What a material is. The view and the pointers in it belong to the material. */
 typedef struct gonio_material_view {
     const char *name;         /* as gonio_material_name */
     const char *format;       /* as gonio_material_format */
@@ -57,8 +57,8 @@ typedef struct gonio_material_view {
 } gonio_material_view;
 
 /* Opens a material: a MERL .binary table (phi_d of 180 bins, or 360 folded by reciprocity), a
- * neural BRDF .h5, an RGL .bsdf (RGB or spectral, isotropic or not), the unpolarised part of a KAIST
- * .pbsdf, a UTIA .bin, the reflection of a BSDF-XML matrix (Klems), recognised by content, or
+ * neural BRDF .h5, an RGL .bsdf (RGB or spectral, isotropic or not), the unpolarised part of a
+ * KAIST .pbsdf, a UTIA .bin, the reflection of a BSDF-XML matrix (Klems), recognised by content, or
  * "atlas:NAME" for a built-in one. The path is copied.
  * Errors: _IO (missing, unreadable, a directory), _FORMAT (not a known format, truncated,
  * oversized, non-finite weights), _ARGUMENT (no such built-in material), _MEMORY. */
@@ -80,7 +80,7 @@ GONIO_API const char *gonio_material_name(const gonio_material *material);
 /* Where it came from in words: "MERL table 90 x 90 x 180", "neural BRDF 6-21-21-3". */
 GONIO_API const char *gonio_material_format(const gonio_material *material);
 
-GONIO_API gonio_material_view gonio_material_describe(const gonio_material *material);
+GONIO_API const gonio_material_view *gonio_material_describe(const gonio_material *material);
 
 /* The BRDF at any pairs of directions: values[count][channels] in 1/sr, channels as
  * gonio_material_describe says. NaN where there are no data: below the horizon, beyond theta_limit,

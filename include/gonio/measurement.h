@@ -66,8 +66,8 @@ GONIO_API void gonio_readings_free(gonio_readings **readings);
 
 /* ---- what is in them ---- */
 
-/* Pointers belong to the readings; those to values, deviations and wavelengths last until values or
- * deviations of another number of channels are set. */
+/* Belongs to the readings, as do the pointers in it, and follows their changes: those to values,
+ * deviations and wavelengths last until values or deviations are set. */
 typedef struct gonio_readings_view {
     size_t count;
     size_t channels;
@@ -85,7 +85,7 @@ typedef struct gonio_readings_view {
     const char *const *note; /* [notes] */
 } gonio_readings_view;
 
-GONIO_API gonio_readings_view gonio_readings_describe(const gonio_readings *readings);
+GONIO_API const gonio_readings_view *gonio_readings_describe(const gonio_readings *readings);
 
 /* Whether the channels are R, G, B: three without wavelengths. */
 GONIO_API bool gonio_readings_are_colours(const gonio_readings *readings);

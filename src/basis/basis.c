@@ -237,22 +237,7 @@ static gonio_status hash(const gonio_basis *basis,
     return status;
 }
 
-gonio_status gonio_i_basis_finish(gonio_context *context, gonio_basis *basis)
-{
-    gonio_status status = hash(basis, add_identity, &basis->fingerprint);
-    if (status == GONIO_OK) {
-        status = hash(basis, add_everything, &basis->checksum);
-    }
-    if (status == GONIO_OK && basis->loadings != NULL) {
-        status = hash(basis, add_loadings, &basis->loadings_checksum);
-    }
-    if (status == GONIO_OK && basis->parents != NULL) {
-        status = hash(basis, add_parents, &basis->parents_checksum);
-    }
-    return status == GONIO_OK ? gonio_i_basis_map_cells(context, basis) : status;
-}
-
-gonio_basis_view gonio_basis_describe(const gonio_basis *basis)
+static gonio_basis_view view_of(const gonio_basis *basis)
 {
     return (gonio_basis_view){
         .representation = basis->representation,
@@ -278,6 +263,27 @@ gonio_basis_view gonio_basis_describe(const gonio_basis *basis)
         .program = basis->program != NULL ? basis->program : "",
         .command = basis->command != NULL ? basis->command : "",
     };
+}
+
+gonio_status gonio_i_basis_finish(gonio_context *context, gonio_basis *basis)
+{
+    gonio_status status = hash(basis, add_identity, &basis->fingerprint);
+    if (status == GONIO_OK) {
+        status = hash(basis, add_everything, &basis->checksum);
+    }
+    if (status == GONIO_OK && basis->loadings != NULL) {
+        status = hash(basis, add_loadings, &basis->loadings_checksum);
+    }
+    if (status == GONIO_OK && basis->parents != NULL) {
+        status = hash(basis, add_parents, &basis->parents_checksum);
+    }
+    basis->view = view_of(basis);
+    return status == GONIO_OK ? gonio_i_basis_map_cells(context, basis) : status;
+}
+
+const gonio_basis_view *gonio_basis_describe(const gonio_basis *basis)
+{
+    return &basis->view;
 }
 
 /* ---- rows of V ---- */

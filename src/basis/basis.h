@@ -33,6 +33,7 @@ struct gonio_basis {
     char *program;
     char *command;
     int32_t *position; /* of the whole grid: which of `cell` stands for it */
+    gonio_basis_view view;
 };
 
 /* The name of the format that a file is of; NULL if it is no basis. */
@@ -49,7 +50,8 @@ gonio_basis *gonio_i_basis_allocate(gonio_context *context, size_t materials, si
                                     size_t cells, gonio_channel_model channels, size_t components,
                                     size_t variance_count);
 
-/* The last step of making one: its fingerprint, its checksum and the map of nearest cells. */
+/* The last step of making one: its fingerprint, its checksum, the map of nearest cells and the view
+ * of it. */
 gonio_status gonio_i_basis_finish(gonio_context *context, gonio_basis *basis);
 
 size_t gonio_i_basis_row_count(size_t cells, gonio_channel_model channels);

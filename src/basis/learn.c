@@ -28,7 +28,7 @@ static const double ORTHOGONAL = 1e-11; /* max |V'V - I| */
 typedef struct learner {
     gonio_context *context;
     const gonio_database *database;
-    gonio_database_view view;
+    const gonio_database_view *view;
     const size_t *subset; /* of its materials; NULL for all */
     size_t materials;
     size_t columns;                   /* with mixtures */
@@ -422,15 +422,15 @@ static gonio_status decompose(const learner *l)
 static gonio_status describe_origin(const learner *l)
 {
     gonio_basis *basis = l->basis;
-    basis->representation = l->view.representation;
-    basis->mapping = l->view.mapping;
-    memcpy(basis->cell, l->view.cell, basis->cells * sizeof *basis->cell);
+    basis->representation = l->view->representation;
+    basis->mapping = l->view->mapping;
+    memcpy(basis->cell, l->view->cell, basis->cells * sizeof *basis->cell);
     basis->program = gonio_i_format("gonio %s", gonio_version());
     bool done = basis->program != NULL;
     for (size_t k = 0; k < basis->materials; k++) {
         const size_t material = l->subset != NULL ? l->subset[k] : k;
-        basis->fingerprints[k] = l->view.fingerprints[material];
-        basis->names[k] = strdup(l->view.names[material]);
+        basis->fingerprints[k] = l->view->fingerprints[material];
+        basis->names[k] = strdup(l->view->names[material]);
         done = done && basis->names[k] != NULL;
     }
     return done ? GONIO_OK : gonio_i_fail(l->context, GONIO_ERROR_MEMORY, "out of memory");
@@ -536,13 +536,13 @@ gonio_status gonio_basis_learn(gonio_context *context, const gonio_database *dat
     options = &how;
     learner l = {.context = context, .database = database, .subset = options->subset};
     l.view = gonio_database_describe(database);
-    how.mixtures = count_mixtures(&l.view, &how);
-    l.materials = l.subset != NULL ? options->subset_count : l.view.materials;
-    l.measured = l.view.columns / l.view.materials * l.materials;
+    how.mixtures = count_mixtures(l.view, &how);
+    l.materials = l.subset != NULL ? options->subset_count : l.view->materials;
+    l.measured = l.view->columns / l.view->materials * l.materials;
     l.columns = l.measured + options->mixtures;
     l.any_rank = options->mixtures > 0 && options->components == 0;
     size_t components = 0;
-    status = check_mixtures(context, &l.view, options);
+    status = check_mixtures(context, l.view, options);
     if (status == GONIO_OK) {
         status = choose_components(context, l.columns, options, &components);
     }
@@ -553,8 +553,8 @@ gonio_status gonio_basis_learn(gonio_context *context, const gonio_database *dat
     l.turns = (l.tiles + TILES_A_TURN - 1) / TILES_A_TURN;
     size_t finished = 0;
     l.finished = &finished;
-    l.basis = gonio_i_basis_allocate(context, l.materials, options->mixtures, l.view.cells,
-                                     l.view.channels, components,
+    l.basis = gonio_i_basis_allocate(context, l.materials, options->mixtures, l.view->cells,
+                                     l.view->channels, components,
                                      options->without_mean ? l.columns : l.columns - 1);
     if (l.basis == NULL) {
         return GONIO_ERROR_MEMORY;

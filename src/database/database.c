@@ -49,6 +49,7 @@ struct gonio_database {
     double inverse_scale[GONIO_CHANNELS];      /* 1/s, of values already divided by a bin's own s */
     size_t cells;
     int32_t *cell; /* those of `stored` that are kept */
+    gonio_database_view view;
 };
 
 void gonio_database_options_default(gonio_database_options *options)
@@ -531,6 +532,22 @@ static gonio_status fill(gonio_context *context, gonio_database *database, const
     return status;
 }
 
+static gonio_database_view view_of(const gonio_database *database)
+{
+    return (gonio_database_view){
+        .representation = database->options.representation,
+        .channels = database->options.channels,
+        .mapping = database->options.mapping,
+        .materials = database->materials,
+        .names = (const char *const *)database->names,
+        .fingerprints = database->fingerprints,
+        .columns = gonio_i_columns_per_material(database->options.channels) * database->materials,
+        .cells = database->cells,
+        .cell = database->cell,
+        .rows = per_cell(database) * database->cells,
+    };
+}
+
 static gonio_status create(gonio_context *context, const sources *from, size_t count,
                            const gonio_database_options *options, gonio_database **database)
 {
@@ -564,6 +581,7 @@ static gonio_status create(gonio_context *context, const sources *from, size_t c
         return status;
     }
     made->options.scratch = NULL;
+    made->view = view_of(made);
     *database = made;
     return GONIO_OK;
 }
@@ -602,20 +620,9 @@ void gonio_database_free(gonio_database **database)
     *database = NULL;
 }
 
-gonio_database_view gonio_database_describe(const gonio_database *database)
+const gonio_database_view *gonio_database_describe(const gonio_database *database)
 {
-    return (gonio_database_view){
-        .representation = database->options.representation,
-        .channels = database->options.channels,
-        .mapping = database->options.mapping,
-        .materials = database->materials,
-        .names = (const char *const *)database->names,
-        .fingerprints = database->fingerprints,
-        .columns = gonio_i_columns_per_material(database->options.channels) * database->materials,
-        .cells = database->cells,
-        .cell = database->cell,
-        .rows = per_cell(database) * database->cells,
-    };
+    return &database->view;
 }
 
 /* ---- reading the matrix ---- */
@@ -715,12 +722,12 @@ gonio_status gonio_database_read_rows(gonio_context *context, const gonio_databa
                                       size_t first, size_t count, const size_t *subset,
                                       size_t subset_count, double *block)
 {
-    const gonio_database_view view = gonio_database_describe(database);
-    gonio_status status = check_request(context, &view, first, count, subset, subset_count);
+    const gonio_database_view *view = gonio_database_describe(database);
+    gonio_status status = check_request(context, view, first, count, subset, subset_count);
     if (status != GONIO_OK) {
         return status;
     }
-    const size_t materials = subset != NULL ? subset_count : view.materials;
+    const size_t materials = subset != NULL ? subset_count : view->materials;
     const size_t columns = gonio_i_columns_per_material(database->options.channels) * materials;
     float *values =
         gonio_i_allocate(context, columns * gonio_i_database_tile_room(database), sizeof *values);

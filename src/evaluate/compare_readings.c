@@ -43,13 +43,13 @@ static void add_pair(gonio_pair pair, double rho, double other, pairs *p)
 static gonio_status check(gonio_context *context, const gonio_readings *reference,
                           const gonio_readings *other)
 {
-    const gonio_readings_view a = gonio_readings_describe(reference);
-    const gonio_readings_view b = gonio_readings_describe(other);
-    if (a.count != b.count || a.channels != b.channels ||
-        (a.wavelength == NULL) != (b.wavelength == NULL)) {
+    const gonio_readings_view *a = gonio_readings_describe(reference);
+    const gonio_readings_view *b = gonio_readings_describe(other);
+    if (a->count != b->count || a->channels != b->channels ||
+        (a->wavelength == NULL) != (b->wavelength == NULL)) {
         return gonio_i_fail(context, GONIO_ERROR_MISMATCH,
-                            "%s has %zu readings in %zu channels, %s has %zu in %zu", a.path,
-                            a.count, a.channels, b.path, b.count, b.channels);
+                            "%s has %zu readings in %zu channels, %s has %zu in %zu", a->path,
+                            a->count, a->channels, b->path, b->count, b->channels);
     }
     return GONIO_OK;
 }
@@ -58,13 +58,13 @@ static gonio_status check(gonio_context *context, const gonio_readings *referenc
 static size_t add_channel(const gonio_readings *reference, const gonio_readings *other,
                           const bool *left_out, size_t channel, pairs *p, gonio_i_error_sums *sums)
 {
-    const gonio_readings_view view = gonio_readings_describe(reference);
+    const gonio_readings_view *view = gonio_readings_describe(reference);
     p->count = 0;
-    for (size_t k = 0; k < view.count; k++) {
+    for (size_t k = 0; k < view->count; k++) {
         const double a = gonio_readings_value(reference, k, channel);
         const double b = gonio_readings_value(other, k, channel);
         if ((left_out == NULL || !left_out[k]) && !isnan(a) && !isnan(b)) {
-            add_pair(view.pair[k], a, b, p);
+            add_pair(view->pair[k], a, b, p);
         }
     }
     const gonio_i_compared values = {p->count, p->reference, p->other, p->cosines,
@@ -87,15 +87,15 @@ gonio_status gonio_compare_readings(gonio_context *context, const gonio_readings
                                     const gonio_readings *other, const bool *left_out,
                                     gonio_error *error, size_t *compared)
 {
-    const gonio_readings_view view = gonio_readings_describe(reference);
+    const gonio_readings_view *view = gonio_readings_describe(reference);
     gonio_i_error_sums sums = {0};
     size_t values = 0;
     pairs p = {0};
     gonio_status status = check(context, reference, other);
     if (status == GONIO_OK) {
-        status = allocate_pairs(context, view.count, &p);
+        status = allocate_pairs(context, view->count, &p);
     }
-    for (size_t c = 0; c < view.channels && status == GONIO_OK; c++) {
+    for (size_t c = 0; c < view->channels && status == GONIO_OK; c++) {
         values += add_channel(reference, other, left_out, c, &p, &sums);
     }
     free(p.reference);
@@ -104,9 +104,9 @@ gonio_status gonio_compare_readings(gonio_context *context, const gonio_readings
     }
     if (!(sums.metric[GONIO_E6].reference > 0.0)) {
         return gonio_i_fail(context, GONIO_ERROR_DATA, "%s: nothing to compare, or only darkness",
-                            view.path);
+                            view->path);
     }
-    *compared = count_readings(view.count, left_out);
+    *compared = count_readings(view->count, left_out);
     *error = gonio_i_error_of(&sums, (double)values);
     return GONIO_OK;
 }

@@ -27,16 +27,16 @@ static gonio_status evaluate_blocks(gonio_context *context, const gonio_material
                                     const gonio_pair *pairs, size_t count, double *values)
 {
     const gonio_material_source source = gonio_i_material_source(material);
-    const gonio_material_view view = gonio_material_describe(material);
+    const gonio_material_view *view = gonio_material_describe(material);
     gonio_context *team = gonio_i_team_begin(context);
     gonio_status status = GONIO_OK;
 #pragma omp parallel for schedule(dynamic) num_threads(gonio_context_threads(context))
     for (size_t first = 0; first < count; first += BLOCK) {
         const size_t here = count - first < BLOCK ? count - first : BLOCK;
-        double *block = values + first * view.channels;
+        double *block = values + first * view->channels;
         const gonio_status mine = source.evaluate(source.self, team, pairs + first, here, block);
         for (size_t k = 0; k < here && mine == GONIO_OK; k++) {
-            take_out(&view, &pairs[first + k], block + k * view.channels);
+            take_out(view, &pairs[first + k], block + k * view->channels);
         }
         if (mine != GONIO_OK) {
 #pragma omp atomic write

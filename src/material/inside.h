@@ -9,7 +9,8 @@ struct gonio_material {
     char *format;
     gonio_material_source source;
     double *wavelength; /* [source.channels]; NULL for colours */
-    double *weight;     /* [GONIO_CHANNELS][source.channels]: from spectra to colours, or NULL */
+    gonio_material_view view;
+    double *weight; /* [GONIO_CHANNELS][source.channels]: from spectra to colours, or NULL */
 };
 
 #endif

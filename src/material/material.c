@@ -20,12 +20,8 @@ struct gonio_fingerprint {
 };
 
 static const gonio_i_format_reader *const readers[] = {
-    &gonio_i_merl_reader,
-    &gonio_i_neural_reader,
-    &gonio_i_rgl_reader,
-    &gonio_i_kaist_reader,
-    &gonio_i_utia_reader,
-    &gonio_i_bsdf_xml_reader,
+    &gonio_i_merl_reader,  &gonio_i_neural_reader, &gonio_i_rgl_reader,
+    &gonio_i_kaist_reader, &gonio_i_utia_reader,   &gonio_i_bsdf_xml_reader,
 };
 
 enum { READERS = sizeof readers / sizeof *readers };
@@ -73,6 +69,18 @@ static gonio_status keep_names(gonio_context *context, const char *name, const c
                : gonio_i_fail(context, GONIO_ERROR_MEMORY, "out of memory");
 }
 
+static gonio_material_view view_of(const gonio_material *material)
+{
+    const gonio_material_source *source = &material->source;
+    const bool grid = source->evaluate == NULL;
+    return (gonio_material_view){.name = material->name,
+                                 .format = material->format,
+                                 .channels = grid ? GONIO_CHANNELS : source->channels,
+                                 .wavelength = grid ? NULL : source->wavelength,
+                                 .anisotropic = source->anisotropic,
+                                 .theta_limit = source->theta_limit};
+}
+
 gonio_status gonio_material_create(gonio_context *context, const char *name, const char *format,
                                    const gonio_material_source *source, gonio_material **material)
 {
@@ -101,6 +109,7 @@ gonio_status gonio_material_create(gonio_context *context, const char *name, con
         gonio_material_free(&made);
         return status;
     }
+    made->view = view_of(made);
     *material = made;
     return GONIO_OK;
 }
@@ -131,16 +140,9 @@ const char *gonio_material_format(const gonio_material *material)
     return material->format;
 }
 
-gonio_material_view gonio_material_describe(const gonio_material *material)
+const gonio_material_view *gonio_material_describe(const gonio_material *material)
 {
-    const gonio_material_source *source = &material->source;
-    const bool grid = source->evaluate == NULL;
-    return (gonio_material_view){.name = material->name,
-                                 .format = material->format,
-                                 .channels = grid ? GONIO_CHANNELS : source->channels,
-                                 .wavelength = grid ? NULL : source->wavelength,
-                                 .anisotropic = source->anisotropic,
-                                 .theta_limit = source->theta_limit};
+    return &material->view;
 }
 
 gonio_material_source gonio_i_material_source(const gonio_material *material)
@@ -226,12 +228,13 @@ static gonio_status open_file(gonio_context *context, const gonio_i_file *file,
     if (reader == NULL) {
         return not_recognised(context, file);
     }
-    gonio_material_source source = {.size = sizeof source};
+    gonio_material_source source = {0};
     char *description = NULL;
     gonio_status status = reader->open(context, file, &source, &description);
     if (status != GONIO_OK) {
         return status;
     }
+    source.size = sizeof source;
     char *name = gonio_i_base_name(file->path, false);
     status = name == NULL ? GONIO_ERROR_MEMORY
                           : gonio_material_create(context, name, description, &source, material);

@@ -51,6 +51,7 @@ static gonio_status take_channels(gonio_context *context, gonio_readings *plan,
         return status;
     }
     plan->deviation = gonio_i_allocate(context, plan->count * plan->channels, sizeof(double));
+    gonio_i_readings_update_view(plan);
     return plan->deviation != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
 }
 

@@ -64,22 +64,27 @@ void gonio_readings_free(gonio_readings **readings)
 
 /* ---- what is in them ---- */
 
-gonio_readings_view gonio_readings_describe(const gonio_readings *readings)
+void gonio_i_readings_update_view(gonio_readings *readings)
 {
-    return (gonio_readings_view){.count = readings->count,
-                                 .channels = readings->channels,
-                                 .pair = readings->pair,
-                                 .planned = readings->planned,
-                                 .wavelength = readings->wavelength,
-                                 .value = readings->value,
-                                 .deviation = readings->deviation,
-                                 .line = readings->line,
-                                 .path = readings->path,
-                                 .basis = readings->basis,
-                                 .components = readings->components,
-                                 .method = readings->method,
-                                 .notes = readings->note.count,
-                                 .note = (const char *const *)readings->note.line};
+    readings->view = (gonio_readings_view){.count = readings->count,
+                                           .channels = readings->channels,
+                                           .pair = readings->pair,
+                                           .planned = readings->planned,
+                                           .wavelength = readings->wavelength,
+                                           .value = readings->value,
+                                           .deviation = readings->deviation,
+                                           .line = readings->line,
+                                           .path = readings->path,
+                                           .basis = readings->basis,
+                                           .components = readings->components,
+                                           .method = readings->method,
+                                           .notes = readings->note.count,
+                                           .note = (const char *const *)readings->note.line};
+}
+
+const gonio_readings_view *gonio_readings_describe(const gonio_readings *readings)
+{
+    return &readings->view;
 }
 
 bool gonio_readings_are_colours(const gonio_readings *readings)
@@ -189,6 +194,7 @@ gonio_status gonio_i_readings_set_channels(gonio_context *context, gonio_reading
     readings->value = value;
     readings->deviation = NULL;
     readings->channels = channels;
+    gonio_i_readings_update_view(readings);
     return GONIO_OK;
 }
 
@@ -322,6 +328,7 @@ gonio_status gonio_i_readings_finish(gonio_context *context, gonio_readings *rea
     }
     const char *method = gonio_i_comments_value(&readings->comment, "method");
     readings->method = method != NULL ? method : "";
+    gonio_i_readings_update_view(readings);
     const gonio_status status = gonio_i_readings_group(context, readings);
     return status == GONIO_OK && !readings->options.average_repeats
                ? gonio_i_readings_refuse_repeats(context, readings, measured)
@@ -339,6 +346,7 @@ gonio_status gonio_i_readings_note(gonio_context *context, gonio_readings *readi
     const bool kept =
         length >= 0 && gonio_i_comments_add_text(&readings->note, text, (size_t)length);
     if (kept) {
+        gonio_i_readings_update_view(readings);
         gonio_i_note(context, "%s: %s", readings->path, text);
     }
     free(length >= 0 ? text : NULL);
@@ -554,5 +562,6 @@ gonio_status gonio_readings_set_deviations(gonio_context *context, gonio_reading
     }
     free(readings->deviation);
     readings->deviation = made;
+    gonio_i_readings_update_view(readings);
     return GONIO_OK;
 }

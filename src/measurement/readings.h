@@ -34,9 +34,13 @@ struct gonio_readings {
     gonio_i_comments comment; /* of the file, which CSV has room for */
     gonio_i_comments note;    /* what its reader has to say of it */
     gonio_i_attachment attachment;
+    gonio_readings_view view; /* of what is above */
 };
 
 /* ---- making them ---- */
+
+/* What every function that changes readings ends with: the view of them as they are. */
+void gonio_i_readings_update_view(gonio_readings *readings);
 
 /* options may be NULL. Errors: _ARGUMENT (options that were not initialised), _MEMORY. */
 gonio_status gonio_i_readings_new(gonio_context *context, const char *path,

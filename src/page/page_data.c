@@ -129,12 +129,12 @@ static void colours_of(const gonio_readings *readings, size_t reading, double va
 static json_t *reading_json(const gonio_readings *readings, size_t reading,
                             const gonio_table *reference, const gonio_table *reconstruction)
 {
-    const gonio_readings_view view = gonio_readings_describe(readings);
-    const gonio_pair pair = view.pair[reading];
+    const gonio_readings_view *view = gonio_readings_describe(readings);
+    const gonio_pair pair = view->pair[reading];
     double value[GONIO_CHANNELS];
     colours_of(readings, reading, value);
     return json_pack("{s:o, s:o, s:i, s:o, s:o, s:o}", "incident", direction(pair.incident),
-                     "outgoing", direction(pair.outgoing), "channel", view.planned[reading],
+                     "outgoing", direction(pair.outgoing), "channel", view->planned[reading],
                      "value", numbers(value, GONIO_CHANNELS), "reference",
                      values_at(reference, pair), "reconstruction", values_at(reconstruction, pair));
 }
@@ -142,16 +142,16 @@ static json_t *reading_json(const gonio_readings *readings, size_t reading,
 json_t *gonio_i_web_readings(const gonio_readings *readings, const gonio_table *reference,
                              const gonio_table *reconstruction)
 {
-    const gonio_readings_view view = gonio_readings_describe(readings);
+    const gonio_readings_view *view = gonio_readings_describe(readings);
     json_t *list = json_array();
-    for (size_t k = 0; k < view.count && k < MOST_READINGS; k++) {
+    for (size_t k = 0; k < view->count && k < MOST_READINGS; k++) {
         json_array_append_new(list, reading_json(readings, k, reference, reconstruction));
     }
-    char *name = gonio_i_base_name(view.path, true);
+    char *name = gonio_i_base_name(view->path, true);
     json_t *json =
         json_pack("{s:o, s:I, s:I, s:o, s:o}", "file", text(name != NULL ? name : ""), "count",
-                  (json_int_t)view.count, "components", (json_int_t)view.components, "method",
-                  text(view.method), "list", list);
+                  (json_int_t)view->count, "components", (json_int_t)view->components, "method",
+                  text(view->method), "list", list);
     free(name);
     return json;
 }

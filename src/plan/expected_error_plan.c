@@ -101,7 +101,7 @@ static double metric_weight(gonio_metric metric, gonio_half_difference at, doubl
 /* f: scratch, [components] */
 static void list_row(place_list *p, gonio_metric metric, size_t row, double *f)
 {
-    const gonio_basis_view *view = &p->prior->view;
+    const gonio_basis_view *view = p->prior->view;
     int channel = 0;
     const double bins = gonio_i_row_bins(view, row);
     p->at[row] = gonio_i_row_coordinates(view, row, &channel);
@@ -116,7 +116,7 @@ static void list_row(place_list *p, gonio_metric metric, size_t row, double *f)
 static gonio_status list_rows(place_list *p, gonio_metric metric)
 {
     bool failed = false;
-    p->rows = p->prior->view.rows;
+    p->rows = p->prior->view->rows;
     p->components = p->prior->components;
     const gonio_status status = allocate_places(p);
     if (status != GONIO_OK) {
@@ -225,7 +225,7 @@ static gonio_status list_candidates(place_list *p, const gonio_plan_options *opt
 static gonio_status mean_reciprocal(const place_list *p, double *mean)
 {
     const gonio_i_prior *prior = p->prior;
-    const size_t measured = prior->view.columns - prior->view.mixtures;
+    const size_t measured = prior->view->columns - prior->view->mixtures;
     const size_t used = prior->samples > 0 ? measured : 0;
     double *f = gonio_i_allocate(p->context, prior->components, sizeof *f);
     double *square = gonio_i_allocate(p->context, used + 1, sizeof *square);
@@ -257,7 +257,7 @@ static gonio_status mean_reciprocal(const place_list *p, double *mean)
 static void fill_entry(const place_list *p, const gonio_plan_options *options, size_t row,
                        gonio_plan_entry *entry)
 {
-    const gonio_basis_view *view = &p->prior->view;
+    const gonio_basis_view *view = p->prior->view;
     if (options->candidates != NULL) {
         const gonio_bin bin = gonio_bin_of(p->at[row]);
         *entry = (gonio_plan_entry){gonio_cell_of_bin(view->representation, bin),
@@ -370,7 +370,7 @@ static gonio_status fill_plan(const place_list *p, const gonio_plan_options *opt
 static gonio_status check_options(gonio_context *context, const gonio_basis *basis,
                                   const gonio_plan_options *options)
 {
-    const size_t all = gonio_basis_describe(basis).components;
+    const size_t all = gonio_basis_describe(basis)->components;
     const gonio_metric_view *metric = gonio_metric_describe((int)options->metric);
     if (metric == NULL || !metric->plannable) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "no plan can be made for the metric %s",
@@ -435,7 +435,7 @@ static gonio_status make_plan(gonio_context *context, const gonio_basis *basis,
         status = check(context, &p, options);
     }
     if (status == GONIO_OK) {
-        made = gonio_i_allocate_plan(context, &p.prior->view, gonio_i_expected_error_method.name,
+        made = gonio_i_allocate_plan(context, p.prior->view, gonio_i_expected_error_method.name,
                                      p.prior->components, options->count);
         status = made == NULL ? GONIO_ERROR_MEMORY : fill_plan(&p, options, made);
     }

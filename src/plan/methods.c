@@ -200,20 +200,20 @@ static gonio_status choose_entries(gonio_context *context, const gonio_i_method 
                                    const gonio_basis *basis, const gonio_plan_options *options,
                                    gonio_plan *plan)
 {
-    const gonio_basis_view view = gonio_basis_describe(basis);
-    const size_t values = view.rows * plan->components;
+    const gonio_basis_view *view = gonio_basis_describe(basis);
+    const size_t values = view->rows * plan->components;
     size_t *chosen = gonio_i_allocate(context, plan->count, sizeof *chosen);
     double *vectors = gonio_i_allocate(context, values, sizeof *vectors);
     gonio_selection_report report;
     gonio_status status = chosen == NULL || vectors == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
     if (status == GONIO_OK) {
-        gonio_i_basis_rows(basis, 0, view.rows, plan->components, vectors);
+        gonio_i_basis_rows(basis, 0, view->rows, plan->components, vectors);
         gonio_i_selection_problem problem = {.context = context,
                                              .vectors = vectors,
-                                             .rows = view.rows,
+                                             .rows = view->rows,
                                              .components = plan->components,
                                              .stride = plan->components,
-                                             .basis = &view};
+                                             .basis = view};
         status = select_rows(method, &problem, options, chosen, &report);
     }
     if (status == GONIO_OK) {
@@ -222,7 +222,7 @@ static gonio_status choose_entries(gonio_context *context, const gonio_i_method 
         plan->history = report.history;
         plan->steps = report.steps;
         for (size_t j = 0; j < plan->count; j++) {
-            plan->entries[j] = gonio_i_plan_entry(&view, chosen[j], options->phi_d);
+            plan->entries[j] = gonio_i_plan_entry(view, chosen[j], options->phi_d);
         }
     }
     free(vectors);
@@ -266,17 +266,17 @@ static gonio_status plan_rows(gonio_context *context, const gonio_i_method *meth
                               const gonio_basis *basis, const gonio_plan_options *options,
                               gonio_plan **plan)
 {
-    const gonio_basis_view view = gonio_basis_describe(basis);
-    const size_t components = choose_components(method, &view, options);
-    gonio_status status = check_options(context, &view, components, options);
+    const gonio_basis_view *view = gonio_basis_describe(basis);
+    const size_t components = choose_components(method, view, options);
+    gonio_status status = check_options(context, view, components, options);
     if (status == GONIO_OK) {
-        status = check_selection(context, method, view.rows, components, options);
+        status = check_selection(context, method, view->rows, components, options);
     }
     if (status != GONIO_OK) {
         return status;
     }
     gonio_plan *made =
-        gonio_i_allocate_plan(context, &view, method->name, components, options->count);
+        gonio_i_allocate_plan(context, view, method->name, components, options->count);
     if (made == NULL) {
         return GONIO_ERROR_MEMORY;
     }
@@ -293,11 +293,11 @@ gonio_status gonio_plan_create(gonio_context *context, const gonio_basis *basis,
                                const gonio_plan_options *asked, gonio_plan **plan)
 {
     gonio_plan_options options;
-    const gonio_basis_view view = gonio_basis_describe(basis);
+    const gonio_basis_view *view = gonio_basis_describe(basis);
     const gonio_i_method *method = NULL;
     gonio_status status = take(context, asked, &options);
     if (status == GONIO_OK) {
-        status = choose_method(context, &view, &options, &method);
+        status = choose_method(context, view, &options, &method);
     }
     if (status != GONIO_OK) {
         return status;

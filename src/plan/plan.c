@@ -16,7 +16,7 @@ gonio_plan_entry gonio_i_plan_entry(const gonio_basis_view *basis, size_t row, d
 
 void gonio_plan_rows(const gonio_plan *plan, const gonio_basis *basis, size_t *rows)
 {
-    const gonio_channel_model channels = gonio_basis_describe(basis).channels;
+    const gonio_channel_model channels = gonio_basis_describe(basis)->channels;
     for (size_t j = 0; j < plan->count; j++) {
         const gonio_plan_entry *entry = &plan->entries[j];
         const size_t position = gonio_basis_position(basis, entry->cell);

@@ -253,7 +253,7 @@ gonio_status gonio_i_dark_level_find(gonio_context *context, const gonio_i_prior
                 .noise = noise,
                 .columns = columns->count};
     *dark = NULL;
-    if (prior->view.channels == GONIO_JOINT || !has_zeros(columns)) {
+    if (prior->view->channels == GONIO_JOINT || !has_zeros(columns)) {
         return GONIO_OK;
     }
     const gonio_status status = allocate(&s) ? find(&s, columns, &found) : GONIO_ERROR_MEMORY;

@@ -55,7 +55,7 @@ static void fill_terms(const filler *f, size_t row, double *terms)
     double *peaked = smooth + sites->n;
     int channel = 0;
     const gonio_i_place here =
-        gonio_i_place_of(gonio_i_row_coordinates(&sites->prior->view, row, &channel));
+        gonio_i_place_of(gonio_i_row_coordinates(sites->prior->view, row, &channel));
     gonio_i_prior_row(sites->prior, row, terms);
     for (size_t i = 0; i < sites->n; i++) {
         smooth[i] = gonio_i_smooth(&here, &sites->place[i]);
@@ -99,7 +99,7 @@ static void fill_tile(const filler *f, size_t row, size_t rows, const double *te
     double sum[HIGH * WIDE] = {0.0};
     for (size_t h = 0; h < rows; h++) {
         for (size_t w = 0; w < WIDE; w++) {
-            sum[h * WIDE + w] = f->sites->prior->view.mean[row + h];
+            sum[h * WIDE + w] = f->sites->prior->view->mean[row + h];
         }
     }
     add_terms(terms, f->size, panel, components, sum);
@@ -128,7 +128,7 @@ static void fill_block(const filler *f, size_t row, size_t rows, double *terms)
 
 static gonio_status fill_rows(gonio_context *context, const filler *f)
 {
-    const size_t rows = f->sites->prior->view.rows;
+    const size_t rows = f->sites->prior->view->rows;
     bool failed = false;
 #pragma omp parallel num_threads(gonio_context_threads(context))
     {

@@ -55,7 +55,7 @@ typedef struct lesson {
 
 static bool can_tell(const gonio_i_prior *prior)
 {
-    const gonio_basis_view *view = &prior->view;
+    const gonio_basis_view *view = prior->view;
     return prior->samples > 0 && view->materials >= FEW_MATERIALS &&
            (view->mixtures == 0 || view->parents != NULL);
 }
@@ -63,7 +63,7 @@ static bool can_tell(const gonio_i_prior *prior)
 /* Mean of f' f over the bins, from a sample of rows. */
 static gonio_status find_metric(gonio_context *context, gonio_i_learned_error *x)
 {
-    const gonio_basis_view *view = &x->prior->view;
+    const gonio_basis_view *view = x->prior->view;
     const size_t step = gonio_i_sample_step(view->rows);
     const size_t count = (view->rows + step - 1) / step;
     double *rows = gonio_i_allocate(context, count * x->components, sizeof *rows);
@@ -102,8 +102,8 @@ gonio_status gonio_i_learned_error_create(gonio_context *context, const gonio_i_
     }
     x->prior = prior;
     x->components = prior->components;
-    x->measured = prior->samples - prior->view.mixtures;
-    x->each = x->measured / prior->view.materials;
+    x->measured = prior->samples - prior->view->mixtures;
+    x->each = x->measured / prior->view->materials;
     x->metric = gonio_i_allocate(context, x->components * x->components, sizeof *x->metric);
     const gonio_status status = x->metric == NULL ? GONIO_ERROR_MEMORY : find_metric(context, x);
     if (status != GONIO_OK) {
@@ -136,7 +136,7 @@ static bool is_left_out(const gonio_i_learned_error *x, size_t column, size_t k)
     if (column < x->measured) {
         return is_of_fold(x, column, k);
     }
-    const int32_t *parent = x->prior->view.parents + 2 * (column - x->measured);
+    const int32_t *parent = x->prior->view->parents + 2 * (column - x->measured);
     return is_of_fold(x, (size_t)parent[0], k) || is_of_fold(x, (size_t)parent[1], k);
 }
 
@@ -423,7 +423,7 @@ static gonio_status learn_fold(const gonio_i_folds *folds, const gonio_i_fit *e,
 static gonio_status learn_folds(const gonio_i_folds *folds, const gonio_i_fit *e, lesson *lessons)
 {
     const gonio_i_learned_error *x = folds->of;
-    const size_t most = (x->prior->view.materials / FOLDS + 1) * x->each;
+    const size_t most = (x->prior->view->materials / FOLDS + 1) * x->each;
     column_scratch s = {gonio_i_allocate(e->context, most, sizeof *s.column),
                         gonio_i_allocate(e->context, most * e->n, sizeof *s.y),
                         gonio_i_allocate(e->context, most * e->n, sizeof *s.solved),

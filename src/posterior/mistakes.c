@@ -174,7 +174,7 @@ static gonio_status weigh(trial *t, const gonio_i_transform *transform, double a
 static gonio_status try_hypotheses(trial *t, const double *dark, const char **mistake)
 {
     const gonio_i_transform as_it_is = {.factor = 1.0, .dark = dark};
-    const gonio_readings_view view = gonio_readings_describe(t->readings);
+    const gonio_readings_view *view = gonio_readings_describe(t->readings);
     double here = 0.0;
     double unusual = 0.0;
     gonio_status status = weigh(t, &as_it_is, SOME, &here);
@@ -184,7 +184,7 @@ static gonio_status try_hypotheses(trial *t, const double *dark, const char **mi
     double best = fmax(here + CONVINCING, unusual);
     for (int k = 0; k < HYPOTHESES && status == GONIO_OK; k++) {
         double evidence = 0.0;
-        if (is_possible(&view, &hypotheses[k].transform)) {
+        if (is_possible(view, &hypotheses[k].transform)) {
             status = weigh(t, &hypotheses[k].transform, SOME, &evidence);
             if (status == GONIO_OK && evidence > best) {
                 best = evidence;
@@ -202,7 +202,7 @@ gonio_status gonio_i_mistake_find(gonio_context *context, const gonio_i_prior *p
 {
     trial t = {.context = context, .prior = prior, .readings = readings, .noise = noise};
     *mistake = NULL;
-    if (prior->view.channels == GONIO_JOINT) {
+    if (prior->view->channels == GONIO_JOINT) {
         return GONIO_OK; /* its columns hold all channels: nothing to compare one by one */
     }
     gonio_status status = begin(&t, columns);

@@ -177,7 +177,7 @@ static gonio_i_models normalise(const double log_weight[CHOICES], size_t reading
 static bool is_doubtful(const gonio_i_prior *prior, size_t columns, const opinion *doubting,
                         const opinion *believing)
 {
-    const double values = (double)(gonio_i_rows_per_cell(prior->view.channels) * columns);
+    const double values = (double)(gonio_i_rows_per_cell(prior->view->channels) * columns);
     const double directions = (double)doubting->outlying / values;
     return best_score(doubting) - best_score(believing) > FOR_WRONG_DIRECTION * directions;
 }

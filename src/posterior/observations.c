@@ -69,29 +69,29 @@ static void set_value(gonio_i_observation *o, double value, double deviation, do
 static gonio_i_observation observe(const gonio_readings *readings, size_t index, size_t channel,
                                    const gonio_i_noise *noise)
 {
-    const gonio_readings_view view = gonio_readings_describe(readings);
+    const gonio_readings_view *view = gonio_readings_describe(readings);
     const double s = gonio_readings_scale(readings, channel);
     const double read = gonio_readings_value(readings, index, channel);
-    gonio_i_observation o = {.at = gonio_half_difference_from_pair(view.pair[index]),
+    gonio_i_observation o = {.at = gonio_half_difference_from_pair(view->pair[index]),
                              .channel = (int)channel,
                              .bound = bound_of(read, noise),
                              .reading = index};
-    set_value(&o, read, true_deviation(&view, index, channel, s, NULL), s, noise);
+    set_value(&o, read, true_deviation(view, index, channel, s, NULL), s, noise);
     return o;
 }
 
 void gonio_i_column_transform(const gonio_readings *readings, const gonio_i_noise *noise,
                               const gonio_i_transform *transform, gonio_i_column *column)
 {
-    const gonio_readings_view view = gonio_readings_describe(readings);
+    const gonio_readings_view *view = gonio_readings_describe(readings);
     for (size_t i = 0; i < column->count; i++) {
         gonio_i_observation *o = &column->observation[i];
-        const gonio_pair pair = view.pair[o->reading];
+        const gonio_pair pair = view->pair[o->reading];
         const size_t channel = (size_t)o->channel;
         const double s = gonio_readings_scale(readings, channel);
         const double read = gonio_readings_value(readings, o->reading, channel);
         set_value(o, true_value(pair, channel, read, s, transform),
-                  true_deviation(&view, o->reading, channel, s, transform), s, noise);
+                  true_deviation(view, o->reading, channel, s, transform), s, noise);
         if (transform->turn != NULL) {
             o->at = gonio_half_difference_from_pair(transform->turn(pair));
         }
@@ -101,7 +101,7 @@ void gonio_i_column_transform(const gonio_readings *readings, const gonio_i_nois
 static void add_channel(const gonio_readings *readings, size_t channel, const gonio_i_noise *noise,
                         gonio_i_column *column)
 {
-    for (size_t k = 0; k < gonio_readings_describe(readings).count; k++) {
+    for (size_t k = 0; k < gonio_readings_describe(readings)->count; k++) {
         if (!isnan(gonio_readings_value(readings, k, channel))) {
             column->observation[column->count++] = observe(readings, k, channel, noise);
         }
@@ -113,8 +113,8 @@ gonio_status gonio_i_columns_create(gonio_context *context, const gonio_basis_vi
                                     gonio_i_columns *columns)
 {
     const bool joint = view->channels == GONIO_JOINT;
-    const size_t channels = gonio_readings_describe(readings).channels;
-    const size_t each = gonio_readings_describe(readings).count * (joint ? channels : 1);
+    const size_t channels = gonio_readings_describe(readings)->channels;
+    const size_t each = gonio_readings_describe(readings)->count * (joint ? channels : 1);
     *columns = (gonio_i_columns){.count = joint ? 1 : channels};
     columns->column = gonio_i_allocate(context, columns->count, sizeof *columns->column);
     gonio_status status = columns->column == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
@@ -155,14 +155,14 @@ gonio_status gonio_i_columns_check(gonio_context *context, const gonio_i_columns
 double gonio_i_transform_logarithm(const gonio_readings *readings, size_t channel,
                                    const gonio_i_noise *noise, const gonio_i_transform *transform)
 {
-    const gonio_readings_view view = gonio_readings_describe(readings);
+    const gonio_readings_view *view = gonio_readings_describe(readings);
     const double s = gonio_readings_scale(readings, channel);
     double sum = 0.0;
-    for (size_t k = 0; k < view.count; k++) {
+    for (size_t k = 0; k < view->count; k++) {
         const double value = gonio_readings_value(readings, k, channel);
         if (!isnan(value) && bound_of(value, noise) == 0) {
-            const double factor = factor_of(view.pair[k], s, transform);
-            sum += log(factor) - log(s + true_value(view.pair[k], channel, value, s, transform));
+            const double factor = factor_of(view->pair[k], s, transform);
+            sum += log(factor) - log(s + true_value(view->pair[k], channel, value, s, transform));
         }
     }
     return sum;

@@ -127,7 +127,7 @@ static gonio_status find_variance(const group *g, const gonio_i_fit *e, size_t k
 {
     const finding *all = g->all;
     const size_t number = g->member[k];
-    const size_t rows = all->prior->view.rows;
+    const size_t rows = all->prior->view->rows;
     const size_t square = e->components * e->components;
     double *deviation = all->p->deviation != NULL ? all->p->deviation + number * rows : NULL;
     double *covariance = g->covariance != NULL ? g->covariance + (k - g->first) * square : NULL;
@@ -209,7 +209,7 @@ static gonio_status fill_fields(const group *g)
         const size_t number = g->member[k];
         columns[k] = all->found[number].field;
         columns[k].c = all->p->coefficients + number * components;
-        columns[k].field = all->p->field + number * all->prior->view.rows;
+        columns[k].field = all->p->field + number * all->prior->view->rows;
     }
     const gonio_status status = gonio_i_fields_fill(all->context, g->sites, columns, g->count);
     free(columns);

@@ -97,7 +97,7 @@ static bool is_same(const gonio_i_observation *a, const gonio_i_observation *b, 
 bool gonio_i_sites_are_same(const gonio_i_prior *prior, const gonio_i_column *a,
                             const gonio_i_column *b)
 {
-    const bool joint = prior->view.channels == GONIO_JOINT;
+    const bool joint = prior->view->channels == GONIO_JOINT;
     bool same = a->count == b->count;
     for (size_t i = 0; i < a->count && same; i++) {
         same = is_same(&a->observation[i], &b->observation[i], joint);

@@ -58,7 +58,7 @@ static void fill_t(const gonio_i_rows *r, size_t number, double *t)
     gonio_i_prior_row(prior, row, t);
     if (r->n > 0) {
         const gonio_i_place here =
-            gonio_i_place_of(gonio_i_row_coordinates(&prior->view, row, &channel));
+            gonio_i_place_of(gonio_i_row_coordinates(prior->view, row, &channel));
         for (size_t i = 0; i < r->n; i++) {
             t[prior->components + i] = gonio_i_remainder(&here, &r->sites->place[i], r->peak);
         }
@@ -67,7 +67,7 @@ static void fill_t(const gonio_i_rows *r, size_t number, double *t)
 
 static void fill_row(gonio_i_rows *r, size_t number)
 {
-    const gonio_basis_view *view = &r->sites->prior->view;
+    const gonio_basis_view *view = r->sites->prior->view;
     const size_t row = number * r->step;
     int channel = 0;
     r->bins[number] = gonio_i_row_bins(view, row);
@@ -83,7 +83,7 @@ static void fill_row(gonio_i_rows *r, size_t number)
 gonio_status gonio_i_rows_create(gonio_context *context, const gonio_i_sites *sites,
                                  const gonio_i_model *model, bool all, gonio_i_rows **rows)
 {
-    const size_t every = sites->prior->view.rows;
+    const size_t every = sites->prior->view->rows;
     *rows = NULL;
     gonio_i_rows *r = gonio_i_allocate(context, 1, sizeof *r);
     if (r == NULL) {
@@ -146,7 +146,7 @@ static double dot(const double *a, const double *b, size_t n)
 static double value_of(const variance *s, size_t row, const double *t)
 {
     const gonio_i_fit *e = s->e;
-    return e->prior->view.mean[row] + dot(t, s->c, e->components) +
+    return e->prior->view->mean[row] + dot(t, s->c, e->components) +
            e->model.alpha * e->model.alpha * dot(t + e->components, e->solved, s->n);
 }
 

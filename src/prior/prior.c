@@ -23,7 +23,7 @@ static double weight_of(const gonio_basis_view *view, size_t column)
  * W_j ((columns - 1) / weight)^(1/2). */
 static void find_samples(gonio_i_prior *prior)
 {
-    const gonio_basis_view *view = &prior->view;
+    const gonio_basis_view *view = prior->view;
     for (size_t j = 0; j < prior->samples; j++) {
         const double weight = weight_of(view, j);
         const double factor = sqrt((double)(view->columns - 1) / weight);
@@ -44,8 +44,8 @@ gonio_status gonio_i_prior_create(gonio_context *context, const gonio_basis *bas
     }
     made->basis = basis;
     made->view = gonio_basis_describe(basis);
-    made->components = made->view.components;
-    made->samples = made->view.loadings != NULL ? made->view.columns : 0;
+    made->components = made->view->components;
+    made->samples = made->view->loadings != NULL ? made->view->columns : 0;
     made->deviation = gonio_i_allocate(context, made->components, sizeof *made->deviation);
     made->sample =
         gonio_i_allocate(context, made->samples * made->components, sizeof *made->sample);
@@ -55,7 +55,7 @@ gonio_status gonio_i_prior_create(gonio_context *context, const gonio_basis *bas
         return GONIO_ERROR_MEMORY;
     }
     for (size_t k = 0; k < made->components; k++) {
-        made->deviation[k] = sqrt(made->view.variances[k]);
+        made->deviation[k] = sqrt(made->view->variances[k]);
     }
     find_samples(made);
     *prior = made;

@@ -14,7 +14,7 @@
 
 typedef struct gonio_i_prior {
     const gonio_basis *basis;
-    gonio_basis_view view;
+    const gonio_basis_view *view;
     size_t components; /* K, all of the basis */
     double *deviation; /* [K]: lambda^(1/2) */
     size_t samples;    /* columns; 0 if the basis has no loadings */

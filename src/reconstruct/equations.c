@@ -240,23 +240,23 @@ gonio_status gonio_i_equations_from_readings(const gonio_i_reconstruct_task *ask
                                              const gonio_readings *readings,
                                              gonio_reconstruction **reconstruction)
 {
-    const gonio_basis_view view = gonio_basis_describe(asked->basis);
+    const gonio_basis_view *view = gonio_basis_describe(asked->basis);
     gathering t = {.context = asked->context,
                    .basis = asked->basis,
                    .readings = readings,
                    .options = asked->options,
-                   .mapping = view.mapping,
+                   .mapping = view->mapping,
                    .solver = solver_of(asked)};
     size_t components = 0;
-    gonio_status status = choose_components(&t, view.components, &components);
+    gonio_status status = choose_components(&t, view->components, &components);
     if (status != GONIO_OK) {
         return status;
     }
-    gonio_reconstruction *made = allocate(t.context, &view, components);
+    gonio_reconstruction *made = allocate(t.context, view, components);
     if (made == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    status = find_singular(&t.solver, &view, components);
+    status = find_singular(&t.solver, view, components);
     if (status == GONIO_OK) {
         status = solve_readings(&t, made);
     }
@@ -274,7 +274,7 @@ gonio_status gonio_i_equations_from_readings(const gonio_i_reconstruct_task *ask
 static gonio_status solve_rows(const solver *s, const gonio_basis *basis, const size_t *rows,
                                size_t count, const double *b, gonio_reconstruction *r)
 {
-    const double *mean = gonio_basis_describe(basis).mean;
+    const double *mean = gonio_basis_describe(basis)->mean;
     gathered e = {0};
     const size_t k = r->components;
     gonio_status status = GONIO_ERROR_MEMORY;
@@ -297,18 +297,18 @@ gonio_status gonio_i_equations_of_rows(const gonio_i_reconstruct_task *task, siz
                                        const size_t *rows, size_t count, const double *b,
                                        gonio_reconstruction **reconstruction)
 {
-    const gonio_basis_view view = gonio_basis_describe(task->basis);
+    const gonio_basis_view *view = gonio_basis_describe(task->basis);
     solver s = solver_of(task);
-    if (components == 0 || components > view.components) {
+    if (components == 0 || components > view->components) {
         return gonio_i_fail(task->context, GONIO_ERROR_ARGUMENT,
                             "%zu components asked for, but the basis has %zu", components,
-                            view.components);
+                            view->components);
     }
-    gonio_reconstruction *made = allocate(task->context, &view, components);
+    gonio_reconstruction *made = allocate(task->context, view, components);
     if (made == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    gonio_status status = find_singular(&s, &view, components);
+    gonio_status status = find_singular(&s, view, components);
     if (status == GONIO_OK) {
         status = solve_rows(&s, task->basis, rows, count, b, made);
     }
@@ -326,7 +326,7 @@ gonio_status gonio_i_equations_from_rows(const gonio_i_reconstruct_task *task, c
                                          gonio_reconstruction **reconstruction)
 {
     const solver s = solver_of(task);
-    const size_t available = gonio_basis_describe(task->basis).components;
+    const size_t available = gonio_basis_describe(task->basis)->components;
     const size_t asked = task->options->components;
     const size_t components = asked > 0 ? asked : default_components(&s, count, available);
     return gonio_i_equations_of_rows(task, components, rows, count, b, reconstruction);

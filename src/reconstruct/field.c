@@ -26,7 +26,7 @@ double gonio_i_field_at(const gonio_basis *basis, const double *field, int chann
 
 static bool is_joint(const gonio_basis *basis)
 {
-    return gonio_basis_describe(basis).channels == GONIO_JOINT;
+    return gonio_basis_describe(basis)->channels == GONIO_JOINT;
 }
 
 static size_t channels_of(const gonio_basis *basis, const gonio_reconstruction *r)
@@ -48,7 +48,7 @@ static double scale_of(const gonio_basis *basis, const gonio_reconstruction *r, 
 /* Where a channel's rows begin in a field or a deviation. */
 static const double *rows_of(const gonio_basis *basis, const double *field, size_t channel)
 {
-    return field + (is_joint(basis) ? 0 : channel * gonio_basis_describe(basis).rows);
+    return field + (is_joint(basis) ? 0 : channel * gonio_basis_describe(basis)->rows);
 }
 
 void gonio_reconstruction_predict(const gonio_basis *basis, const gonio_reconstruction *r,
@@ -90,7 +90,7 @@ gonio_status gonio_reconstruction_predict_readings(gonio_context *context, const
 /* A field over the grid, of three channels. */
 typedef struct spread_field {
     const gonio_basis *basis;
-    gonio_basis_view view;
+    const gonio_basis_view *view;
     bool plain; /* g itself in place of e^g - 1 */
     double *g;  /* [channel][position] */
 } spread_field;
@@ -106,9 +106,9 @@ static void release(void *self)
 static void fill_row(const spread_field *f, int theta_h, int theta_d, size_t channel, int first,
                      double *row)
 {
-    const double *g = f->g + channel * f->view.cells;
-    const int depth = gonio_i_phi_bins(f->view.representation);
-    const int runs = gonio_i_phi_cells(f->view.representation);
+    const double *g = f->g + channel * f->view->cells;
+    const int depth = gonio_i_phi_bins(f->view->representation);
+    const int runs = gonio_i_phi_cells(f->view->representation);
     const int32_t cell = gonio_i_cell_at(runs, (gonio_i_cell_indices){theta_h, theta_d, 0});
     for (int p = first; p < GONIO_PHI_D_BINS - first; p++) {
         const double at = (p + 0.5) / depth - 0.5 + runs;
@@ -156,10 +156,10 @@ static void copy_colours(const double *from, spread_field *f)
 {
     const bool joint = is_joint(f->basis);
     for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
-        for (size_t k = 0; k < f->view.cells; k++) {
-            f->g[channel * f->view.cells + k] =
-                from[gonio_i_row_of(f->view.channels, k, (int)channel) +
-                     (joint ? 0 : channel * f->view.rows)];
+        for (size_t k = 0; k < f->view->cells; k++) {
+            f->g[channel * f->view->cells + k] =
+                from[gonio_i_row_of(f->view->channels, k, (int)channel) +
+                     (joint ? 0 : channel * f->view->rows)];
         }
     }
 }
@@ -167,11 +167,11 @@ static void copy_colours(const double *from, spread_field *f)
 /* A single channel without a wavelength as grey. */
 static void copy_grey(const gonio_reconstruction *r, spread_field *f)
 {
-    for (size_t k = 0; k < f->view.cells; k++) {
+    for (size_t k = 0; k < f->view->cells; k++) {
         const double rho =
             scale_of(f->basis, r, 0) * expm1(fmin(fmax(r->field[k], 0.0), GONIO_I_LARGEST_LOG));
         for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
-            f->g[channel * f->view.cells + k] = gonio_log_from_brdf(rho, (int)channel);
+            f->g[channel * f->view->cells + k] = gonio_log_from_brdf(rho, (int)channel);
         }
     }
 }
@@ -179,15 +179,15 @@ static void copy_grey(const gonio_reconstruction *r, spread_field *f)
 /* The colours of spectra, cell by cell. */
 static void mix_colours(const gonio_reconstruction *r, double *spectrum, spread_field *f)
 {
-    for (size_t k = 0; k < f->view.cells; k++) {
+    for (size_t k = 0; k < f->view->cells; k++) {
         double rgb[GONIO_CHANNELS];
         for (size_t j = 0; j < r->wavelengths; j++) {
-            const double g = r->field[j * f->view.rows + k];
+            const double g = r->field[j * f->view->rows + k];
             spectrum[j] = scale_of(f->basis, r, j) * expm1(fmin(fmax(g, 0.0), GONIO_I_LARGEST_LOG));
         }
         gonio_i_spectrum_to_rgb(r->wavelength, spectrum, r->wavelengths, rgb);
         for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
-            f->g[channel * f->view.cells + k] = gonio_log_from_brdf(rgb[channel], (int)channel);
+            f->g[channel * f->view->cells + k] = gonio_log_from_brdf(rgb[channel], (int)channel);
         }
     }
 }
@@ -229,7 +229,7 @@ static gonio_status create(gonio_context *context, const gonio_basis *basis,
     f->basis = basis;
     f->view = gonio_basis_describe(basis);
     f->plain = plain;
-    f->g = gonio_i_allocate(context, GONIO_CHANNELS * f->view.cells, sizeof *f->g);
+    f->g = gonio_i_allocate(context, GONIO_CHANNELS * f->view->cells, sizeof *f->g);
     gonio_status status = f->g == NULL ? GONIO_ERROR_MEMORY : fill_field(context, r, from, f);
     const gonio_material_source source = {
         .size = sizeof source, .read_slab = read_field, .release = release, .self = f};

@@ -18,7 +18,7 @@ typedef struct place {
 typedef struct reader {
     gonio_context *context;
     const gonio_material *material;
-    gonio_basis_view basis;
+    const gonio_basis_view *basis;
     size_t count; /* of rows; the distance of b's columns */
     double *g;    /* a slab in log space */
     bool *data;
@@ -34,7 +34,7 @@ static int compare_places(const void *a, const void *b)
 
 static int slab_of(const reader *r, int32_t cell)
 {
-    return gonio_cell_bin(r->basis.representation, cell).theta_h;
+    return gonio_cell_bin(r->basis->representation, cell).theta_h;
 }
 
 static gonio_status read_slab(reader *r, int theta_h)
@@ -42,8 +42,8 @@ static gonio_status read_slab(reader *r, int theta_h)
     const gonio_status status = gonio_material_read_slab(r->context, r->material, theta_h, r->g);
     if (status == GONIO_OK) {
         gonio_slab_mask(theta_h, r->g, r->data);
-        gonio_slab_to_mapped(r->basis.mapping, theta_h, r->g, r->g);
-        if (r->basis.representation == GONIO_BIVARIATE) {
+        gonio_slab_to_mapped(r->basis->mapping, theta_h, r->g, r->g);
+        if (r->basis->representation == GONIO_BIVARIATE) {
             gonio_slab_reduce(r->g, r->data, &r->statistics);
         }
     }
@@ -54,9 +54,9 @@ static gonio_status read_slab(reader *r, int theta_h)
  * none. */
 static bool value_at(const reader *r, int32_t cell, int channel, double *value)
 {
-    const gonio_i_bin_run bins = gonio_i_cell_bins(r->basis.representation, cell);
+    const gonio_i_bin_run bins = gonio_i_cell_bins(r->basis->representation, cell);
     const int theta_d = bins.first.theta_d;
-    if (r->basis.representation == GONIO_BIVARIATE) {
+    if (r->basis->representation == GONIO_BIVARIATE) {
         *value = r->statistics.mean[theta_d][channel];
         return r->statistics.count[theta_d] > 0;
     }
@@ -75,7 +75,7 @@ static bool value_at(const reader *r, int32_t cell, int channel, double *value)
 /* All columns of one row. */
 static gonio_status read_place(const reader *r, const place *at, double *b)
 {
-    const int columns = (int)gonio_i_columns_per_material(r->basis.channels);
+    const int columns = (int)gonio_i_columns_per_material(r->basis->channels);
     for (int column = 0; column < columns; column++) {
         if (!value_at(r, at->cell, at->channel + column,
                       &b[(size_t)column * r->count + at->index])) {
@@ -117,8 +117,8 @@ gonio_status gonio_material_rows(gonio_context *context, const gonio_basis *basi
     gonio_status status = GONIO_ERROR_MEMORY;
     if (r.g != NULL && r.data != NULL && places != NULL) {
         for (size_t k = 0; k < count; k++) {
-            places[k] = (place){gonio_i_row_cell(&r.basis, rows[k]),
-                                gonio_i_channel_of(r.basis.channels, rows[k]), k};
+            places[k] = (place){gonio_i_row_cell(r.basis, rows[k]),
+                                gonio_i_channel_of(r.basis->channels, rows[k]), k};
         }
         qsort(places, count, sizeof *places, compare_places);
         status = read_places(&r, places, b);
@@ -166,7 +166,7 @@ gonio_status gonio_reconstruct_material(gonio_context *context, const gonio_basi
     if (status != GONIO_OK) {
         return status;
     }
-    const bool joint = gonio_basis_describe(basis).channels == GONIO_JOINT;
+    const bool joint = gonio_basis_describe(basis)->channels == GONIO_JOINT;
     const bool more = joint && how.all_channels;
     size_t *used = gonio_i_allocate(context, GONIO_CHANNELS * count, sizeof *used);
     double *b = gonio_i_allocate(context, GONIO_CHANNELS * GONIO_CHANNELS * count, sizeof *b);

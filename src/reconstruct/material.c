@@ -11,7 +11,7 @@
 
 typedef struct reconstructed {
     const gonio_basis *basis;
-    gonio_basis_view view;
+    const gonio_basis_view *view;
     size_t components;
     size_t columns;
     double coefficients[]; /* [columns][components] */
@@ -22,9 +22,9 @@ static double log_value(const reconstructed *r, int32_t cell, size_t channel)
 {
     const bool joint = r->columns == 1;
     const size_t position = gonio_basis_position(r->basis, cell);
-    const size_t row = gonio_i_row_of(r->view.channels, position, (int)channel);
+    const size_t row = gonio_i_row_of(r->view->channels, position, (int)channel);
     const double *c = r->coefficients + (joint ? 0 : channel * r->components);
-    return r->view.mean[row] + gonio_i_basis_dot(r->basis, row, c, r->components);
+    return r->view->mean[row] + gonio_i_basis_dot(r->basis, row, c, r->components);
 }
 
 /* Between 0 and a number whose exponential is finite; 0 for NaN. */
@@ -50,7 +50,7 @@ static void exponentiate(size_t n, double *g, double scale)
 /* Of a channel; 1 where each bin has a scale of its own, which comes later. */
 static double scale_of(const reconstructed *r, int channel)
 {
-    return r->view.mapping == GONIO_LOG ? gonio_log_scale(channel) : 1.0;
+    return r->view->mapping == GONIO_LOG ? gonio_log_scale(channel) : 1.0;
 }
 
 /* Sets the bins first .. last - 1 of a row. */
@@ -135,12 +135,12 @@ static gonio_status read_reconstructed(void *self, gonio_context *context, int t
     for (int theta_d = 0; theta_d < GONIO_THETA_D_BINS; theta_d++) {
         first[theta_d] = gonio_i_first_valid_phi(theta_h, theta_d);
     }
-    if (r->view.representation == GONIO_BIVARIATE) {
+    if (r->view->representation == GONIO_BIVARIATE) {
         spread_cells(r, theta_h, first, rho);
     } else {
         fill_bins(r, theta_h, first, rho);
     }
-    if (r->view.mapping == GONIO_LOG_RELATIVE) {
+    if (r->view->mapping == GONIO_LOG_RELATIVE) {
         scale_bins(theta_h, first, rho);
     }
     clear_invalid(first, rho);
@@ -153,18 +153,19 @@ static gonio_status sectored_material(gonio_context *context, const gonio_basis 
                                       const gonio_reconstruction *reconstruction, const char *name,
                                       gonio_material **material)
 {
-    const gonio_basis_view view = gonio_basis_describe(basis);
+    const gonio_basis_view *view = gonio_basis_describe(basis);
     gonio_reconstruction with_field = *reconstruction;
-    const size_t values = reconstruction->columns * view.rows;
+    const size_t values = reconstruction->columns * view->rows;
     with_field.field = gonio_i_allocate(context, values, sizeof *with_field.field);
     if (with_field.field == NULL) {
         return GONIO_ERROR_MEMORY;
     }
     for (size_t k = 0; k < values; k++) {
-        const size_t row = k % view.rows;
-        const double *c = reconstruction->coefficients + k / view.rows * reconstruction->components;
+        const size_t row = k % view->rows;
+        const double *c =
+            reconstruction->coefficients + k / view->rows * reconstruction->components;
         with_field.field[k] =
-            view.mean[row] + gonio_i_basis_dot(basis, row, c, reconstruction->components);
+            view->mean[row] + gonio_i_basis_dot(basis, row, c, reconstruction->components);
     }
     const gonio_status status = gonio_i_field_material(context, basis, &with_field, name, material);
     free(with_field.field);
@@ -178,7 +179,7 @@ gonio_status gonio_reconstruction_material(gonio_context *context, const gonio_b
     if (reconstruction->field != NULL) {
         return gonio_i_field_material(context, basis, reconstruction, name, material);
     }
-    if (gonio_basis_describe(basis).representation == GONIO_SECTORED) {
+    if (gonio_basis_describe(basis)->representation == GONIO_SECTORED) {
         return sectored_material(context, basis, reconstruction, name, material);
     }
     const size_t count = reconstruction->columns * reconstruction->components;

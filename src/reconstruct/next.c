@@ -16,7 +16,7 @@ typedef struct next {
     gonio_context *context;
     const gonio_basis *basis;
     const gonio_readings *readings;
-    gonio_basis_view view;
+    const gonio_basis_view *view;
     gonio_i_prior *prior;
     gonio_i_columns columns;
     gonio_i_posterior posterior;
@@ -26,11 +26,11 @@ typedef struct next {
 
 static gonio_status allocate(next *n)
 {
-    const size_t k = n->view.components;
+    const size_t k = n->view->components;
     const size_t columns = n->columns.count;
     gonio_i_posterior *p = &n->posterior;
     p->coefficients = gonio_i_allocate(n->context, columns * k, sizeof *p->coefficients);
-    p->field = gonio_i_allocate(n->context, columns * n->view.rows, sizeof *p->field);
+    p->field = gonio_i_allocate(n->context, columns * n->view->rows, sizeof *p->field);
     p->covariance = gonio_i_allocate(n->context, k * k, sizeof *p->covariance);
     n->read = gonio_i_allocate(n->context, n->readings->count, sizeof *n->read);
     for (size_t i = 0; n->read != NULL && i < n->readings->count; i++) {
@@ -58,7 +58,7 @@ static gonio_status find_posterior(next *n, const gonio_reconstruct_options *opt
     gonio_status status = gonio_i_reconstruct_check(n->context, &gonio_i_posterior_method, n->basis,
                                                     n->readings, options);
     if (status == GONIO_OK) {
-        status = gonio_i_columns_create(n->context, &n->view, n->readings, &noise, &n->columns);
+        status = gonio_i_columns_create(n->context, n->view, n->readings, &noise, &n->columns);
     }
     if (status == GONIO_OK) {
         status = gonio_i_columns_check(n->context, &n->columns, n->readings->path);

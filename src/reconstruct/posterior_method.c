@@ -62,16 +62,16 @@ static gonio_status find(gonio_context *context, const gonio_i_prior *prior,
 static gonio_status keep_wavelengths(gonio_context *context, const gonio_readings *readings,
                                      gonio_reconstruction *r)
 {
-    const gonio_readings_view view = gonio_readings_describe(readings);
-    if (view.wavelength == NULL) {
+    const gonio_readings_view *view = gonio_readings_describe(readings);
+    if (view->wavelength == NULL) {
         return GONIO_OK;
     }
-    r->wavelengths = view.channels;
-    r->wavelength = gonio_i_allocate(context, view.channels, sizeof *r->wavelength);
+    r->wavelengths = view->channels;
+    r->wavelength = gonio_i_allocate(context, view->channels, sizeof *r->wavelength);
     if (r->wavelength == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    memcpy(r->wavelength, view.wavelength, view.channels * sizeof *r->wavelength);
+    memcpy(r->wavelength, view->wavelength, view->channels * sizeof *r->wavelength);
     return GONIO_OK;
 }
 
@@ -96,20 +96,20 @@ static gonio_status from_readings(const gonio_i_reconstruct_task *task,
     gonio_context *context = task->context;
     const gonio_basis *basis = task->basis;
     const gonio_reconstruct_options *options = task->options;
-    const gonio_basis_view view = gonio_basis_describe(basis);
+    const gonio_basis_view *view = gonio_basis_describe(basis);
     const gonio_i_noise noise = gonio_i_posterior_noise(options);
     gonio_i_columns columns;
     gonio_i_prior *prior = NULL;
     gonio_reconstruction *made = NULL;
-    gonio_status status = gonio_i_columns_create(context, &view, readings, &noise, &columns);
+    gonio_status status = gonio_i_columns_create(context, view, readings, &noise, &columns);
     if (status == GONIO_OK) {
-        status = gonio_i_columns_check(context, &columns, gonio_readings_describe(readings).path);
+        status = gonio_i_columns_check(context, &columns, gonio_readings_describe(readings)->path);
     }
     if (status == GONIO_OK) {
         status = gonio_i_prior_create(context, basis, &prior);
     }
     if (status == GONIO_OK) {
-        status = allocate(context, &view, columns.count, options, &made);
+        status = allocate(context, view, columns.count, options, &made);
     }
     if (status == GONIO_OK) {
         status = estimate(context, prior, readings, options, made, &columns);
@@ -157,11 +157,11 @@ static gonio_status from_rows(const gonio_i_reconstruct_task *task, const size_t
     gonio_context *context = task->context;
     const gonio_basis *basis = task->basis;
     const gonio_reconstruct_options *options = task->options;
-    const gonio_basis_view view = gonio_basis_describe(basis);
+    const gonio_basis_view *view = gonio_basis_describe(basis);
     gonio_i_columns columns = {0};
     gonio_i_prior *prior = NULL;
     gonio_reconstruction *made = NULL;
-    gonio_status status = observe_rows(context, &view, rows, count, b, &columns);
+    gonio_status status = observe_rows(context, view, rows, count, b, &columns);
     if (status == GONIO_OK) {
         status = gonio_i_columns_check(context, &columns, NULL);
     }
@@ -169,7 +169,7 @@ static gonio_status from_rows(const gonio_i_reconstruct_task *task, const size_t
         status = gonio_i_prior_create(context, basis, &prior);
     }
     if (status == GONIO_OK) {
-        status = allocate(context, &view, columns.count, options, &made);
+        status = allocate(context, view, columns.count, options, &made);
     }
     if (status == GONIO_OK) {
         status = find(context, prior, &columns, options, made);

@@ -114,10 +114,10 @@ static gonio_status check_readings(gonio_context *context, const gonio_i_reconst
         return GONIO_OK;
     }
     if (method->wants.colours) {
-        const gonio_readings_view view = gonio_readings_describe(readings);
-        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "%s: %s are for --method %s", view.path,
-                            view.wavelength != NULL ? "spectral readings"
-                                                    : "readings other than of R, G, B",
+        const gonio_readings_view *view = gonio_readings_describe(readings);
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "%s: %s are for --method %s", view->path,
+                            view->wavelength != NULL ? "spectral readings"
+                                                     : "readings other than of R, G, B",
                             method_of_any_channels());
     }
     if (basis->channels == GONIO_JOINT) {
@@ -133,9 +133,9 @@ gonio_status gonio_i_reconstruct_check(gonio_context *context,
                                        const gonio_basis *basis, const gonio_readings *readings,
                                        const gonio_reconstruct_options *options)
 {
-    const gonio_basis_view view = gonio_basis_describe(basis);
-    const gonio_status status = check_basis(context, method, &view, options);
-    return status == GONIO_OK && readings != NULL ? check_readings(context, method, &view, readings)
+    const gonio_basis_view *view = gonio_basis_describe(basis);
+    const gonio_status status = check_basis(context, method, view, options);
+    return status == GONIO_OK && readings != NULL ? check_readings(context, method, view, readings)
                                                   : status;
 }
 
@@ -146,12 +146,12 @@ static gonio_status begin(gonio_context *context, const gonio_basis *basis,
                           const gonio_reconstruct_options *options, const char *plan,
                           gonio_i_reconstruct_task *task)
 {
-    const gonio_basis_view view = gonio_basis_describe(basis);
+    const gonio_basis_view *view = gonio_basis_describe(basis);
     const char *planned = plan != NULL ? gonio_plan_method_reconstruction(plan) : NULL;
     const char *name = options->method != NULL ? options->method : planned;
     *task = (gonio_i_reconstruct_task){
         .context = context,
-        .method = name != NULL ? find_method(name) : usual_method(&view),
+        .method = name != NULL ? find_method(name) : usual_method(view),
         .basis = basis,
         .options = options,
         .eta = options->eta != 0.0 ? options->eta : default_eta,
@@ -172,7 +172,7 @@ static gonio_status check_fingerprint(gonio_context *context, const gonio_basis 
                                       const gonio_readings_view *readings,
                                       const gonio_reconstruct_options *options)
 {
-    const uint64_t fingerprint = gonio_basis_describe(basis).fingerprint;
+    const uint64_t fingerprint = gonio_basis_describe(basis)->fingerprint;
     if (readings->basis != 0 && readings->basis != fingerprint && !options->other_basis) {
         return gonio_i_fail(context, GONIO_ERROR_MISMATCH,
                             "%s: planned with another basis (%016" PRIx64
@@ -190,13 +190,13 @@ gonio_status gonio_reconstruct(gonio_context *context, const gonio_basis *basis,
 {
     gonio_reconstruct_options how;
     gonio_i_reconstruct_task task;
-    const gonio_readings_view view = gonio_readings_describe(readings);
+    const gonio_readings_view *view = gonio_readings_describe(readings);
     gonio_status status = GONIO_I_TAKE(context, gonio_reconstruct_options, options, &how);
     if (status == GONIO_OK) {
-        status = check_fingerprint(context, basis, &view, &how);
+        status = check_fingerprint(context, basis, view, &how);
     }
     if (status == GONIO_OK) {
-        status = begin(context, basis, &how, view.method, &task);
+        status = begin(context, basis, &how, view->method, &task);
     }
     if (status == GONIO_OK) {
         status = gonio_i_reconstruct_check(context, task.method, basis, readings, &how);

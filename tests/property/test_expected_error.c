@@ -398,7 +398,7 @@ static void test_candidates(void **state)
 static void test_methods(void **state)
 {
     (void)state;
-    const gonio_basis_view view = gonio_basis_describe(basis);
+    const gonio_basis_view *view = gonio_basis_describe(basis);
     gonio_plan_options options = options_for(8);
     options.method = "condition";
     options.components = 4;
@@ -409,8 +409,8 @@ static void test_methods(void **state)
     gonio_selection_report report;
     gonio_plan_rows(plan, basis, rows);
     double *vectors = support_vectors(basis);
-    assert_int_equal(gonio_plan_select(one_thread, vectors, view.rows, view.components, 4, &options,
-                                       chosen, &report),
+    assert_int_equal(gonio_plan_select(one_thread, vectors, view->rows, view->components, 4,
+                                       &options, chosen, &report),
                      GONIO_OK);
     assert_memory_equal(rows, chosen, sizeof rows);
     assert_true(plan->condition_number == report.condition_number);

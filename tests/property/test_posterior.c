@@ -84,7 +84,7 @@ static bool is_whole(size_t row)
     double own[64];
     double there[64];
     gonio_i_prior_row(gaussian, row, own);
-    gonio_i_prior_at(gaussian, gonio_i_row_coordinates(&gaussian->view, row, &channel), 0, &mean,
+    gonio_i_prior_at(gaussian, gonio_i_row_coordinates(gaussian->view, row, &channel), 0, &mean,
                      there);
     return fabs(own[0] - there[0]) <= 1e-9 * fabs(own[0]);
 }
@@ -101,9 +101,9 @@ static drawn draw(uint64_t seed, double deviation)
         int channel = 0;
         gonio_i_observation *o = &d.reading[i];
         do {
-            d.row[i] = (size_t)gonio_i_random_below(&random, gaussian->view.rows);
+            d.row[i] = (size_t)gonio_i_random_below(&random, gaussian->view->rows);
         } while (!is_whole(d.row[i]));
-        o->at = gonio_i_row_coordinates(&gaussian->view, d.row[i], &channel);
+        o->at = gonio_i_row_coordinates(gaussian->view, d.row[i], &channel);
         o->g = truth_at(d.z, o->at) + deviation * gonio_i_random_normal(&random);
         o->variance = deviation * deviation;
     }
@@ -121,8 +121,8 @@ static found find_of(const gonio_i_prior *prior, gonio_i_observation *readings, 
                      double alpha, size_t most)
 {
     double coefficients[64];
-    found r = {.field = malloc(prior->view.rows * sizeof *r.field),
-               .deviation = malloc(prior->view.rows * sizeof *r.deviation)};
+    found r = {.field = malloc(prior->view->rows * sizeof *r.field),
+               .deviation = malloc(prior->view->rows * sizeof *r.deviation)};
     const gonio_i_column column = {count, readings};
     const gonio_i_posterior_options options = {
         .smoothness = alpha, .deviation = true, .most = most};
@@ -150,11 +150,11 @@ static void drop(found *r)
 static double difference(const found *a, const found *b)
 {
     double sum = 0.0;
-    for (size_t row = 0; row < gaussian->view.rows; row++) {
+    for (size_t row = 0; row < gaussian->view->rows; row++) {
         const double d = a->field[row] - b->field[row];
         sum += d * d;
     }
-    return sqrt(sum / (double)gaussian->view.rows);
+    return sqrt(sum / (double)gaussian->view->rows);
 }
 
 /* ---- dense algebra ---- */
@@ -252,15 +252,15 @@ static void test_the_textbooks_posterior(void **state)
         assert_int_equal(r.posterior.outlying, 0);
         invert_covariance(d.reading, n, 1.0, ALPHA, s);
         double widened = 0.0;
-        for (size_t row = 11; row < gaussian->view.rows; row += 41) {
+        for (size_t row = 11; row < gaussian->view->rows; row += 41) {
             if (!is_whole(row)) {
                 continue;
             }
             int channel = 0;
             double mean = 0.0;
             double variance = 0.0;
-            textbook(d.reading, n, s, gonio_i_row_coordinates(&gaussian->view, row, &channel),
-                     &mean, &variance);
+            textbook(d.reading, n, s, gonio_i_row_coordinates(gaussian->view, row, &channel), &mean,
+                     &variance);
             assert_close(r.field[row], mean, 1e-6);
             /* What the model leaves open, and a factor for the column: its misfit. */
             const double ratio = (r.deviation[row] * r.deviation[row] - OPEN * OPEN) / variance;
@@ -496,7 +496,7 @@ static void test_fits_of_shared_sites(void **state)
 static void test_columns_together(void **state)
 {
     (void)state;
-    const size_t rows = mixture->view.rows;
+    const size_t rows = mixture->view->rows;
     const size_t components = mixture->components;
     const gonio_i_posterior_options options = {.smoothness = ALPHA, .deviation = true};
     drawn d = draw(8, 0.1);
@@ -577,7 +577,7 @@ static void test_deviations_shrink(void **state)
     for (size_t c = 0; c < 5; c++) {
         found r = find(gaussian, d.reading, counts[c], ALPHA);
         double sums[2] = {0.0, 0.0};
-        for (size_t row = 0; row < gaussian->view.rows; row++) {
+        for (size_t row = 0; row < gaussian->view->rows; row++) {
             assert_true(r.deviation[row] >= 0.0 && isfinite(r.deviation[row]));
             sums[0] += before.deviation[row];
             sums[1] += r.deviation[row];
@@ -643,11 +643,11 @@ static void test_a_reading_ten_times_too_large(void **state)
             d.reading[7].g += sense * log(10.0);
             found wrong = find(gaussian, d.reading, N, ALPHA);
             double sum = 0.0;
-            for (size_t row = 0; row < gaussian->view.rows; row++) {
+            for (size_t row = 0; row < gaussian->view->rows; row++) {
                 sum += clean.field[row] * clean.field[row];
             }
             assert_true(difference(&wrong, &clean) <
-                        0.01 * sqrt(sum / (double)gaussian->view.rows));
+                        0.01 * sqrt(sum / (double)gaussian->view->rows));
             assert_in_range(wrong.posterior.outlying, 1, 2); /* its neighbour may go with it */
             d.reading[7].g -= sense * log(10.0);
             drop(&wrong);
@@ -809,13 +809,13 @@ static void test_the_mean_over_the_models(void **state)
     gonio_i_subset_end(&subset);
     assert_in_range(models.count, 2, GONIO_I_MOST_MODELS);
     found mixed = find(gaussian, d.reading, N, -1.0);
-    found mean = {.field = calloc(gaussian->view.rows, sizeof *mean.field)};
+    found mean = {.field = calloc(gaussian->view->rows, sizeof *mean.field)};
     double sum = 0.0;
     bool best = false;
     for (size_t k = 0; k < models.count; k++) {
         const gonio_i_model *m = &models.model[k];
         found one = find(gaussian, d.reading, N, m->alpha);
-        for (size_t row = 0; row < gaussian->view.rows; row++) {
+        for (size_t row = 0; row < gaussian->view->rows; row++) {
             mean.field[row] += models.weight[k] * one.field[row];
         }
         sum += models.weight[k];
@@ -853,10 +853,9 @@ static void test_an_unusual_material(void **state)
         }
         assert_in_range(unusual, 2, N);
         found r = find(gaussian, d.reading, N, -1.0);
-        for (size_t row = 0; row < gaussian->view.rows; row++) {
+        for (size_t row = 0; row < gaussian->view->rows; row++) {
             int channel = 0;
-            const gonio_half_difference at =
-                gonio_i_row_coordinates(&gaussian->view, row, &channel);
+            const gonio_half_difference at = gonio_i_row_coordinates(gaussian->view, row, &channel);
             const double error = r.field[row] - truth_at(d.z, at) - strange_at(at);
             square += strange_at(at) > 0.5 ? error * error : 0.0;
             rows += strange_at(at) > 0.5;
@@ -904,13 +903,13 @@ static gonio_readings *read_in_the_dark(const double *z, uint64_t seed, double d
 static double error_of_field(const gonio_reconstruction *r, const double *z)
 {
     double sum = 0.0;
-    for (size_t row = 0; row < gaussian->view.rows; row++) {
+    for (size_t row = 0; row < gaussian->view->rows; row++) {
         int channel = 0;
-        const gonio_half_difference at = gonio_i_row_coordinates(&gaussian->view, row, &channel);
+        const gonio_half_difference at = gonio_i_row_coordinates(gaussian->view, row, &channel);
         const double error = fmax(r->field[row], 0.0) - fmax(truth_at(z, at), 0.0);
         sum += error * error;
     }
-    return sqrt(sum / (double)gaussian->view.rows);
+    return sqrt(sum / (double)gaussian->view->rows);
 }
 
 static gonio_reconstruction *reconstruct_in_the_dark(const gonio_readings *readings, bool no_checks)
@@ -1008,7 +1007,7 @@ static void test_no_dark_level(void **state)
         gonio_reconstruction *made = reconstruct_in_the_dark(readings, false);
         assert_null(made->dark);
         assert_memory_equal(made->field, unchecked->field,
-                            made->columns * gaussian->view.rows * sizeof *made->field);
+                            made->columns * gaussian->view->rows * sizeof *made->field);
         gonio_reconstruction_free(&unchecked);
         gonio_reconstruction_free(&made);
         gonio_readings_free(&readings);
@@ -1080,8 +1079,9 @@ static void test_saturation(void **state)
         gonio_reconstruction *made = NULL;
         assert_int_equal(gonio_reconstruct(context, basis, readings, &options, &made), GONIO_OK);
         gonio_reconstruction_predict(
-            basis, made, gonio_half_difference_from_pair(gonio_readings_describe(readings).pair[2]),
-            value[k], NULL);
+            basis, made,
+            gonio_half_difference_from_pair(gonio_readings_describe(readings)->pair[2]), value[k],
+            NULL);
         gonio_reconstruction_free(&made);
     }
     for (int c = 0; c < GONIO_CHANNELS; c++) {

@@ -150,22 +150,22 @@ static double error_of_paint(const gonio_basis *basis, const char *paint, size_t
 {
     gonio_readings *all = read_file(paint);
     gonio_readings *predicted = read_file(paint);
-    const gonio_readings_view view = gonio_readings_describe(all);
-    assert_int_equal(view.count, 1439);
-    assert_int_equal(view.channels, 31);
-    gonio_pair *candidates = malloc(view.count * sizeof *candidates);
-    for (size_t k = 0; k < view.count; k++) {
-        candidates[k] = view.pair[k];
+    const gonio_readings_view *view = gonio_readings_describe(all);
+    assert_int_equal(view->count, 1439);
+    assert_int_equal(view->channels, 31);
+    gonio_pair *candidates = malloc(view->count * sizeof *candidates);
+    for (size_t k = 0; k < view->count; k++) {
+        candidates[k] = view->pair[k];
     }
     gonio_plan_options options;
     gonio_plan_options_default(&options);
     options.count = count;
     options.candidates = candidates;
-    options.candidate_count = view.count;
+    options.candidate_count = view->count;
     gonio_plan *chosen = make_plan(basis, &options);
     gonio_readings *plan = read_plan(chosen);
     gonio_plan_free(&chosen);
-    bool *used = calloc(view.count, sizeof *used);
+    bool *used = calloc(view->count, sizeof *used);
     gonio_reconstruct_options how;
     gonio_reconstruct_options_default(&how);
     gonio_reconstruction *r = NULL;

@@ -46,19 +46,19 @@ static gonio_basis *learn(gonio_context *context, const gonio_database *database
 
 static void assert_orthonormal(const gonio_basis *basis)
 {
-    const gonio_basis_view view = gonio_basis_describe(basis);
-    const size_t k = view.components;
+    const gonio_basis_view *view = gonio_basis_describe(basis);
+    const size_t k = view->components;
     double *vectors = support_vectors(basis);
     for (size_t a = 0; a < k; a++) {
         double largest = 0.0;
         for (size_t b = 0; b <= a; b++) {
             double sum = 0.0;
-            for (size_t i = 0; i < view.rows; i++) {
+            for (size_t i = 0; i < view->rows; i++) {
                 sum += vectors[i * k + a] * vectors[i * k + b];
             }
             assert_close(sum, a == b ? 1.0 : 0.0, 1e-12);
         }
-        for (size_t i = 0; i < view.rows; i++) {
+        for (size_t i = 0; i < view->rows; i++) {
             const double v = vectors[i * k + a];
             largest = fabs(v) > fabs(largest) ? v : largest;
         }
@@ -71,28 +71,28 @@ static void assert_orthonormal(const gonio_basis *basis)
  * along component k is its variance. */
 static void assert_projection(const gonio_database *database, const gonio_basis *basis)
 {
-    const gonio_basis_view view = gonio_basis_describe(basis);
-    const gonio_database_view data = gonio_database_describe(database);
-    const size_t k = view.components;
+    const gonio_basis_view *view = gonio_basis_describe(basis);
+    const gonio_database_view *data = gonio_database_describe(database);
+    const size_t k = view->components;
     double *vectors = support_vectors(basis);
-    double *h = malloc(data.rows * data.columns * sizeof *h);
+    double *h = malloc(data->rows * data->columns * sizeof *h);
     double *c = calloc(k, sizeof *c);
     double *variance = calloc(k, sizeof *variance);
     assert_true(h != NULL && c != NULL && variance != NULL);
-    assert_int_equal(gonio_database_read_rows(NULL, database, 0, data.rows, NULL, 0, h), GONIO_OK);
-    for (size_t column = 0; column < data.columns; column++) {
-        double *x = h + column * data.rows;
+    assert_int_equal(gonio_database_read_rows(NULL, database, 0, data->rows, NULL, 0, h), GONIO_OK);
+    for (size_t column = 0; column < data->columns; column++) {
+        double *x = h + column * data->rows;
         double scatter = 0.0;
         double rest = 0.0;
         memset(c, 0, k * sizeof *c);
-        for (size_t i = 0; i < data.rows; i++) {
-            x[i] -= view.mean[i];
+        for (size_t i = 0; i < data->rows; i++) {
+            x[i] -= view->mean[i];
             scatter += x[i] * x[i];
             for (size_t j = 0; j < k; j++) {
                 c[j] += vectors[i * k + j] * x[i];
             }
         }
-        for (size_t i = 0; i < data.rows; i++) {
+        for (size_t i = 0; i < data->rows; i++) {
             double residual = x[i];
             for (size_t j = 0; j < k; j++) {
                 residual -= vectors[i * k + j] * c[j];
@@ -102,12 +102,13 @@ static void assert_projection(const gonio_database *database, const gonio_basis 
         assert_true(scatter > 0.0);
         assert_true(sqrt(rest / scatter) < 1e-7);
         for (size_t j = 0; j < k; j++) {
-            variance[j] += c[j] * c[j] / (double)(data.columns - 1);
+            variance[j] += c[j] * c[j] / (double)(data->columns - 1);
         }
     }
     for (size_t j = 0; j < k; j++) {
-        assert_true(j == 0 || view.variances[j] <= view.variances[j - 1]);
-        assert_close(variance[j] / view.variances[0], view.variances[j] / view.variances[0], 1e-11);
+        assert_true(j == 0 || view->variances[j] <= view->variances[j - 1]);
+        assert_close(variance[j] / view->variances[0], view->variances[j] / view->variances[0],
+                     1e-11);
     }
     free(vectors);
     free(h);
@@ -120,11 +121,11 @@ static void test_joint(void **state)
     (void)state;
     gonio_database *database = make_database(NULL, MATERIALS, GONIO_BIVARIATE, GONIO_JOINT);
     gonio_basis *basis = learn(NULL, database, 0);
-    const gonio_basis_view view = gonio_basis_describe(basis);
-    assert_int_equal(view.components, MATERIALS - 1);
-    assert_int_equal(view.rows, 3 * view.cells);
-    assert_int_equal(view.variance_count, MATERIALS - 1);
-    assert_string_equal(view.names[1], "red-glossy-plastic");
+    const gonio_basis_view *view = gonio_basis_describe(basis);
+    assert_int_equal(view->components, MATERIALS - 1);
+    assert_int_equal(view->rows, 3 * view->cells);
+    assert_int_equal(view->variance_count, MATERIALS - 1);
+    assert_string_equal(view->names[1], "red-glossy-plastic");
     assert_close(gonio_basis_cumulative_variance(basis, MATERIALS - 1), 1.0, 1e-15);
     assert_true(gonio_basis_cumulative_variance(basis, 1) < 1.0);
     assert_orthonormal(basis);
@@ -139,9 +140,9 @@ static void test_separate(void **state)
     (void)state;
     gonio_database *database = make_database(NULL, MATERIALS, GONIO_BIVARIATE, GONIO_SEPARATE);
     gonio_basis *basis = learn(NULL, database, 3 * MATERIALS - 1);
-    const gonio_basis_view view = gonio_basis_describe(basis);
-    assert_int_equal(view.rows, view.cells);
-    assert_int_equal(view.materials, MATERIALS);
+    const gonio_basis_view *view = gonio_basis_describe(basis);
+    assert_int_equal(view->rows, view->cells);
+    assert_int_equal(view->materials, MATERIALS);
     assert_orthonormal(basis);
     assert_projection(database, basis);
     gonio_basis_free(&basis);
@@ -158,9 +159,9 @@ static void test_threads_and_subsets_do_not_matter(void **state)
         assert_int_equal(gonio_context_create(&context, &options), GONIO_OK);
         gonio_database *database = make_database(context, 4, GONIO_BIVARIATE, GONIO_JOINT);
         gonio_basis *basis = learn(context, database, 3);
-        const gonio_basis_view view = gonio_basis_describe(basis);
-        fingerprint = threads == 1 ? view.fingerprint : fingerprint;
-        assert_true(view.fingerprint == fingerprint);
+        const gonio_basis_view *view = gonio_basis_describe(basis);
+        fingerprint = threads == 1 ? view->fingerprint : fingerprint;
+        assert_true(view->fingerprint == fingerprint);
         gonio_basis_free(&basis);
         gonio_database_free(&database);
         gonio_context_free(&context);
@@ -171,7 +172,7 @@ static void test_threads_and_subsets_do_not_matter(void **state)
     gonio_database *database = make_database(NULL, MATERIALS, GONIO_BIVARIATE, GONIO_JOINT);
     gonio_basis *basis = NULL;
     assert_int_equal(gonio_basis_learn(NULL, database, &some, &basis), GONIO_OK);
-    assert_true(gonio_basis_describe(basis).fingerprint == fingerprint);
+    assert_true(gonio_basis_describe(basis)->fingerprint == fingerprint);
     gonio_basis_free(&basis);
     gonio_database_free(&database);
 }
@@ -186,10 +187,10 @@ static void test_the_full_grid_on_any_number_of_threads(void **state)
         assert_int_equal(gonio_context_create(&context, &options), GONIO_OK);
         gonio_database *database = make_database(context, 3, GONIO_FULL, GONIO_SEPARATE);
         gonio_basis *basis = learn(context, database, 8);
-        const gonio_basis_view view = gonio_basis_describe(basis);
-        assert_int_equal(view.rows, 1096216);
-        checksum = threads == 1 ? view.checksum : checksum;
-        assert_true(view.checksum == checksum);
+        const gonio_basis_view *view = gonio_basis_describe(basis);
+        assert_int_equal(view->rows, 1096216);
+        checksum = threads == 1 ? view->checksum : checksum;
+        assert_true(view->checksum == checksum);
         if (threads == 1) {
             assert_orthonormal(basis);
             assert_projection(database, basis);
@@ -220,8 +221,8 @@ static void test_nearly_dependent_columns(void **state)
     gonio_database *database = NULL;
     assert_int_equal(gonio_database_create(NULL, files, 4, &options, &database), GONIO_OK);
     gonio_basis *basis = learn(NULL, database, 2);
-    const gonio_basis_view view = gonio_basis_describe(basis);
-    assert_true(view.variances[1] < 1e-8 * view.variances[0]);
+    const gonio_basis_view *view = gonio_basis_describe(basis);
+    assert_true(view->variances[1] < 1e-8 * view->variances[0]);
     assert_orthonormal(basis);
     gonio_basis_free(&basis);
     gonio_database_free(&database);
@@ -299,23 +300,23 @@ static void test_the_file_keeps_everything(void **state)
         gonio_basis *again = NULL;
         assert_int_equal(gonio_basis_write(NULL, basis, "a 'command'", path), GONIO_OK);
         assert_int_equal(gonio_basis_read(NULL, path, &again), GONIO_OK);
-        const gonio_basis_view a = gonio_basis_describe(basis);
-        const gonio_basis_view b = gonio_basis_describe(again);
-        assert_true(a.fingerprint == b.fingerprint);
-        assert_int_equal(a.channels, b.channels);
-        assert_int_equal(a.rows, b.rows);
-        assert_int_equal(a.components, b.components);
-        assert_int_equal(a.materials, b.materials);
-        assert_memory_equal(a.cell, b.cell, a.cells * sizeof *a.cell);
-        assert_memory_equal(a.mean, b.mean, a.rows * sizeof *a.mean);
+        const gonio_basis_view *a = gonio_basis_describe(basis);
+        const gonio_basis_view *b = gonio_basis_describe(again);
+        assert_true(a->fingerprint == b->fingerprint);
+        assert_int_equal(a->channels, b->channels);
+        assert_int_equal(a->rows, b->rows);
+        assert_int_equal(a->components, b->components);
+        assert_int_equal(a->materials, b->materials);
+        assert_memory_equal(a->cell, b->cell, a->cells * sizeof *a->cell);
+        assert_memory_equal(a->mean, b->mean, a->rows * sizeof *a->mean);
         double *vectors[2] = {support_vectors(basis), support_vectors(again)};
-        assert_memory_equal(vectors[0], vectors[1], a.rows * a.components * sizeof *vectors[0]);
+        assert_memory_equal(vectors[0], vectors[1], a->rows * a->components * sizeof *vectors[0]);
         free(vectors[0]);
         free(vectors[1]);
-        assert_memory_equal(a.variances, b.variances, a.variance_count * sizeof *a.variances);
-        assert_memory_equal(a.fingerprints, b.fingerprints, 3 * sizeof *a.fingerprints);
-        assert_string_equal(a.names[2], b.names[2]);
-        assert_string_equal(b.command, "a 'command'");
+        assert_memory_equal(a->variances, b->variances, a->variance_count * sizeof *a->variances);
+        assert_memory_equal(a->fingerprints, b->fingerprints, 3 * sizeof *a->fingerprints);
+        assert_string_equal(a->names[2], b->names[2]);
+        assert_string_equal(b->command, "a 'command'");
         gonio_basis_free(&basis);
         gonio_basis_free(&again);
         gonio_database_free(&database);
@@ -330,10 +331,10 @@ static void test_row_at_a_centre_is_the_cells_own(void **state)
     (void)state;
     gonio_database *database = make_database(NULL, 3, GONIO_BIVARIATE, GONIO_JOINT);
     gonio_basis *basis = learn(NULL, database, 2);
-    const gonio_basis_view view = gonio_basis_describe(basis);
+    const gonio_basis_view *view = gonio_basis_describe(basis);
     double *vectors = support_vectors(basis);
-    for (size_t position = 0; position < view.cells; position += 17) {
-        const int32_t cell = view.cell[position];
+    for (size_t position = 0; position < view->cells; position += 17) {
+        const int32_t cell = view->cell[position];
         const gonio_bin bin = {cell / GONIO_THETA_D_BINS, cell % GONIO_THETA_D_BINS, 50};
         assert_int_equal(gonio_basis_position(basis, cell), position);
         for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
@@ -341,7 +342,7 @@ static void test_row_at_a_centre_is_the_cells_own(void **state)
             double mean = 0.0;
             double found[2];
             gonio_basis_row_at(basis, gonio_bin_centre(bin), channel, 2, &mean, found);
-            assert_close(mean, view.mean[row], 1e-11);
+            assert_close(mean, view->mean[row], 1e-11);
             assert_close(found[0], vectors[2 * row], 1e-13);
             assert_close(found[1], vectors[2 * row + 1], 1e-13);
         }
@@ -398,7 +399,7 @@ static void assert_nearest(gonio_representation representation, const char *cons
     gonio_database *database = NULL;
     assert_int_equal(gonio_database_create(NULL, files, 2, &options, &database), GONIO_OK);
     gonio_basis *basis = learn(NULL, database, 1);
-    const gonio_basis_view view = gonio_basis_describe(basis);
+    const gonio_basis_view *view = gonio_basis_describe(basis);
     const int depth = full ? 1 : GONIO_PHI_D_BINS;
     gonio_i_random random;
     gonio_i_random_seed(&random, 9, 0);
@@ -406,8 +407,8 @@ static void assert_nearest(gonio_representation representation, const char *cons
         const int32_t cell =
             (int32_t)gonio_i_random_below(&random, full ? GONIO_BINS : GONIO_CELLS);
         const size_t found = gonio_basis_position(basis, cell);
-        if (view.cell[found] != cell) {
-            assert_int_equal(found, nearest(&view, gonio_bin_from_index(cell * depth)));
+        if (view->cell[found] != cell) {
+            assert_int_equal(found, nearest(view, gonio_bin_from_index(cell * depth)));
             trials--;
         }
     }
@@ -447,7 +448,7 @@ static void test_rows_that_a_basis_does_not_have(void **state)
     gonio_context *context = support_context();
     gonio_database *database = make_database(NULL, 3, GONIO_BIVARIATE, GONIO_JOINT);
     gonio_basis *basis = learn(NULL, database, 2);
-    const size_t rows = gonio_basis_describe(basis).rows;
+    const size_t rows = gonio_basis_describe(basis)->rows;
     const struct {
         size_t first, count, components;
     } wrong[] = {{rows, 1, 2}, {0, rows + 1, 2}, {rows - 1, 2, 1}, {rows + 1, 0, 1}, {0, 1, 3}};
@@ -485,8 +486,8 @@ static void assert_learns(const gonio_recipe *recipe, gonio_basis *expected)
 {
     gonio_basis *basis = NULL;
     assert_int_equal(gonio_learn(NULL, paths, 3, recipe, &basis), GONIO_OK);
-    const gonio_basis_view view = gonio_basis_describe(basis);
-    assert_true(view.checksum == gonio_basis_describe(expected).checksum);
+    const gonio_basis_view *view = gonio_basis_describe(basis);
+    assert_true(view->checksum == gonio_basis_describe(expected)->checksum);
     gonio_basis_free(&basis);
     gonio_basis_free(&expected);
 }
@@ -531,9 +532,9 @@ static void test_the_default_recipe(void **state)
     assert_learns(&recipe, learn_by_steps(NULL, &options));
     gonio_basis *basis = NULL;
     assert_int_equal(gonio_learn(NULL, paths, 2, NULL, &basis), GONIO_OK);
-    const gonio_basis_view view = gonio_basis_describe(basis);
-    assert_true(view.representation == GONIO_SECTORED && view.channels == GONIO_SEPARATE);
-    assert_int_equal(view.mixtures, GONIO_DEFAULT_MIXTURES);
+    const gonio_basis_view *view = gonio_basis_describe(basis);
+    assert_true(view->representation == GONIO_SECTORED && view->channels == GONIO_SEPARATE);
+    assert_int_equal(view->mixtures, GONIO_DEFAULT_MIXTURES);
     gonio_basis_free(&basis);
 }
 
@@ -550,8 +551,8 @@ static void test_recipes_of_older_callers(void **state)
     recipe.mixtures = 1;
     recipe.scratch = "/nonexistent";
     assert_int_equal(gonio_learn(context, paths, 3, &recipe, &basis), GONIO_OK);
-    assert_int_equal(gonio_basis_describe(basis).components, 2);
-    assert_int_equal(gonio_basis_describe(basis).mixtures, 0);
+    assert_int_equal(gonio_basis_describe(basis)->components, 2);
+    assert_int_equal(gonio_basis_describe(basis)->mixtures, 0);
     gonio_basis_free(&basis);
     recipe = (gonio_recipe){.size = 0};
     assert_int_equal(gonio_learn(context, paths, 3, &recipe, &basis), GONIO_ERROR_ARGUMENT);

@@ -63,18 +63,18 @@ static double *plain_log(const char *path, gonio_representation representation)
 static void assert_rows(const gonio_database *database, const char *const *files, size_t first,
                         size_t count, const size_t *subset, size_t subset_count)
 {
-    const gonio_database_view view = gonio_database_describe(database);
-    const bool joint = view.channels == GONIO_JOINT;
+    const gonio_database_view *view = gonio_database_describe(database);
+    const bool joint = view->channels == GONIO_JOINT;
     const size_t per_material = joint ? 1 : GONIO_CHANNELS;
     double *block = malloc(per_material * subset_count * count * sizeof *block);
     assert_int_equal(
         gonio_database_read_rows(NULL, database, first, count, subset, subset_count, block),
         GONIO_OK);
     for (size_t j = 0; j < per_material * subset_count; j++) {
-        double *g = plain_log(files[subset[j / per_material]], view.representation);
+        double *g = plain_log(files[subset[j / per_material]], view->representation);
         for (size_t i = 0; i < count; i++) {
             const size_t row = first + i;
-            const size_t cell = (size_t)view.cell[joint ? row / GONIO_CHANNELS : row];
+            const size_t cell = (size_t)view->cell[joint ? row / GONIO_CHANNELS : row];
             const double expected =
                 g[cell * GONIO_CHANNELS + (joint ? row % GONIO_CHANNELS : j % 3)];
             assert_true(fabs(block[j * count + i] - expected) <= 1e-7 * expected);
@@ -92,13 +92,13 @@ static void test_rows_are_the_materials(void **state)
         for (int separate = 0; separate < 2; separate++) {
             gonio_database *database = make_database(paths, MATERIALS, (gonio_representation)full,
                                                      (gonio_channel_model)separate);
-            const gonio_database_view view = gonio_database_describe(database);
-            const size_t third = view.rows / 3;
-            assert_int_equal(view.cells, full ? 1096216 : 8023);
-            assert_int_equal(view.rows, separate ? view.cells : 3 * view.cells);
-            assert_int_equal(view.columns, separate ? 3 * MATERIALS : MATERIALS);
+            const gonio_database_view *view = gonio_database_describe(database);
+            const size_t third = view->rows / 3;
+            assert_int_equal(view->cells, full ? 1096216 : 8023);
+            assert_int_equal(view->rows, separate ? view->cells : 3 * view->cells);
+            assert_int_equal(view->columns, separate ? 3 * MATERIALS : MATERIALS);
             assert_rows(database, paths, 0, third - 1, subset, 2);
-            assert_rows(database, paths, third - 1, view.rows - third + 1, subset, 2);
+            assert_rows(database, paths, third - 1, view->rows - third + 1, subset, 2);
             assert_rows(database, paths, third + 5, 1, subset + 1, 1);
             gonio_database_free(&database);
         }
@@ -139,17 +139,17 @@ static void test_cells_that_some_material_lacks_are_left_out(void **state)
     for (int separate = 0; separate < 2; separate++) {
         gonio_database *database =
             make_database(files, 2, GONIO_FULL, (gonio_channel_model)separate);
-        const gonio_database_view view = gonio_database_describe(database);
+        const gonio_database_view *view = gonio_database_describe(database);
         size_t k = 0;
         for (int32_t index = 0; index < GONIO_BINS; index++) {
             const gonio_bin bin = gonio_bin_from_index(index);
             if (gonio_bin_is_valid(bin) && !is_comb(bin) && !is_low(bin)) {
-                assert_true(k < view.cells && view.cell[k] == index);
+                assert_true(k < view->cells && view->cell[k] == index);
                 k++;
             }
         }
-        assert_int_equal(k, view.cells);
-        assert_rows(database, files, 1, view.rows - 2, both, 2);
+        assert_int_equal(k, view->cells);
+        assert_rows(database, files, 1, view->rows - 2, both, 2);
         gonio_database_free(&database);
     }
     support_remove(folder);
@@ -162,7 +162,7 @@ static void test_what_cannot_be_read(void **state)
     double value = 0.0;
     gonio_context *context = support_context();
     gonio_database *database = make_database(paths, MATERIALS, GONIO_BIVARIATE, GONIO_JOINT);
-    const size_t rows = gonio_database_describe(database).rows;
+    const size_t rows = gonio_database_describe(database)->rows;
     assert_int_equal(gonio_database_read_rows(context, database, rows, 1, NULL, 0, &value),
                      GONIO_ERROR_ARGUMENT);
     assert_int_equal(gonio_database_read_rows(context, database, 0, rows + 1, NULL, 0, &value),
@@ -199,12 +199,12 @@ static void test_materials_in_memory(void **state)
     for (size_t k = 0; k < MATERIALS; k++) {
         gonio_material_free(&material[k]);
     }
-    const gonio_database_view a = gonio_database_describe(from_files);
-    const gonio_database_view b = gonio_database_describe(from_materials);
-    assert_int_equal(a.rows, b.rows);
-    assert_memory_equal(a.fingerprints, b.fingerprints, MATERIALS * sizeof *a.fingerprints);
+    const gonio_database_view *a = gonio_database_describe(from_files);
+    const gonio_database_view *b = gonio_database_describe(from_materials);
+    assert_int_equal(a->rows, b->rows);
+    assert_memory_equal(a->fingerprints, b->fingerprints, MATERIALS * sizeof *a->fingerprints);
     for (size_t k = 0; k < MATERIALS; k++) {
-        assert_string_equal(a.names[k], b.names[k]);
+        assert_string_equal(a->names[k], b->names[k]);
     }
     assert_int_equal(gonio_database_read_rows(NULL, from_files, 100, COUNT, NULL, 0, block[0]),
                      GONIO_OK);

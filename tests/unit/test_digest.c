@@ -13,7 +13,7 @@
 typedef struct fixture {
     gonio_database *database;
     gonio_basis *basis;
-    gonio_basis_view view;
+    const gonio_basis_view *view;
     double *vectors;
 } fixture;
 
@@ -54,7 +54,7 @@ static double *estimate_of(double c[COMPONENTS])
         for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
             const size_t row = gonio_basis_position(data.basis, cell) * GONIO_CHANNELS + channel;
             double *value = &g[(size_t)cell * GONIO_CHANNELS + channel];
-            *value = data.view.mean[row];
+            *value = data.view->mean[row];
             for (size_t k = 0; k < COMPONENTS; k++) {
                 *value += data.vectors[row * COMPONENTS + k] * c[k];
             }
@@ -159,10 +159,10 @@ static void test_fingerprint(void **state)
     (void)state;
     gonio_material *material = NULL;
     gonio_i_digest *digest = NULL;
-    const gonio_database_view view = gonio_database_describe(data.database);
+    const gonio_database_view *view = gonio_database_describe(data.database);
     assert_int_equal(gonio_material_open(NULL, paths[1], &material), GONIO_OK);
     assert_int_equal(gonio_i_digest_create(NULL, material, &digest), GONIO_OK);
-    assert_true(digest->fingerprint == view.fingerprints[1]);
+    assert_true(digest->fingerprint == view->fingerprints[1]);
     gonio_i_digest_free(&digest);
     gonio_material_free(&material);
 }

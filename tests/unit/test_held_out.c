@@ -177,8 +177,8 @@ static void test_shelf(void **state)
         assert_int_equal(
             gonio_i_shelf_learn(context, &shelf, paths, PATHS, &how, &options, &basis[k]),
             GONIO_OK);
-        fingerprint[k] = gonio_basis_describe(basis[k]).checksum;
-        assert_int_equal(gonio_basis_describe(basis[k]).without_mean, k == 3);
+        fingerprint[k] = gonio_basis_describe(basis[k])->checksum;
+        assert_int_equal(gonio_basis_describe(basis[k])->without_mean, k == 3);
         if (k == 1) {
             assert_ptr_equal(basis[0], basis[1]);
         }
@@ -201,12 +201,12 @@ static void test_all_rows(void **state)
     assert_int_equal(gonio_i_trial_begin(context, &collection, split->basis, split->basis_count, 4,
                                          split->test, 1, &trial),
                      GONIO_OK);
-    size_t *rows = calloc(trial.view.rows, sizeof *rows);
-    for (size_t k = 0; k < trial.view.rows; k++) {
+    size_t *rows = calloc(trial.view->rows, sizeof *rows);
+    for (size_t k = 0; k < trial.view->rows; k++) {
         rows[k] = k;
     }
     assert_int_equal(gonio_i_trial_all_rows(context, &trial, &by_product), GONIO_OK);
-    assert_int_equal(gonio_i_trial_rows(context, &trial, rows, trial.view.rows, &by_solving),
+    assert_int_equal(gonio_i_trial_rows(context, &trial, rows, trial.view->rows, &by_solving),
                      GONIO_OK);
     assert_same_error(by_product, by_solving);
     rows[3] = rows[0];

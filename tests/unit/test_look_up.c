@@ -83,11 +83,11 @@ static void test_spectra_are_looked_up_too(void **state)
     gonio_readings *plan = made_directions(rows, 1);
     assert_int_equal(gonio_readings_set_deviations(NULL, known, deviations), GONIO_OK);
     assert_int_equal(gonio_readings_look_up(NULL, plan, known), GONIO_OK);
-    assert_int_equal(gonio_readings_describe(plan).channels, 2);
+    assert_int_equal(gonio_readings_describe(plan)->channels, 2);
     assert_close(gonio_readings_value(plan, 0, 0), 0.3, 0.0);
     assert_close(gonio_readings_value(plan, 0, 1), 0.4, 0.0);
-    assert_close(gonio_readings_describe(plan).wavelength[1], 500.0, 0.0);
-    assert_close(gonio_readings_describe(plan).deviation[1], 0.04, 0.0);
+    assert_close(gonio_readings_describe(plan)->wavelength[1], 500.0, 0.0);
+    assert_close(gonio_readings_describe(plan)->deviation[1], 0.04, 0.0);
     gonio_readings_free(&plan);
     gonio_readings_free(&known);
 }

@@ -78,13 +78,13 @@ static void test_without_noise_the_value_itself(void **state)
 {
     const fixture *f = *state;
     gonio_readings *readings = make_plan(false);
-    gonio_readings_view view = gonio_readings_describe(readings);
-    assert_int_equal(view.count, DIRECTIONS);
-    assert_true(isnan(view.value[0]));
-    assert_int_equal(view.planned[0], GONIO_ALL_CHANNELS);
-    assert_int_equal(view.line[5], 6);
+    const gonio_readings_view *view = gonio_readings_describe(readings);
+    assert_int_equal(view->count, DIRECTIONS);
+    assert_true(isnan(view->value[0]));
+    assert_int_equal(view->planned[0], GONIO_ALL_CHANNELS);
+    assert_int_equal(view->line[5], 6);
     assert_int_equal(gonio_measure(NULL, readings, f->table, NULL), GONIO_OK);
-    for (size_t k = 0; k < view.count; k++) {
+    for (size_t k = 0; k < view->count; k++) {
         for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
             const double value = gonio_readings_value(readings, k, (size_t)channel);
             assert_true(fabs(value / values[channel] - 1.0) < 1e-14);
@@ -98,11 +98,11 @@ static void test_without_noise_the_value_itself(void **state)
 static void assert_statistics(const gonio_readings *readings, int channel, double mean,
                               double deviation)
 {
-    const gonio_readings_view view = gonio_readings_describe(readings);
-    const double n = (double)view.count;
+    const gonio_readings_view *view = gonio_readings_describe(readings);
+    const double n = (double)view->count;
     double sum = 0.0;
     double squares = 0.0;
-    for (size_t k = 0; k < view.count; k++) {
+    for (size_t k = 0; k < view->count; k++) {
         const double difference = gonio_readings_value(readings, k, (size_t)channel) - mean;
         sum += difference;
         squares += difference * difference;
@@ -132,9 +132,9 @@ static void test_readings_are_not_negative(void **state)
     const fixture *f = *state;
     gonio_readings *readings = make_plan(false);
     measure(readings, f, 0.0, 1.0, 4);
-    const gonio_readings_view view = gonio_readings_describe(readings);
+    const gonio_readings_view *view = gonio_readings_describe(readings);
     int zeros = 0;
-    for (size_t k = 0; k < view.count; k++) {
+    for (size_t k = 0; k < view->count; k++) {
         assert_true(gonio_readings_value(readings, k, 0) >= 0.0);
         zeros += gonio_readings_value(readings, k, 0) == 0.0;
     }
@@ -151,9 +151,9 @@ static void test_noise_belongs_to_the_direction_and_the_seed(void **state)
     measure(forwards, f, 0.1, 0.01, 5);
     measure(backwards, f, 0.1, 0.01, 5);
     measure(other, f, 0.1, 0.01, 6);
-    const double *a = gonio_readings_describe(forwards).value;
-    const double *b = gonio_readings_describe(backwards).value;
-    const double *c = gonio_readings_describe(other).value;
+    const double *a = gonio_readings_describe(forwards)->value;
+    const double *b = gonio_readings_describe(backwards)->value;
+    const double *c = gonio_readings_describe(other)->value;
     for (size_t k = 0; k < DIRECTIONS; k++) {
         assert_memory_equal(a + GONIO_CHANNELS * k, b + GONIO_CHANNELS * (DIRECTIONS - 1 - k),
                             GONIO_CHANNELS * sizeof *a);
@@ -181,16 +181,16 @@ static void test_readings_are_written_and_read(void **state)
 {
     const fixture *f = *state;
     gonio_readings *readings = read_plan(f);
-    assert_int_equal(gonio_readings_describe(readings).count, DIRECTIONS);
-    assert_int_equal(gonio_readings_describe(readings).line[5], 7);
+    assert_int_equal(gonio_readings_describe(readings)->count, DIRECTIONS);
+    assert_int_equal(gonio_readings_describe(readings)->line[5], 7);
     measure(readings, f, 0.1, 0.01, 7);
     assert_int_equal(gonio_readings_write(NULL, readings, "a command", f->path), GONIO_OK);
     gonio_readings *again = read_back(f, true);
-    const gonio_readings_view a = gonio_readings_describe(readings);
-    const gonio_readings_view b = gonio_readings_describe(again);
-    assert_memory_equal(a.pair, b.pair, DIRECTIONS * sizeof *a.pair);
+    const gonio_readings_view *a = gonio_readings_describe(readings);
+    const gonio_readings_view *b = gonio_readings_describe(again);
+    assert_memory_equal(a->pair, b->pair, DIRECTIONS * sizeof *a->pair);
     for (size_t k = 0; k < DIRECTIONS * GONIO_CHANNELS; k++) {
-        assert_true(fabs(a.value[k] - b.value[k]) <= 1e-9 * a.value[k]);
+        assert_true(fabs(a->value[k] - b->value[k]) <= 1e-9 * a->value[k]);
     }
     gonio_readings_free(&readings);
     gonio_readings_free(&again);
@@ -222,13 +222,13 @@ static void test_angles(void **state)
           file);
     assert_int_equal(fclose(file), 0);
     gonio_readings *readings = read_back(f, true);
-    const gonio_readings_view r = gonio_readings_describe(readings);
-    assert_true(fabs(r.pair->incident.theta - M_PI / 6.0) < 1e-15);
-    assert_true(fabs(r.pair->incident.phi - 1.5 * M_PI) < 1e-15);
-    assert_true(fabs(r.pair->outgoing.theta - M_PI / 4.0) < 1e-15);
-    assert_true(r.pair->outgoing.phi == 0.0);
-    assert_int_equal(r.planned[0], 1);
-    assert_true(r.value[0] == 0.5 && isnan(r.value[1]) && isnan(r.value[2]));
+    const gonio_readings_view *r = gonio_readings_describe(readings);
+    assert_true(fabs(r->pair->incident.theta - M_PI / 6.0) < 1e-15);
+    assert_true(fabs(r->pair->incident.phi - 1.5 * M_PI) < 1e-15);
+    assert_true(fabs(r->pair->outgoing.theta - M_PI / 4.0) < 1e-15);
+    assert_true(r->pair->outgoing.phi == 0.0);
+    assert_int_equal(r->planned[0], 1);
+    assert_true(r->value[0] == 0.5 && isnan(r->value[1]) && isnan(r->value[2]));
     gonio_readings_free(&readings);
 }
 

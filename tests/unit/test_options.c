@@ -161,9 +161,11 @@ static void refuse_learning(fixture *f, const unset *no)
 
 static void refuse_readings(fixture *f, const unset *no)
 {
-    const gonio_readings_view view = gonio_readings_describe(f->readings);
-    const gonio_readings_arrays arrays = {
-        .size = sizeof arrays, .count = view.count, .channels = view.channels, .pair = view.pair};
+    const gonio_readings_view *view = gonio_readings_describe(f->readings);
+    const gonio_readings_arrays arrays = {.size = sizeof arrays,
+                                          .count = view->count,
+                                          .channels = view->channels,
+                                          .pair = view->pair};
     gonio_readings *readings = NULL;
     assert_refused(gonio_readings_create(f->context, &no->arrays, NULL, &readings),
                    "gonio_readings_arrays");
@@ -171,8 +173,8 @@ static void refuse_readings(fixture *f, const unset *no)
                    "gonio_readings_options");
     assert_refused(gonio_readings_read(f->context, "/nonexistent", &no->readings, &readings),
                    "gonio_readings_options");
-    assert_refused(gonio_readings_set_values(f->context, f->readings, view.channels, NULL,
-                                             view.value, &no->readings),
+    assert_refused(gonio_readings_set_values(f->context, f->readings, view->channels, NULL,
+                                             view->value, &no->readings),
                    "gonio_readings_options");
     assert_refused(gonio_measure(f->context, f->readings, f->table, &no->instrument),
                    "gonio_instrument_options");

@@ -100,7 +100,7 @@ static gonio_reconstruction *reconstruct(const gonio_readings *readings, double 
 static void assert_same_field(const gonio_reconstruction *a, const gonio_reconstruction *b,
                               double tolerance)
 {
-    const size_t values = a->columns * gonio_basis_describe(basis).rows;
+    const size_t values = a->columns * gonio_basis_describe(basis)->rows;
     assert_int_equal(a->columns, b->columns);
     for (size_t k = 0; k < values; k++) {
         assert_true(fabs(a->field[k] - b->field[k]) <= tolerance);
@@ -114,18 +114,18 @@ static void test_a_plan_as_readings(void **state)
     (void)state;
     gonio_readings *readings = NULL;
     assert_int_equal(gonio_readings_create_from_plan(context, plan, &readings), GONIO_OK);
-    const gonio_readings_view view = gonio_readings_describe(readings);
-    assert_int_equal(view.count, PLANNED);
-    assert_int_equal(view.channels, GONIO_CHANNELS);
+    const gonio_readings_view *view = gonio_readings_describe(readings);
+    assert_int_equal(view->count, PLANNED);
+    assert_int_equal(view->channels, GONIO_CHANNELS);
     assert_true(gonio_readings_are_colours(readings));
-    assert_true(view.basis == plan->basis);
-    assert_int_equal(view.components, 0); /* as the file of such a plan */
-    assert_string_equal(view.method, plan->method);
+    assert_true(view->basis == plan->basis);
+    assert_int_equal(view->components, 0); /* as the file of such a plan */
+    assert_string_equal(view->method, plan->method);
     for (size_t k = 0; k < PLANNED; k++) {
-        assert_true(view.pair[k].incident.theta == plan->entries[k].pair.incident.theta);
-        assert_true(view.pair[k].outgoing.phi == plan->entries[k].pair.outgoing.phi);
-        assert_int_equal(view.planned[k], plan->entries[k].channel);
-        assert_true(isnan(view.value[k * GONIO_CHANNELS]));
+        assert_true(view->pair[k].incident.theta == plan->entries[k].pair.incident.theta);
+        assert_true(view->pair[k].outgoing.phi == plan->entries[k].pair.outgoing.phi);
+        assert_int_equal(view->planned[k], plan->entries[k].channel);
+        assert_true(isnan(view->value[k * GONIO_CHANNELS]));
     }
     gonio_readings_free(&readings);
     assert_null(readings);
@@ -165,15 +165,15 @@ static void test_arrays_and_files_agree(void **state)
     gonio_readings *from_arrays = NULL;
     assert_int_equal(gonio_readings_write(context, measured, NULL, path), GONIO_OK);
     assert_int_equal(gonio_readings_read(context, path, NULL, &from_file), GONIO_OK);
-    const gonio_readings_view view = gonio_readings_describe(from_file);
-    assert_true(view.basis == plan->basis);
-    assert_string_equal(view.method, plan->method);
+    const gonio_readings_view *view = gonio_readings_describe(from_file);
+    assert_true(view->basis == plan->basis);
+    assert_string_equal(view->method, plan->method);
     const gonio_readings_arrays arrays = {.size = sizeof arrays,
-                                          .count = view.count,
-                                          .channels = view.channels,
-                                          .pair = view.pair,
-                                          .planned = view.planned,
-                                          .value = view.value};
+                                          .count = view->count,
+                                          .channels = view->channels,
+                                          .pair = view->pair,
+                                          .planned = view->planned,
+                                          .value = view->value};
     assert_int_equal(gonio_readings_create(context, &arrays, NULL, &from_arrays), GONIO_OK);
     gonio_reconstruction *a = reconstruct(from_file, 0.01);
     gonio_reconstruction *b = reconstruct(from_arrays, 0.01);
@@ -201,10 +201,10 @@ static void test_azimuths_are_within_a_turn(void **state)
         .size = sizeof arrays, .count = 1, .channels = 1, .pair = &pair};
     gonio_readings *readings = NULL;
     assert_int_equal(gonio_readings_create(context, &arrays, NULL, &readings), GONIO_OK);
-    const gonio_readings_view view = gonio_readings_describe(readings);
-    assert_true(fabs(view.pair->incident.phi - (2.0 * M_PI - 0.5)) < 1e-15);
-    assert_true(view.pair->outgoing.phi == 0.0);
-    assert_true(view.pair->incident.theta == 0.5);
+    const gonio_readings_view *view = gonio_readings_describe(readings);
+    assert_true(fabs(view->pair->incident.phi - (2.0 * M_PI - 0.5)) < 1e-15);
+    assert_true(view->pair->outgoing.phi == 0.0);
+    assert_true(view->pair->incident.theta == 0.5);
     assert_true(isnan(gonio_readings_value(readings, 0, 0)));
     assert_true(isnan(gonio_readings_value(readings, 0, 1))); /* there is no such channel */
     gonio_readings_free(&readings);
@@ -305,16 +305,16 @@ static void test_values_can_be_set(void **state)
     assert_int_equal(gonio_readings_set_deviations(context, r, value), GONIO_OK);
     assert_int_equal(gonio_readings_set_value(context, r, 1, 1, 5.0), GONIO_OK);
     assert_true(gonio_readings_value(r, 1, 1) == 5.0);
-    assert_true(isnan(gonio_readings_describe(r).deviation[4]));
+    assert_true(isnan(gonio_readings_describe(r)->deviation[4]));
     /* What is refused changes nothing. */
     assert_int_equal(gonio_readings_set_values(context, r, 1, NULL, dark, NULL), GONIO_ERROR_DATA);
     assert_int_equal(gonio_readings_set_value(context, r, 2, 0, 1.0), GONIO_ERROR_ARGUMENT);
     assert_int_equal(gonio_readings_set_value(context, r, 0, 3, 1.0), GONIO_ERROR_ARGUMENT);
     assert_int_equal(gonio_readings_set_value(context, r, 0, 0, -1.0), GONIO_ERROR_DATA);
-    const gonio_readings_view view = gonio_readings_describe(r);
-    assert_int_equal(view.channels, 3);
-    assert_memory_equal(view.wavelength, waves, sizeof waves);
-    assert_true(view.value[0] == 1.0 && view.value[4] == 5.0 && view.deviation[5] == 6.0);
+    const gonio_readings_view *view = gonio_readings_describe(r);
+    assert_int_equal(view->channels, 3);
+    assert_memory_equal(view->wavelength, waves, sizeof waves);
+    assert_true(view->value[0] == 1.0 && view->value[4] == 5.0 && view->deviation[5] == 6.0);
     gonio_readings_free(&r);
 }
 
@@ -363,15 +363,15 @@ static void test_arrays_are_written_and_read(void **state)
             gonio_readings *readings = NULL;
             assert_int_equal(gonio_readings_create(context, &arrays, NULL, &readings), GONIO_OK);
             gonio_readings *again = write_and_read(readings, true);
-            const gonio_readings_view a = gonio_readings_describe(readings);
-            const gonio_readings_view b = gonio_readings_describe(again);
-            assert_int_equal(b.channels, channels);
-            assert_true((a.wavelength == NULL) == (b.wavelength == NULL));
-            assert_true(!spectral || memcmp(b.wavelength, waves, channels * sizeof *waves) == 0);
-            assert_numbers((const double *)a.pair, (const double *)b.pair, 8);
-            assert_numbers(a.value, b.value, 2 * channels);
-            assert_numbers(a.deviation, b.deviation, 2 * channels);
-            assert_memory_equal(b.planned, planned, sizeof planned);
+            const gonio_readings_view *a = gonio_readings_describe(readings);
+            const gonio_readings_view *b = gonio_readings_describe(again);
+            assert_int_equal(b->channels, channels);
+            assert_true((a->wavelength == NULL) == (b->wavelength == NULL));
+            assert_true(!spectral || memcmp(b->wavelength, waves, channels * sizeof *waves) == 0);
+            assert_numbers((const double *)a->pair, (const double *)b->pair, 8);
+            assert_numbers(a->value, b->value, 2 * channels);
+            assert_numbers(a->deviation, b->deviation, 2 * channels);
+            assert_memory_equal(b->planned, planned, sizeof planned);
             gonio_readings_free(&again);
             gonio_readings_free(&readings);
         }
@@ -417,7 +417,7 @@ static void test_what_is_kept_of_a_file(void **state)
                   "note;400.0nm_per_sr;theta_i_deg;phi_i_deg;theta_o_deg;phi_o_deg\n"
                   "\"a;b\";0,7;10,50;-20;30;040\n",
                   true);
-    assert_int_equal(gonio_readings_describe(r).channels, 1);
+    assert_int_equal(gonio_readings_describe(r)->channels, 1);
     assert_int_equal(gonio_readings_set_values(context, r, 2, waves, colours, NULL), GONIO_OK);
     char *spectral = text_of(r);
     assert_non_null(strstr(spectral, "# gonio readings\n# kept: yes\n# program: gonio "));
@@ -475,7 +475,7 @@ static void test_columns_that_are_not_understood(void **state)
                   true);
     assert_true(gonio_readings_are_colours(r));
     assert_true(gonio_readings_value(r, 0, 1) == 1.0);
-    assert_null(gonio_readings_describe(r).deviation);
+    assert_null(gonio_readings_describe(r)->deviation);
     gonio_readings_free(&r);
 }
 
@@ -489,9 +489,9 @@ static void test_notes(void **state)
     assert_int_equal(gonio_readings_create(context, &arrays, NULL, &r), GONIO_OK);
     assert_int_equal(gonio_i_readings_note(context, r, "%d below the horizon left out", 12),
                      GONIO_OK);
-    const gonio_readings_view view = gonio_readings_describe(r);
-    assert_int_equal(view.notes, 1);
-    assert_string_equal(view.note[0], "12 below the horizon left out");
+    const gonio_readings_view *view = gonio_readings_describe(r);
+    assert_int_equal(view->notes, 1);
+    assert_string_equal(view->note[0], "12 below the horizon left out");
     char *text = text_of(r);
     assert_non_null(strstr(text, "# note: 12 below the horizon left out\n"));
     free(text);
@@ -503,11 +503,11 @@ static void test_notes(void **state)
 static gonio_readings *copy_of(const gonio_readings *from, size_t channels, const double *value,
                                const double *deviation)
 {
-    const gonio_readings_view view = gonio_readings_describe(from);
+    const gonio_readings_view *view = gonio_readings_describe(from);
     const gonio_readings_arrays arrays = {.size = sizeof arrays,
-                                          .count = view.count,
+                                          .count = view->count,
                                           .channels = channels,
-                                          .pair = view.pair,
+                                          .pair = view->pair,
                                           .value = value,
                                           .deviation = deviation};
     gonio_readings *made = NULL;
@@ -522,7 +522,7 @@ static void test_deviations(void **state)
     (void)state;
     enum { VALUES = PLANNED * GONIO_CHANNELS };
     gonio_readings *measured = measure_the_plan();
-    const double *value = gonio_readings_describe(measured).value;
+    const double *value = gonio_readings_describe(measured)->value;
     double deviation[VALUES];
     for (size_t k = 0; k < VALUES; k++) {
         deviation[k] = k % 2 == 0 ? hypot(0.03 * value[k], 1e-5) : NAN;
@@ -561,7 +561,7 @@ static void test_a_single_channel(void **state)
     double off = 0.0;
     assert_int_equal(made->columns, 1);
     assert_int_equal(made->wavelengths, 0);
-    const gonio_pair pair = gonio_readings_describe(single).pair[0];
+    const gonio_pair pair = gonio_readings_describe(single)->pair[0];
     gonio_reconstruction_predict(basis, made, gonio_half_difference_from_pair(pair), &value, NULL);
     assert_true(fabs(value / green[0] - 1.0) < 0.05);
     assert_int_equal(gonio_reconstruction_material(context, basis, made, "grey", &material),
@@ -574,7 +574,7 @@ static void test_a_single_channel(void **state)
     assert_true(off < 1e-6); /* bins between cells are interpolated in each channel's log space */
     assert_int_equal(gonio_reconstruction_predict_readings(context, basis, made, measured),
                      GONIO_OK);
-    assert_int_equal(gonio_readings_describe(measured).channels, 1);
+    assert_int_equal(gonio_readings_describe(measured)->channels, 1);
     free(slab);
     gonio_material_free(&material);
     gonio_reconstruction_free(&made);

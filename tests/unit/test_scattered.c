@@ -30,21 +30,21 @@ static void test_a_good_file(void **state)
         read_good("good.brdf", "# a paint\n\n3 # wavelengths\n# nm\n400 550.5\n700\n"
                                "0.872665 0 0.573513 0.5\n0.001 0.002 3e-3\n"
                                "0.1 6.2 0.2 -0.26 # angles\r\n0 1e-6 12.5\n");
-    const gonio_readings_view view = gonio_readings_describe(readings);
-    assert_int_equal(view.count, 2);
-    assert_int_equal(view.channels, 3);
+    const gonio_readings_view *view = gonio_readings_describe(readings);
+    assert_int_equal(view->count, 2);
+    assert_int_equal(view->channels, 3);
     assert_false(gonio_readings_are_colours(readings));
     static const double wavelengths[3] = {400.0, 550.5, 700.0};
     static const double values[2][3] = {{0.001, 0.002, 0.003}, {0.0, 1e-6, 12.5}};
     for (size_t k = 0; k < 3; k++) {
-        assert_close(view.wavelength[k], wavelengths[k], 1e-12);
+        assert_close(view->wavelength[k], wavelengths[k], 1e-12);
         assert_close(gonio_readings_scale(readings, k), 1.0 / 1500.0, 1e-15);
         for (size_t i = 0; i < 2; i++) {
             assert_close(gonio_readings_value(readings, i, k), values[i][k], 1e-12);
         }
     }
-    const gonio_pair a = view.pair[0];
-    const gonio_pair b = view.pair[1];
+    const gonio_pair a = view->pair[0];
+    const gonio_pair b = view->pair[1];
     assert_close(a.incident.theta, 0.872665, 1e-9);
     assert_close(a.outgoing.theta, 0.573513, 1e-9);
     assert_close(a.outgoing.phi, 0.5, 1e-9);
@@ -135,12 +135,12 @@ static void test_spectral_columns(void **state)
     assert_int_equal(
         read_csv(NULL, "note,700nm_per_sr,400.5NM_PER_SR,550nm_per_sr", "x,0.7,0.4,", &readings),
         GONIO_OK);
-    const gonio_readings_view view = gonio_readings_describe(readings);
-    assert_int_equal(view.channels, 3);
-    assert_non_null(view.wavelength);
-    assert_close(view.wavelength[0], 700.0, 0.0);
-    assert_close(view.wavelength[1], 400.5, 0.0);
-    assert_close(view.wavelength[2], 550.0, 0.0);
+    const gonio_readings_view *view = gonio_readings_describe(readings);
+    assert_int_equal(view->channels, 3);
+    assert_non_null(view->wavelength);
+    assert_close(view->wavelength[0], 700.0, 0.0);
+    assert_close(view->wavelength[1], 400.5, 0.0);
+    assert_close(view->wavelength[2], 550.0, 0.0);
     assert_close(gonio_readings_value(readings, 0, 0), 0.7, 0.0);
     assert_close(gonio_readings_value(readings, 0, 1), 0.4, 0.0);
     assert_true(isnan(gonio_readings_value(readings, 0, 2)));
@@ -181,15 +181,15 @@ static void test_the_round_trip(void **state)
     snprintf(path, sizeof path, "%s/w.csv", folder);
     assert_int_equal(gonio_readings_write(NULL, readings, NULL, path), GONIO_OK);
     assert_int_equal(gonio_readings_read(NULL, path, NULL, &again), GONIO_OK);
-    const gonio_readings_view a = gonio_readings_describe(readings);
-    const gonio_readings_view b = gonio_readings_describe(again);
-    assert_int_equal(a.count, b.count);
-    assert_int_equal(a.channels, b.channels);
-    assert_memory_equal(a.wavelength, b.wavelength, a.channels * sizeof *a.wavelength);
-    for (size_t i = 0; i < a.count; i++) {
-        assert_close(b.pair[i].incident.theta, a.pair[i].incident.theta, 1e-8);
-        assert_close(b.pair[i].outgoing.phi, a.pair[i].outgoing.phi, 1e-8);
-        for (size_t k = 0; k < a.channels; k++) {
+    const gonio_readings_view *a = gonio_readings_describe(readings);
+    const gonio_readings_view *b = gonio_readings_describe(again);
+    assert_int_equal(a->count, b->count);
+    assert_int_equal(a->channels, b->channels);
+    assert_memory_equal(a->wavelength, b->wavelength, a->channels * sizeof *a->wavelength);
+    for (size_t i = 0; i < a->count; i++) {
+        assert_close(b->pair[i].incident.theta, a->pair[i].incident.theta, 1e-8);
+        assert_close(b->pair[i].outgoing.phi, a->pair[i].outgoing.phi, 1e-8);
+        for (size_t k = 0; k < a->channels; k++) {
             const double value = gonio_readings_value(readings, i, k);
             assert_close(gonio_readings_value(again, i, k), value, 1e-6 * value);
         }

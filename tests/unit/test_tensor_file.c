@@ -396,7 +396,7 @@ static void test_a_file_is_copied(void **state)
     gonio_material *first = NULL;
     gonio_material *second = NULL;
     assert_int_equal(gonio_material_open(NULL, path, &first), GONIO_OK);
-    assert_true(gonio_material_describe(first).anisotropic);
+    assert_true(gonio_material_describe(first)->anisotropic);
     assert_int_equal(gonio_material_write(NULL, first, again, NULL), GONIO_OK);
     assert_int_equal(gonio_material_open(NULL, again, &second), GONIO_OK);
     for (int k = 0; k < 200; k++) {

@@ -12,9 +12,9 @@ static bool is_matrix(const gonio_database *database, const gonio_database_optio
     if (database == NULL) {
         return false;
     }
-    const gonio_database_view view = gonio_database_describe(database);
-    return view.representation == how->representation && view.channels == how->channels &&
-           view.mapping == how->mapping;
+    const gonio_database_view *view = gonio_database_describe(database);
+    return view->representation == how->representation && view->channels == how->channels &&
+           view->mapping == how->mapping;
 }
 
 /* Whether the basis on the shelf, which is of its matrix, was learned in that way. */
@@ -23,13 +23,13 @@ static bool is_basis(const gonio_i_shelf *shelf, const gonio_basis_options *opti
     if (shelf->basis == NULL) {
         return false;
     }
-    const gonio_basis_view view = gonio_basis_describe(shelf->basis);
-    const uint64_t *fingerprints = gonio_database_describe(shelf->database).fingerprints;
-    bool same = view.components == options->components &&
-                view.without_mean == options->without_mean &&
-                view.materials == options->subset_count;
+    const gonio_basis_view *view = gonio_basis_describe(shelf->basis);
+    const uint64_t *fingerprints = gonio_database_describe(shelf->database)->fingerprints;
+    bool same = view->components == options->components &&
+                view->without_mean == options->without_mean &&
+                view->materials == options->subset_count;
     for (size_t k = 0; k < options->subset_count && same; k++) {
-        same = view.fingerprints[k] == fingerprints[options->subset[k]];
+        same = view->fingerprints[k] == fingerprints[options->subset[k]];
     }
     return same;
 }

@@ -58,9 +58,9 @@ static gonio_status add_variances(gonio_context *context, const gonio_i_study *s
     if (status != GONIO_OK) {
         return status;
     }
-    const gonio_basis_view view = gonio_basis_describe(basis);
-    for (size_t k = 0; k < view.variance_count; k++) {
-        json_array_append_new(list, number(view.variances[k]));
+    const gonio_basis_view *view = gonio_basis_describe(basis);
+    for (size_t k = 0; k < view->variance_count; k++) {
+        json_array_append_new(list, number(view->variances[k]));
     }
     gonio_basis_free(&basis);
     return GONIO_OK;
@@ -196,7 +196,7 @@ static gonio_status compute_samples(gonio_context *context, const gonio_i_study 
     json_object_set_new(result, "errors", by_samples);
     for (size_t l = 0; l < study->grid_samples && status == GONIO_OK; l++) {
         double condition = NAN;
-        const bool fits = study->grid_sample[l] >= trial->view.components;
+        const bool fits = study->grid_sample[l] >= trial->view->components;
         if (fits) {
             status = gonio_i_trial_plan(context, trial, "condition", study->grid_sample[l], seed,
                                         &condition, errors);

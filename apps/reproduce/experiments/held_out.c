@@ -20,11 +20,11 @@ gonio_status gonio_i_trial_begin(gonio_context *context, const gonio_i_collectio
         return status;
     }
     trial->view = gonio_basis_describe(trial->basis);
-    const size_t values = trial->view.rows * trial->view.components;
+    const size_t values = trial->view->rows * trial->view->components;
     trial->vectors = gonio_i_allocate(context, values, sizeof *trial->vectors);
     return trial->vectors == NULL ? GONIO_ERROR_MEMORY
-                                  : gonio_basis_rows(context, trial->basis, 0, trial->view.rows,
-                                                     trial->view.components, trial->vectors);
+                                  : gonio_basis_rows(context, trial->basis, 0, trial->view->rows,
+                                                     trial->view->components, trial->vectors);
 }
 
 void gonio_i_trial_end(gonio_i_trial *trial)
@@ -39,9 +39,9 @@ void gonio_i_trial_end(gonio_i_trial *trial)
 /* What a noise-free reading of a test material gives, less the mean. */
 static double centred_reading(const gonio_i_trial *t, size_t test, size_t row)
 {
-    const size_t cell = (size_t)t->view.cell[row / GONIO_CHANNELS];
+    const size_t cell = (size_t)t->view->cell[row / GONIO_CHANNELS];
     return t->collection->mean[t->test[test]][cell * GONIO_CHANNELS + row % GONIO_CHANNELS] -
-           t->view.mean[row];
+           t->view->mean[row];
 }
 
 /* Column `column` of V C' + m, spread to all cells. */
@@ -51,7 +51,7 @@ static void spread(const gonio_i_trial *t, const double *product, size_t column,
         const size_t first = gonio_basis_position(t->basis, cell) * GONIO_CHANNELS;
         for (size_t row = first; row < first + GONIO_CHANNELS; row++) {
             g[(size_t)cell * GONIO_CHANNELS + row - first] =
-                t->view.mean[row] + product[row * t->tests + column];
+                t->view->mean[row] + product[row * t->tests + column];
         }
     }
 }
@@ -60,11 +60,11 @@ static void spread(const gonio_i_trial *t, const double *product, size_t column,
 static gonio_status errors_of(gonio_context *context, const gonio_i_trial *t, const double *c,
                               gonio_error *errors)
 {
-    double *product = gonio_i_allocate(context, t->view.rows * t->tests, sizeof *product);
+    double *product = gonio_i_allocate(context, t->view->rows * t->tests, sizeof *product);
     double *g = gonio_i_allocate(context, (size_t)GONIO_CELLS * GONIO_CHANNELS, sizeof *g);
     gonio_status status = product == NULL || g == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
     if (status == GONIO_OK) {
-        status = gonio_i_product_transposed(context, t->vectors, t->view.rows, t->view.components,
+        status = gonio_i_product_transposed(context, t->vectors, t->view->rows, t->view->components,
                                             c, t->tests, product, t->tests);
     }
     for (size_t k = 0; k < t->tests && status == GONIO_OK; k++) {
@@ -81,13 +81,13 @@ static gonio_status errors_of(gonio_context *context, const gonio_i_trial *t, co
 gonio_status gonio_i_trial_all_rows(gonio_context *context, const gonio_i_trial *trial,
                                     gonio_error *errors)
 {
-    const size_t components = trial->view.components;
+    const size_t components = trial->view->components;
     double *c = gonio_i_allocate(context, trial->tests * components, sizeof *c);
     if (c == NULL) {
         return GONIO_ERROR_MEMORY;
     }
     for (size_t test = 0; test < trial->tests; test++) {
-        for (size_t row = 0; row < trial->view.rows; row++) {
+        for (size_t row = 0; row < trial->view->rows; row++) {
             const double b = centred_reading(trial, test, row);
             for (size_t k = 0; k < components; k++) {
                 c[test * components + k] += trial->vectors[row * components + k] * b;
@@ -103,7 +103,7 @@ gonio_status gonio_i_trial_all_rows(gonio_context *context, const gonio_i_trial 
 static void fill_equations(const gonio_i_trial *t, const size_t *rows, size_t count, double *x,
                            double *b)
 {
-    const size_t components = t->view.components;
+    const size_t components = t->view->components;
     for (size_t i = 0; i < count; i++) {
         memcpy(x + i * components, t->vectors + rows[i] * components, components * sizeof *x);
         for (size_t test = 0; test < t->tests; test++) {
@@ -115,7 +115,7 @@ static void fill_equations(const gonio_i_trial *t, const size_t *rows, size_t co
 gonio_status gonio_i_trial_rows(gonio_context *context, const gonio_i_trial *trial,
                                 const size_t *rows, size_t count, gonio_error *errors)
 {
-    const size_t components = trial->view.components;
+    const size_t components = trial->view->components;
     double *x = gonio_i_allocate(context, count * components, sizeof *x);
     double *b = gonio_i_allocate(context, trial->tests * count, sizeof *b);
     double *c = gonio_i_allocate(context, trial->tests * components, sizeof *c);
@@ -157,8 +157,8 @@ gonio_status gonio_i_trial_plan(gonio_context *context, const gonio_i_trial *tri
     gonio_status status = rows == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
     if (status == GONIO_OK) {
         status =
-            gonio_plan_select(context, trial->vectors, trial->view.rows, trial->view.components,
-                              trial->view.components, &options, rows, &report);
+            gonio_plan_select(context, trial->vectors, trial->view->rows, trial->view->components,
+                              trial->view->components, &options, rows, &report);
     }
     if (status == GONIO_OK) {
         *condition = report.condition_number;

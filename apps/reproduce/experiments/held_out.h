@@ -10,7 +10,7 @@ typedef struct gonio_i_trial {
     const size_t *test; /* [tests] materials */
     size_t tests;
     gonio_basis *basis; /* bivariate, joint; all of its components are used */
-    gonio_basis_view view;
+    const gonio_basis_view *view;
     double *vectors; /* V, [rows][components] */
 } gonio_i_trial;
 

@@ -216,8 +216,7 @@ static gonio_status open_table(gonio_context *context, const gonio_i_file *file,
         release(table);
         return status;
     }
-    *source = (gonio_material_source){
-        .size = sizeof *source, .read_slab = read_slab, .release = release, .self = table};
+    *source = (gonio_material_source){.read_slab = read_slab, .release = release, .self = table};
     return GONIO_OK;
 }
 

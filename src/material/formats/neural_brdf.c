@@ -256,8 +256,7 @@ static gonio_status open_network(gonio_context *context, const gonio_i_file *fil
         free(net);
         return status == GONIO_OK ? GONIO_ERROR_MEMORY : status;
     }
-    *source = (gonio_material_source){
-        .size = sizeof *source, .read_slab = read_slab, .release = free, .self = net};
+    *source = (gonio_material_source){.read_slab = read_slab, .release = free, .self = net};
     return GONIO_OK;
 }
 

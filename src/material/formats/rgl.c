@@ -394,8 +394,7 @@ static gonio_status open_rgl(gonio_context *context, const gonio_i_file *file,
         }
         return status;
     }
-    *source = (gonio_material_source){.size = sizeof *source,
-                                      .evaluate = evaluate,
+    *source = (gonio_material_source){.evaluate = evaluate,
                                       .release = release,
                                       .self = in.r,
                                       .channels = in.r->channels,

@@ -131,7 +131,7 @@ static void find_density(const bending *b, float density[NORMALS])
 gonio_status gonio_i_rgl_places(gonio_context *context, const gonio_material *material,
                                 const float ndf[NORMALS], double limit, float density[NORMALS])
 {
-    bending b = {.channels = gonio_material_describe(material).channels,
+    bending b = {.channels = gonio_material_describe(material)->channels,
                  .scale = {1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0}};
     gonio_status status = GONIO_OK;
     for (size_t i = 0; i < INCIDENCES; i++) {

@@ -40,7 +40,7 @@ static const double STEEPEST = 88.0 * M_PI / 180.0;
 typedef struct writer {
     gonio_context *context;
     const gonio_material *material;
-    gonio_material_view view;
+    const gonio_material_view *view;
     size_t channels; /* 3, or the wavelengths */
     size_t side;
     double limit;                   /* polar angle that directions are held to */
@@ -68,7 +68,7 @@ static gonio_status find_luminance(const writer *w, double *luminance)
     enum { DIFFERENCES = 4 };
     gonio_pair pair[NORMALS][DIFFERENCES];
     double *value =
-        gonio_i_allocate(w->context, NORMALS * DIFFERENCES * w->view.channels, sizeof *value);
+        gonio_i_allocate(w->context, NORMALS * DIFFERENCES * w->view->channels, sizeof *value);
     if (value == NULL) {
         return GONIO_ERROR_MEMORY;
     }
@@ -87,10 +87,10 @@ static gonio_status find_luminance(const writer *w, double *luminance)
         double sum = 0.0;
         int count = 0;
         for (size_t j = 0; j < DIFFERENCES; j++) {
-            const double *at = value + (k * DIFFERENCES + j) * w->view.channels;
+            const double *at = value + (k * DIFFERENCES + j) * w->view->channels;
             double here = 0.0;
             for (size_t c = 0; c < w->channels; c++) {
-                const double v = at[w->view.channels == 1 ? 0 : c];
+                const double v = at[w->view->channels == 1 ? 0 : c];
                 here += w->weight[c] * (v > 0.0 ? v : 0.0);
             }
             if (!isnan(at[0])) {
@@ -242,7 +242,7 @@ static gonio_status read_incidence(const writer *w, const gonio_pair *pairs, dou
                                    bool *known)
 {
     const size_t nodes = w->side * w->side;
-    const size_t channels = w->view.channels;
+    const size_t channels = w->view->channels;
     const gonio_status status = gonio_material_evaluate(w->context, w->material, pairs, nodes, rho);
     bool any = false;
     for (size_t k = 0; k < nodes && status == GONIO_OK; k++) {
@@ -264,7 +264,7 @@ static gonio_status read_incidence(const writer *w, const gonio_pair *pairs, dou
 static void store_incidence(writer *w, size_t t, const place *places, const double *rho)
 {
     const size_t nodes = w->side * w->side;
-    const size_t channels = w->view.channels;
+    const size_t channels = w->view->channels;
     for (size_t k = 0; k < nodes; k++) {
         double luminance = 0.0;
         for (size_t c = 0; c < w->channels; c++) {
@@ -285,7 +285,7 @@ static gonio_status find_values(writer *w)
     const size_t nodes = w->side * w->side;
     gonio_pair *pairs = gonio_i_allocate(w->context, nodes, sizeof *pairs);
     place *places = gonio_i_allocate(w->context, nodes, sizeof *places);
-    double *rho = gonio_i_allocate(w->context, nodes * w->view.channels, sizeof *rho);
+    double *rho = gonio_i_allocate(w->context, nodes * w->view->channels, sizeof *rho);
     bool *known = gonio_i_allocate(w->context, nodes, sizeof *known);
     gonio_status status = pairs != NULL && places != NULL && rho != NULL && known != NULL
                               ? GONIO_OK
@@ -315,14 +315,14 @@ static gonio_status write_fields(const writer *w, const char *path)
     const uint32_t version[2] = {1, 0};
     const unsigned char jacobian = 1;
     float wavelength[GONIO_I_RGL_WAVELENGTHS];
-    const bool spectral = w->view.wavelength != NULL;
+    const bool spectral = w->view->wavelength != NULL;
     const uint64_t nodes = w->side * w->side;
     for (size_t k = 0; spectral && k < w->channels; k++) {
-        wavelength[k] = (float)w->view.wavelength[k];
+        wavelength[k] = (float)w->view->wavelength[k];
     }
     const gonio_i_tensor_field fields[] = {
         {"version", GONIO_I_TENSOR_U32, 1, {2}, version},
-        {"description", GONIO_I_TENSOR_U8, 1, {strlen(w->view.name)}, w->view.name},
+        {"description", GONIO_I_TENSOR_U8, 1, {strlen(w->view->name)}, w->view->name},
         {"phi_i", GONIO_I_TENSOR_F32, 1, {1}, &phi},
         {"theta_i", GONIO_I_TENSOR_F32, 1, {THETAS}, w->theta},
         {"sigma", GONIO_I_TENSOR_F32, 2, {2, NORMALS}, w->sigma},
@@ -351,20 +351,20 @@ static size_t choose_side(size_t channels)
 static gonio_status begin(writer *w)
 {
     w->view = gonio_material_describe(w->material);
-    const bool spectral = w->view.wavelength != NULL;
-    if (w->view.anisotropic) {
+    const bool spectral = w->view->wavelength != NULL;
+    if (w->view->anisotropic) {
         return gonio_i_fail(w->context, GONIO_ERROR_ARGUMENT,
                             "%s: an anisotropic material; gonio writes isotropic .bsdf files only",
-                            w->view.name);
+                            w->view->name);
     }
-    if (w->view.channels > GONIO_I_RGL_WAVELENGTHS) {
+    if (w->view->channels > GONIO_I_RGL_WAVELENGTHS) {
         return gonio_i_fail(w->context, GONIO_ERROR_ARGUMENT,
-                            "%s: %zu wavelengths; a .bsdf is written with at most %d", w->view.name,
-                            w->view.channels, GONIO_I_RGL_WAVELENGTHS);
+                            "%s: %zu wavelengths; a .bsdf is written with at most %d",
+                            w->view->name, w->view->channels, GONIO_I_RGL_WAVELENGTHS);
     }
-    w->channels = spectral ? w->view.channels : GONIO_CHANNELS;
+    w->channels = spectral ? w->view->channels : GONIO_CHANNELS;
     w->side = choose_side(w->channels);
-    w->limit = w->view.theta_limit > 0.0 ? fmin(w->view.theta_limit, STEEPEST) : STEEPEST;
+    w->limit = w->view->theta_limit > 0.0 ? fmin(w->view->theta_limit, STEEPEST) : STEEPEST;
     for (size_t t = 0; t < THETAS; t++) {
         const double left = 1.0 - (double)t / (THETAS - 1);
         w->theta[t] = (float)(M_PI / 2.0 * (1.0 - pow(left, GRAZING)));
