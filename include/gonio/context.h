@@ -1,7 +1,11 @@
 /* The context: where messages and progress go, and how many threads may be used.
  *
  * Every function that takes a context accepts NULL: silent, one thread per processor. A context may
- * be used from several threads; its callbacks are called one at a time. */
+ * be used from several threads; its callbacks are called one at a time.
+ *
+ * gonio runs its own threads. They do not nest: a function that is called from a parallel region of
+ * OpenMP works on the calling thread. OpenBLAS is set, process-wide, to run each call on one
+ * thread. */
 #ifndef GONIO_CONTEXT_H
 #define GONIO_CONTEXT_H
 
@@ -26,7 +30,8 @@ typedef struct gonio_context_options {
     /* Called with one line of UTF-8 text without a newline; NULL for silence. */
     void (*message)(void *user, gonio_message_level level, const char *text);
     /* Called now and then during long work with 0 <= fraction <= 1 (1 exactly once, at the end);
-     * a non-zero return cancels the work with GONIO_ERROR_CANCELLED. NULL for none. */
+     * a non-zero return cancels all work under this context with GONIO_ERROR_CANCELLED, until
+     * gonio_context_resume. NULL for none. */
     int (*progress)(void *user, const char *task, double fraction);
     void *user;  /* handed to both callbacks */
     int threads; /* most threads to use; 0 for one per processor */
@@ -35,15 +40,21 @@ typedef struct gonio_context_options {
 /* Silence, no progress, one thread per processor. */
 GONIO_API void gonio_context_options_default(gonio_context_options *options);
 
-/* Makes a context; options may be NULL for the defaults. gonio runs its own threads, so this also
- * asks OpenBLAS (process-wide) to run each call on one thread.
- * Errors: GONIO_ERROR_MEMORY; GONIO_ERROR_ARGUMENT for threads < 0. */
+/* Makes a context; options may be NULL for the defaults. *context is the caller's. Errors, which
+ * have no message: GONIO_ERROR_MEMORY; GONIO_ERROR_ARGUMENT for threads < 0 and for options that
+ * were not initialised. */
 GONIO_API gonio_status gonio_context_create(gonio_context **context,
                                             const gonio_context_options *options);
 
 GONIO_API void gonio_context_free(gonio_context **context);
 
-/* The number of threads that work under this context uses. */
+/* Lets a cancelled context work again. Until then all work under it stops, at once if it has begun
+ * and at its first report of progress if not; so call this when no cancelled work still runs. Does
+ * nothing to a context that was not cancelled, and to NULL. Thread-safe. */
+GONIO_API void gonio_context_resume(gonio_context *context);
+
+/* The number of threads that work under this context, or under NULL, uses; 1 in a parallel region
+ * of OpenMP. Thread-safe. */
 GONIO_API int gonio_context_threads(const gonio_context *context);
 
 #ifdef __cplusplus

@@ -80,7 +80,7 @@ gonio_status gonio_context_create(gonio_context **context, const gonio_context_o
     made->options = taken;
     made->task = "";
     pthread_mutex_init(&made->callbacks, NULL);
-    openblas_set_num_threads(1);
+    gonio_i_keep_blas_on_one_thread();
     *context = made;
     return GONIO_OK;
 }
@@ -95,8 +95,28 @@ void gonio_context_free(gonio_context **context)
     *context = NULL;
 }
 
+void gonio_context_resume(gonio_context *context)
+{
+    if (context != NULL) {
+        pthread_mutex_lock(&context->callbacks);
+        context->cancelled = false;
+        pthread_mutex_unlock(&context->callbacks);
+    }
+}
+
+void gonio_i_keep_blas_on_one_thread(void)
+{
+    if (openblas_get_num_threads() != 1) {
+        openblas_set_num_threads(1);
+    }
+}
+
 int gonio_context_threads(const gonio_context *context)
 {
+    gonio_i_keep_blas_on_one_thread();
+    if (omp_in_parallel()) {
+        return 1;
+    }
     const int processors = omp_get_num_procs();
     if (context == NULL || context->options.threads == 0) {
         return processors;

@@ -43,6 +43,10 @@ void gonio_i_piece_end(gonio_context *piece);
  * `task` must last as long as the context. */
 gonio_status gonio_i_progress(gonio_context *context, const char *task, double fraction);
 
+/* Has OpenBLAS run each call on one thread, process-wide, because gonio runs threads of its own.
+ * Called before threads are started and before every call of OpenBLAS. Thread-safe. */
+void gonio_i_keep_blas_on_one_thread(void);
+
 /* Zeroed memory for count x size bytes, the product checked, or NULL after a message; released with
  * free(). */
 void *gonio_i_allocate(gonio_context *context, size_t count, size_t size);

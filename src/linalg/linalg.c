@@ -10,9 +10,10 @@
 #include <cblas.h>
 #include <lapacke.h>
 
-/* LAPACK counts in 32-bit integers. */
+/* What every call of OpenBLAS begins with. LAPACK counts in 32-bit integers. */
 static gonio_status check_size(gonio_context *context, size_t rows, size_t columns)
 {
+    gonio_i_keep_blas_on_one_thread();
     if (rows > INT_MAX || columns > INT_MAX) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
                             "a matrix of %zu x %zu is more than LAPACK can index", rows, columns);
@@ -198,12 +199,14 @@ gonio_status gonio_i_inverse_gram(gonio_context *context, const double *v, size_
 
 void gonio_i_divide_lower(double *b, size_t columns, size_t n, const double *l)
 {
+    gonio_i_keep_blas_on_one_thread();
     cblas_dtrsm(CblasRowMajor, CblasRight, CblasLower, CblasNoTrans, CblasNonUnit, (int)columns,
                 (int)n, 1.0, l, (int)n, b, (int)n);
 }
 
 void gonio_i_divide_triangle(double *a, size_t rows, size_t n, const double *l)
 {
+    gonio_i_keep_blas_on_one_thread();
     cblas_dtrsm(CblasRowMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, (int)rows, (int)n,
                 1.0, l, (int)n, a, (int)n);
 }
@@ -228,6 +231,7 @@ gonio_status gonio_i_inverse_diagonal(gonio_context *context, const double *l, s
 
 void gonio_i_multiply_lower(double *a, size_t rows, size_t n, const double *l)
 {
+    gonio_i_keep_blas_on_one_thread();
     cblas_dtrmm(CblasRowMajor, CblasRight, CblasLower, CblasNoTrans, CblasNonUnit, (int)rows,
                 (int)n, 1.0, l, (int)n, a, (int)n);
 }

@@ -9,9 +9,12 @@
 #include <string.h>
 #include <unistd.h>
 
+#include <cblas.h>
+
 #include "core/core.h"
 #include "core/output.h"
 #include "core/random.h"
+#include "linalg/linalg.h"
 
 /* ---- context ---- */
 
@@ -71,6 +74,13 @@ static int stop_at_half(void *user, const char *task, double fraction)
     return fraction >= 0.5;
 }
 
+static int cancel_if_asked(void *user, const char *task, double fraction)
+{
+    (void)task;
+    (void)fraction;
+    return *(const int *)user;
+}
+
 static void test_a_team_can_be_cancelled(void **state)
 {
     (void)state;
@@ -82,6 +92,33 @@ static void test_a_team_can_be_cancelled(void **state)
     assert_int_equal(gonio_i_progress(team, "work", 0.7), GONIO_ERROR_CANCELLED);
     assert_int_equal(gonio_i_progress(context, "work", 0.3), GONIO_ERROR_CANCELLED);
     gonio_i_team_end(team, context);
+    gonio_context_free(&context);
+}
+
+/* What cancels a context does so until it is told to go on. */
+static void test_a_cancelled_context_can_work_again(void **state)
+{
+    (void)state;
+    int cancel = 1;
+    gonio_context *context = NULL;
+    const gonio_context_options options = {
+        .size = sizeof options, .progress = cancel_if_asked, .user = &cancel};
+    assert_int_equal(gonio_context_create(&context, &options), GONIO_OK);
+    gonio_material *material = NULL;
+    gonio_table *table = NULL;
+    assert_int_equal(gonio_material_open(context, "atlas:gold-polished", &material), GONIO_OK);
+    assert_int_equal(gonio_table_load(context, material, &table), GONIO_ERROR_CANCELLED);
+    cancel = 0;
+    assert_int_equal(gonio_table_load(context, material, &table), GONIO_ERROR_CANCELLED);
+    assert_null(table);
+    gonio_context_resume(context);
+    assert_int_equal(gonio_table_load(context, material, &table), GONIO_OK);
+    gonio_table_free(&table);
+    cancel = 1;
+    assert_int_equal(gonio_table_load(context, material, &table), GONIO_ERROR_CANCELLED);
+    assert_null(table);
+    gonio_context_resume(NULL);
+    gonio_material_free(&material);
     gonio_context_free(&context);
 }
 
@@ -151,6 +188,29 @@ static void test_threads(void **state)
     options.threads = -1;
     assert_int_equal(gonio_context_create(&context, &options), GONIO_ERROR_ARGUMENT);
     assert_int_equal(gonio_context_threads(NULL), omp_get_num_procs());
+}
+
+/* Neither the library's threads in those of its caller, nor OpenBLAS's in the library's, whether
+ * there is a context or not. */
+static void test_threads_do_not_nest(void **state)
+{
+    (void)state;
+    double gram[4] = {0.0};
+    const double a[4] = {1.0, 2.0, 3.0, 4.0};
+    double triangle[1] = {2.0};
+    int inside[2] = {0, 0};
+#pragma omp parallel num_threads(2)
+    inside[omp_get_thread_num()] = gonio_context_threads(NULL);
+    assert_true(inside[0] == 1 && inside[1] == 1);
+    openblas_set_num_threads(2);
+    assert_int_equal(gonio_context_threads(NULL), omp_get_num_procs());
+    assert_int_equal(openblas_get_num_threads(), 1);
+    openblas_set_num_threads(2);
+    assert_int_equal(gonio_i_add_gram_rows(NULL, a, 2, 2, gram), GONIO_OK);
+    assert_int_equal(openblas_get_num_threads(), 1);
+    openblas_set_num_threads(2);
+    gonio_i_divide_lower(triangle, 1, 1, a);
+    assert_int_equal(openblas_get_num_threads(), 1);
 }
 
 static void test_names(void **state)
@@ -364,8 +424,10 @@ int main(void)
         cmocka_unit_test(test_a_message_is_one_line),
         cmocka_unit_test(test_a_team_tells_its_first_error_only),
         cmocka_unit_test(test_a_team_can_be_cancelled),
+        cmocka_unit_test(test_a_cancelled_context_can_work_again),
         cmocka_unit_test(test_a_piece_is_part_of_a_whole),
         cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_threads_do_not_nest),
         cmocka_unit_test(test_the_version_as_a_number),
         cmocka_unit_test(test_names),
         cmocka_unit_test(test_an_output_appears_whole_or_not_at_all),
