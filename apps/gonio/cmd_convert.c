@@ -1,7 +1,8 @@
-/* gonio convert: any material to a MERL table or an RGL .bsdf. */
+/* gonio convert: any material to any format that materials are written in. */
 #include "command_line.h"
 #include "inputs.h"
 #include "json_output.h"
+#include "write_options.h"
 
 /* Silent but for --json. */
 static int report(const tool *t, const gonio_material *material, const char *output)
@@ -14,20 +15,21 @@ static int report(const tool *t, const gonio_material *material, const char *out
 
 static int run(tool *t, void *given)
 {
-    (void)given;
+    const write_options *o = given;
+    gonio_write_options how;
     size_t count = 0;
     const char **arguments = tool_arguments(t, &count);
     if (count != 2) {
         tool_refuse(t, "IN and OUT are needed");
         return EXIT_USAGE;
     }
-    if (!tool_check_output(t, arguments[1], arguments, 1)) {
+    if (!tool_check_output(t, arguments[1], arguments, 1) || !write_options_check(t, o, &how)) {
         return EXIT_USAGE;
     }
     gonio_material *material = NULL;
     gonio_status status = tool_open_material(t, arguments[0], &material);
     if (status == GONIO_OK) {
-        status = gonio_material_write(t->context, material, arguments[1], NULL);
+        status = gonio_material_write(t->context, material, arguments[1], &how);
     }
     const int code =
         status == GONIO_OK ? report(t, material, arguments[1]) : tool_exit_code(status);
@@ -37,15 +39,19 @@ static int run(tool *t, void *given)
 
 int cmd_convert(int argc, const char **argv)
 {
-    const struct poptOption table[] = {TOOL_OPTIONS};
+    write_options o = {0};
+    const struct poptOption table[] = {WRITE_OPTIONS(&o), TOOL_OPTIONS};
     const tool_command_line line = {
         .table = table,
         .usage = "[OPTION...] IN OUT",
         .text =
             "IN is a MERL .binary table, a neural BRDF .h5, an RGL .bsdf, a KAIST .pbsdf, a UTIA "
-            ".bin, a BSDF-XML matrix or atlas:NAME (a built-in material; 'gonio info atlas:' lists them).\n"
-            "OUT becomes an RGL .bsdf, for Mitsuba 3 and pbrt-v4, if its name ends in .bsdf, and a "
-            "MERL .binary table otherwise.",
-        .work = run};
+            ".bin, a BSDF-XML matrix, a gonio BRDF table .h5 or atlas:NAME (a built-in material; "
+            "'gonio info atlas:' lists them).\n"
+            "OUT becomes an RGL .bsdf, for Mitsuba 3 and pbrt-v4, if its name ends in .bsdf; a "
+            "table of all channels in HDF5 (.h5); BSDF-XML (.xml), for Radiance; readings on a "
+            "grid (.csv); a MERL .binary table otherwise.",
+        .work = run,
+        .options = &o};
     return tool_run(argc, argv, &line);
 }

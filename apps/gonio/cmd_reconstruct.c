@@ -5,6 +5,7 @@
 #include "inputs.h"
 #include "json_output.h"
 #include "posterior_options.h"
+#include "write_options.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,6 +25,8 @@ typedef struct options {
     int other_basis;
     int average_repeats;
     int negative_to_zero;
+    write_options write;
+    gonio_write_options how; /* from write */
 } options;
 
 /* How much of the light the result reflects where it reflects most. */
@@ -191,7 +194,24 @@ static gonio_status write_more(tool *t, const options *o, const gonio_basis *bas
     return status;
 }
 
-/* One readings file, where more than the table is wanted. */
+/* Whether the output is a MERL table. */
+static bool is_merl(const options *o, const char *output)
+{
+    const int writer = gonio_material_writer_find(output, o->how.format);
+    return strcmp(gonio_material_writer_name(writer), "merl") == 0;
+}
+
+/* What was made, in the channels that the output holds: MERL tables have R, G, B. */
+static gonio_status open_made(tool *t, const options *o, const gonio_basis *basis,
+                              const gonio_reconstruction *made, const char *output,
+                              gonio_material **material)
+{
+    return (is_merl(o, output) ? gonio_reconstruction_material
+                               : gonio_reconstruction_spectral_material)(
+        t->context, basis, made, "reconstruction", material);
+}
+
+/* One readings file, where something else than the table alone is wanted. */
 static gonio_status reconstruct_one(tool *t, const options *o, const gonio_basis *basis,
                                     const gonio_readings *readings, const char *output,
                                     json_t *results)
@@ -201,14 +221,13 @@ static gonio_status reconstruct_one(tool *t, const options *o, const gonio_basis
     gonio_material *material = NULL;
     gonio_status status = gonio_reconstruct(t->context, basis, readings, &how, &made);
     if (status == GONIO_OK && o->predict_at == NULL) {
-        status =
-            gonio_reconstruction_material(t->context, basis, made, "reconstruction", &material);
+        status = open_made(t, o, basis, made, output, &material);
     }
     if (status == GONIO_OK) {
         status = write_more(t, o, basis, made);
     }
     if (status == GONIO_OK && material != NULL) {
-        status = gonio_material_write_merl(t->context, material, output);
+        status = gonio_material_write(t->context, material, output, &o->how);
         if (status != GONIO_OK && o->deviation != NULL) {
             unlink(o->deviation); /* both outputs or none */
         }
@@ -225,8 +244,16 @@ static gonio_status reconstruct(tool *t, const options *o, const gonio_basis *ba
                                 gonio_readings *const *readings, char *const *outputs, size_t count,
                                 json_t *results)
 {
-    if (o->predict_at != NULL || o->deviation != NULL) {
-        return reconstruct_one(t, o, basis, readings[0], outputs[0], results);
+    bool merl = o->predict_at == NULL && o->deviation == NULL;
+    for (size_t k = 0; k < count; k++) {
+        merl = merl && is_merl(o, outputs[k]);
+    }
+    if (!merl) {
+        gonio_status status = GONIO_OK;
+        for (size_t k = 0; k < count && status == GONIO_OK; k++) {
+            status = reconstruct_one(t, o, basis, readings[k], outputs[k], results);
+        }
+        return status;
     }
     const gonio_reconstruct_options how = settings(o);
     gonio_reconstruction **made = calloc(count, sizeof(gonio_reconstruction *));
@@ -246,15 +273,17 @@ static gonio_status reconstruct(tool *t, const options *o, const gonio_basis *ba
     return status;
 }
 
-/* FOLDER/NAME.binary for readings FILE of the same name. */
-static char *path_in_folder(const char *folder, const char *file)
+/* FOLDER/NAME.binary, or with the extension of another format, for readings FILE of that name. */
+static char *path_in_folder(const options *o, const char *folder, const char *file)
 {
+    const char *extension =
+        gonio_material_writer_extension(gonio_material_writer_find("", o->how.format));
     const char *slash = strrchr(file, '/');
     const char *name = slash != NULL ? slash + 1 : file;
     const char *dot = strrchr(name, '.');
     const int length = dot != NULL && dot != name ? (int)(dot - name) : (int)strlen(name);
     char *path = NULL;
-    return asprintf(&path, "%s/%.*s.binary", folder, length, name) < 0 ? NULL : path;
+    return asprintf(&path, "%s/%.*s%s", folder, length, name, extension) < 0 ? NULL : path;
 }
 
 /* Reads readings before the basis, which takes longer: so that their errors come at once. */
@@ -314,7 +343,7 @@ static int choose_outputs(const options *o, const char *const *paths, size_t cou
 {
     const bool folder = is_folder(o->output);
     for (size_t k = 0; k < count; k++) {
-        outputs[k] = folder ? path_in_folder(o->output, paths[k]) : strdup(o->output);
+        outputs[k] = folder ? path_in_folder(o, o->output, paths[k]) : strdup(o->output);
         if (outputs[k] == NULL) {
             return EXIT_DATA;
         }
@@ -374,10 +403,10 @@ static int print_results(const tool *t, json_t *results)
 
 static int run(tool *t, void *given)
 {
-    const options *o = given;
+    options *o = given;
     size_t count = 0;
     const char **arguments = tool_arguments(t, &count);
-    if (!check(t, o, arguments, count)) {
+    if (!check(t, o, arguments, count) || !write_options_check(t, &o->write, &o->how)) {
         return EXIT_USAGE;
     }
     const char *basis = count > 1 ? arguments[0] : NULL;
@@ -410,7 +439,9 @@ int cmd_reconstruct(int argc, const char **argv)
     options o = {.eta = usual.eta, .posterior = posterior_options_default()};
     const struct poptOption table[] = {
         {"output", 'o', POPT_ARG_STRING, &o.output, 0,
-         "The MERL .binary table to write, or a folder for NAME.binary", "OUT"},
+         "The MERL .binary table or file of another format to write, or a folder for NAME.binary",
+         "OUT"},
+        WRITE_OPTIONS(&o.write),
         {"components", 'K', POPT_ARG_INT, &o.components, 0,
          "Use the first K components (default: as the plan says, or all)", "K"},
         {"method", '\0', POPT_ARG_STRING, &o.method, 0,

@@ -134,14 +134,34 @@ GONIO_API gonio_status gonio_material_write_merl(gonio_context *context,
 GONIO_API gonio_status gonio_material_write_rgl(gonio_context *context,
                                                 const gonio_material *material, const char *path);
 
-/* Writes a material in a format by name; NULL for that of the path's extension, a MERL table where
- * it is none that gonio knows. Errors: _ARGUMENT (no such format), those of the format. */
-GONIO_API gonio_status gonio_material_write(gonio_context *context, const gonio_material *material,
-                                            const char *path, const char *format);
+/* How a material is written. */
+typedef struct gonio_write_options {
+    size_t size;        /* of this struct, which gonio_write_options_default sets */
+    const char *format;  /* by name; NULL: that of the path's extension, a MERL table where it is
+                          * none  that gonio knows */
+    double theta_i_step; /* of directions on a grid (csv; zemax but for theta_o), radians; 0: the */
+    double theta_o_step; /* format's usual */
+    double phi_step;
+} gonio_write_options;
 
-/* Names and one-line descriptions of the formats; NULL past the last. */
+/* All 0 but for the size. */
+GONIO_API void gonio_write_options_default(gonio_write_options *options);
+
+/* Writes a material in a format; options may be NULL. docs/formats.md says what each keeps. The
+ * file appears whole or not at all. Errors: _ARGUMENT (no such format; what the format cannot
+ * hold), _IO, _MEMORY, _CANCELLED, those of the source. */
+GONIO_API gonio_status gonio_material_write(gonio_context *context, const gonio_material *material,
+                                            const char *path, const gonio_write_options *options);
+
+/* Names of the formats, extensions of their files (with a dot) and one-line descriptions; NULL past
+ * the last. */
 GONIO_API const char *gonio_material_writer_name(int index);
+GONIO_API const char *gonio_material_writer_extension(int index);
 GONIO_API const char *gonio_material_writer_summary(int index);
+
+/* The index of the format that a file is written in, as gonio_write_options.format has it; -1 for a
+ * name that there is not. */
+GONIO_API int gonio_material_writer_find(const char *path, const char *format);
 
 /* A material read whole (35 MB), for look-ups in any order. Errors of loading: _CANCELLED, _MEMORY,
  * and those of the source. */

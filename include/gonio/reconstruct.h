@@ -160,6 +160,13 @@ GONIO_API gonio_status gonio_reconstruction_material(gonio_context *context,
                                                      const gonio_reconstruction *reconstruction,
                                                      const char *name, gonio_material **material);
 
+/* The same in all channels of the reconstruction where they are wavelengths or a single one
+ * (posterior), evaluated at any directions as gonio_reconstruction_predict; a table of R, G, B of
+ * another one. The basis and the reconstruction must outlive the material. Errors: _MEMORY. */
+GONIO_API gonio_status gonio_reconstruction_spectral_material(
+    gonio_context *context, const gonio_basis *basis, const gonio_reconstruction *reconstruction,
+    const char *name, gonio_material **material);
+
 /* Solves for `count` materials and writes readings[k]'s reconstruction to paths[k] as a MERL table
  * (material.h), several at a time. Every table appears whole or not at all, and after those before
  * it: if one fails, those before it are in place, it and those after it are not. Of several

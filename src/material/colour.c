@@ -177,3 +177,30 @@ bool gonio_i_colours_known(const double *wavelength, size_t count)
     }
     return most - least >= APART;
 }
+
+void gonio_i_xyz_to_rgb(const double xyz[3], double rgb[GONIO_CHANNELS])
+{
+    static const double flat[3] = {1.0, 1.0, 1.0};
+    double white[GONIO_CHANNELS];
+    to_linear(xyz, rgb);
+    to_linear(flat, white);
+    for (size_t c = 0; c < GONIO_CHANNELS; c++) {
+        rgb[c] /= white[c];
+    }
+}
+
+void gonio_i_rgb_to_xyz(const double rgb[GONIO_CHANNELS], double xyz[3])
+{
+    static const double flat[3] = {1.0, 1.0, 1.0};
+    static const double inverse[3][3] = {{0.4124564, 0.3575761, 0.1804375},
+                                         {0.2126729, 0.7151522, 0.0721750},
+                                         {0.0193339, 0.1191920, 0.9503041}};
+    double white[GONIO_CHANNELS];
+    to_linear(flat, white);
+    for (size_t k = 0; k < 3; k++) {
+        xyz[k] = 0.0;
+        for (size_t c = 0; c < GONIO_CHANNELS; c++) {
+            xyz[k] += inverse[k][c] * white[c] * rgb[c];
+        }
+    }
+}

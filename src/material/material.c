@@ -20,8 +20,8 @@ struct gonio_fingerprint {
 };
 
 static const gonio_i_format_reader *const readers[] = {
-    &gonio_i_merl_reader,  &gonio_i_neural_reader, &gonio_i_rgl_reader,
-    &gonio_i_kaist_reader, &gonio_i_utia_reader,   &gonio_i_bsdf_xml_reader,
+    &gonio_i_merl_reader,  &gonio_i_table_reader, &gonio_i_neural_reader,   &gonio_i_rgl_reader,
+    &gonio_i_kaist_reader, &gonio_i_utia_reader,  &gonio_i_bsdf_xml_reader,
 };
 
 enum { READERS = sizeof readers / sizeof *readers };

@@ -5,20 +5,52 @@
 #include <strings.h>
 
 #include "../core/core.h"
+#include "../core/options.h"
 #include "formats/writers.h"
 
+static gonio_status write_merl(gonio_context *context, const gonio_material *material,
+                               const char *path, const gonio_write_options *options)
+{
+    (void)options;
+    return gonio_material_write_merl(context, material, path);
+}
+
+static gonio_status write_rgl(gonio_context *context, const gonio_material *material,
+                              const char *path, const gonio_write_options *options)
+{
+    (void)options;
+    return gonio_material_write_rgl(context, material, path);
+}
+
+/* The first of an extension is the one that it stands for. */
 static const gonio_i_format_writer writers[] = {
-    {"merl", ".binary", "MERL table 90 x 90 x 180 of R, G, B; isotropic, reciprocal",
-     gonio_material_write_merl},
+    {"merl", ".binary", "MERL table 90 x 90 x 180 of R, G, B; isotropic, reciprocal", write_merl},
     {"rgl", ".bsdf", "RGL BSDF of RGB or spectra, for Mitsuba 3 and pbrt-v4 (measured); isotropic",
-     gonio_material_write_rgl},
+     write_rgl},
+    {"table", ".h5", "table 90 x 90 x 180 of any channels, HDF5; isotropic, reciprocal",
+     gonio_i_table_write},
+    {"klems", ".xml", "BSDF-XML, 145 x 145 patches of the full Klems basis, for Radiance, WINDOW",
+     gonio_i_klems_write},
+    {"zemax", ".bsdf", "Zemax BSDF text about the mirror direction; isotropic",
+     gonio_i_zemax_write},
+    {"csv", ".csv", "readings in CSV at directions on a grid (--steps)", gonio_i_grid_write},
 };
 
 enum { WRITERS = sizeof writers / sizeof *writers };
 
+void gonio_write_options_default(gonio_write_options *options)
+{
+    *options = (gonio_write_options){.size = sizeof *options};
+}
+
 const char *gonio_material_writer_name(int index)
 {
     return index >= 0 && index < WRITERS ? writers[index].name : NULL;
+}
+
+const char *gonio_material_writer_extension(int index)
+{
+    return index >= 0 && index < WRITERS ? writers[index].extension : NULL;
 }
 
 const char *gonio_material_writer_summary(int index)
@@ -26,42 +58,51 @@ const char *gonio_material_writer_summary(int index)
     return index >= 0 && index < WRITERS ? writers[index].summary : NULL;
 }
 
-static const gonio_i_format_writer *find_by_name(const char *name)
+static int find_by_name(const char *name)
 {
     for (int k = 0; k < WRITERS; k++) {
         if (strcmp(writers[k].name, name) == 0) {
-            return &writers[k];
+            return k;
         }
     }
-    return NULL;
+    return -1;
 }
 
-static const gonio_i_format_writer *find_by_extension(const char *path)
+static int find_by_extension(const char *path)
 {
     const char *slash = strrchr(path, '/');
     const char *dot = strrchr(slash != NULL ? slash : path, '.');
     for (int k = 0; dot != NULL && k < WRITERS; k++) {
         if (strcasecmp(writers[k].extension, dot) == 0) {
-            return &writers[k];
+            return k;
         }
     }
-    return &writers[0];
+    return 0;
+}
+
+int gonio_material_writer_find(const char *path, const char *format)
+{
+    return format != NULL ? find_by_name(format) : find_by_extension(path);
 }
 
 gonio_status gonio_material_write(gonio_context *context, const gonio_material *material,
-                                  const char *path, const char *format)
+                                  const char *path, const gonio_write_options *options)
 {
-    const gonio_i_format_writer *writer =
-        format != NULL ? find_by_name(format) : find_by_extension(path);
-    if (writer == NULL) {
+    gonio_write_options how;
+    const gonio_status status = GONIO_I_TAKE(context, gonio_write_options, options, &how);
+    if (status != GONIO_OK) {
+        return status;
+    }
+    const int writer = gonio_material_writer_find(path, how.format);
+    if (writer < 0) {
         char known[256] = "";
         for (int k = 0; k < WRITERS; k++) {
             strncat(known, k > 0 ? ", " : "", sizeof known - strlen(known) - 1);
             strncat(known, writers[k].name, sizeof known - strlen(known) - 1);
         }
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                            "no format is called '%s'; materials are written as one of: %s", format,
-                            known);
+                            "no format is called '%s'; materials are written as one of: %s",
+                            how.format, known);
     }
-    return writer->write(context, material, path);
+    return writers[writer].write(context, material, path, &how);
 }

@@ -19,6 +19,7 @@
 #include "../../core/core.h"
 #include "../../core/number.h"
 #include "../../core/text_file.h"
+#include "../colour.h"
 #include "format.h"
 #include "klems.h"
 
@@ -550,21 +551,6 @@ static gonio_status check_basis(const parse *p, const gonio_i_klems *basis)
     return GONIO_OK;
 }
 
-/* XYZ of a reflectance to linear sRGB in which a flat one is white: rows of the matrix add up to 1.
- */
-static void to_colours(double *xyz)
-{
-    static const double matrix[3][3] = {{3.2404542, -1.5371385, -0.4985314},
-                                        {-0.9692660, 1.8760108, 0.0415560},
-                                        {0.0556434, -0.2040259, 1.0572252}};
-    double rgb[3];
-    for (int r = 0; r < 3; r++) {
-        const double *m = matrix[r];
-        rgb[r] = (m[0] * xyz[0] + m[1] * xyz[1] + m[2] * xyz[2]) / (m[0] + m[1] + m[2]);
-    }
-    memcpy(xyz, rgb, sizeof rgb);
-}
-
 static void fill_values(const choice *c, bool columns, klems_brdf *k)
 {
     for (size_t in = 0; in < k->incidents; in++) {
@@ -575,7 +561,8 @@ static void fill_values(const choice *c, bool columns, klems_brdf *k)
                 to[n] = c->channel[n]->value[at];
             }
             if (c->colours) {
-                to_colours(to);
+                const double xyz[3] = {to[0], to[1], to[2]};
+                gonio_i_xyz_to_rgb(xyz, to);
             }
         }
     }

@@ -17,6 +17,7 @@ typedef struct gonio_i_format_reader {
 } gonio_i_format_reader;
 
 extern const gonio_i_format_reader gonio_i_merl_reader;
+extern const gonio_i_format_reader gonio_i_table_reader;
 extern const gonio_i_format_reader gonio_i_neural_reader;
 extern const gonio_i_format_reader gonio_i_rgl_reader;
 extern const gonio_i_format_reader gonio_i_kaist_reader;

@@ -80,7 +80,7 @@ static double error_at(const bending *b, const double *rho, const double *factor
     return sum;
 }
 
-static gonio_status add_line(gonio_context *context, const gonio_material *material,
+static gonio_status add_line(gonio_context *context, const gonio_i_sampler *sampler,
                              const float ndf[NORMALS], double theta_i, double v, double limit,
                              bending *b)
 {
@@ -94,7 +94,7 @@ static gonio_status add_line(gonio_context *context, const gonio_material *mater
         factor[k] = to.outgoing.theta <= limit ? to.cosine_o / gonio_i_rgl_look_up(ndf, u) : NAN;
     }
     const gonio_status status = rho != NULL
-                                    ? gonio_material_evaluate(context, material, pair, FINE, rho)
+                                    ? gonio_i_sampler_values(context, sampler, pair, FINE, rho)
                                     : GONIO_ERROR_MEMORY;
     for (size_t k = 1; k + 1 < FINE && status == GONIO_OK; k++) {
         if (isfinite(factor[k - 1] + factor[k] + factor[k + 1])) {
@@ -128,16 +128,16 @@ static void find_density(const bending *b, float density[NORMALS])
     }
 }
 
-gonio_status gonio_i_rgl_places(gonio_context *context, const gonio_material *material,
+gonio_status gonio_i_rgl_places(gonio_context *context, const gonio_i_sampler *sampler,
                                 const float ndf[NORMALS], double limit, float density[NORMALS])
 {
-    bending b = {.channels = gonio_material_describe(material)->channels,
+    bending b = {.channels = sampler->view->channels,
                  .scale = {1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0}};
     gonio_status status = GONIO_OK;
     for (size_t i = 0; i < INCIDENCES; i++) {
         for (size_t a = 0; a < AZIMUTHS && status == GONIO_OK; a++) {
-            status = add_line(context, material, ndf, incidence[i] * M_PI / 180.0, azimuth[a],
-                              limit, &b);
+            status =
+                add_line(context, sampler, ndf, incidence[i] * M_PI / 180.0, azimuth[a], limit, &b);
         }
     }
     if (status == GONIO_OK) {

@@ -4,6 +4,8 @@
 
 #include <gonio/material.h>
 
+#include "../sampler.h"
+
 /* Nodes of ndf, sigma and vndf along u. */
 enum { GONIO_I_RGL_NORMALS = 128 };
 
@@ -25,7 +27,7 @@ double gonio_i_rgl_look_up(const float row[GONIO_I_RGL_NORMALS], double u);
 
 /* The density of places over u at its nodes, given ndf at the same. Directions beyond `limit`
  * (radians) do not count. Errors: _MEMORY, those of the source. */
-gonio_status gonio_i_rgl_places(gonio_context *context, const gonio_material *material,
+gonio_status gonio_i_rgl_places(gonio_context *context, const gonio_i_sampler *sampler,
                                 const float ndf[GONIO_I_RGL_NORMALS], double limit,
                                 float density[GONIO_I_RGL_NORMALS]);
 

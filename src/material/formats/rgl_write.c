@@ -17,6 +17,7 @@
 #include <string.h>
 
 #include "../../core/core.h"
+#include "../sampler.h"
 #include "../tensor_write.h"
 #include "../warp.h"
 #include "rgl.h"
@@ -39,20 +40,21 @@ static const double STEEPEST = 88.0 * M_PI / 180.0;
 
 typedef struct writer {
     gonio_context *context;
-    const gonio_material *material;
+    gonio_i_sampler sampler;
     const gonio_material_view *view;
     size_t channels; /* 3, or the wavelengths */
     size_t side;
-    double limit;                   /* polar angle that directions are held to */
-    float theta[THETAS];            /* of incidence */
-    float ndf[2][NORMALS];          /* the rows are alike */
-    float sigma[2][NORMALS];        /* the same */
-    float vndf[THETAS][2][NORMALS]; /* all rows are alike */
-    gonio_i_warp warp;              /* of a slice */
-    float *value;                   /* [THETAS][channels][side][side] */
-    float *luminance;               /* [THETAS][side][side] */
-    unsigned char *valid;           /* [bytes_of_bits(THETAS * side * side)] */
-    double *weight;                 /* [channels]: of the luminance */
+    double limit;                          /* polar angle that directions are held to */
+    float theta[THETAS];                   /* of incidence */
+    float ndf[2][NORMALS];                 /* the rows are alike */
+    float sigma[2][NORMALS];               /* the same */
+    float vndf[THETAS][2][NORMALS];        /* all rows are alike */
+    gonio_i_warp warp;                     /* of a slice */
+    float *value;                          /* [THETAS][channels][side][side] */
+    float *luminance;                      /* [THETAS][side][side] */
+    unsigned char *valid;                  /* [bytes_of_bits(THETAS * side * side)] */
+    double *weight;                        /* [channels]: of the luminance */
+    size_t order[GONIO_I_RGL_WAVELENGTHS]; /* [channels]: which of the material */
 } writer;
 
 static size_t bytes_of_bits(size_t bits)
@@ -80,8 +82,8 @@ static gonio_status find_luminance(const writer *w, double *luminance)
                 (gonio_half_difference){theta_h, theta_d, M_PI / 2.0});
         }
     }
-    const gonio_status status = gonio_material_evaluate(w->context, w->material, pair[0],
-                                                        (size_t)NORMALS * DIFFERENCES, value);
+    const gonio_status status = gonio_i_sampler_values(w->context, &w->sampler, pair[0],
+                                                       (size_t)NORMALS * DIFFERENCES, value);
     double before = 1.0;
     for (size_t k = 0; k < NORMALS && status == GONIO_OK; k++) {
         double sum = 0.0;
@@ -166,7 +168,7 @@ static gonio_status find_vndf(writer *w)
 {
     float *row = w->vndf[0][0];
     const gonio_status status =
-        gonio_i_rgl_places(w->context, w->material, w->ndf[0], w->limit, row);
+        gonio_i_rgl_places(w->context, &w->sampler, w->ndf[0], w->limit, row);
     for (size_t k = 1; k < (size_t)THETAS * 2; k++) {
         memcpy(row + k * NORMALS, row, NORMALS * sizeof *row);
     }
@@ -243,7 +245,7 @@ static gonio_status read_incidence(const writer *w, const gonio_pair *pairs, dou
 {
     const size_t nodes = w->side * w->side;
     const size_t channels = w->view->channels;
-    const gonio_status status = gonio_material_evaluate(w->context, w->material, pairs, nodes, rho);
+    const gonio_status status = gonio_i_sampler_values(w->context, &w->sampler, pairs, nodes, rho);
     bool any = false;
     for (size_t k = 0; k < nodes && status == GONIO_OK; k++) {
         known[k] = false;
@@ -268,7 +270,7 @@ static void store_incidence(writer *w, size_t t, const place *places, const doub
     for (size_t k = 0; k < nodes; k++) {
         double luminance = 0.0;
         for (size_t c = 0; c < w->channels; c++) {
-            const double value = places[k].factor * rho[k * channels + (channels == 1 ? 0 : c)];
+            const double value = places[k].factor * rho[k * channels + w->order[c]];
             w->value[(t * w->channels + c) * nodes + k] = (float)value;
             luminance += w->weight[c] * value;
         }
@@ -318,7 +320,7 @@ static gonio_status write_fields(const writer *w, const char *path)
     const bool spectral = w->view->wavelength != NULL;
     const uint64_t nodes = w->side * w->side;
     for (size_t k = 0; spectral && k < w->channels; k++) {
-        wavelength[k] = (float)w->view->wavelength[k];
+        wavelength[k] = (float)w->view->wavelength[w->order[k]];
     }
     const gonio_i_tensor_field fields[] = {
         {"version", GONIO_I_TENSOR_U32, 1, {2}, version},
@@ -348,15 +350,24 @@ static size_t choose_side(size_t channels)
     return (size_t)fmin(fmax(side, COARSE), SIDE);
 }
 
-static gonio_status begin(writer *w)
+/* Which of the material's channels each of the file's is: wavelengths ascend in the file. */
+static void find_order(writer *w)
 {
-    w->view = gonio_material_describe(w->material);
-    const bool spectral = w->view->wavelength != NULL;
-    if (w->view->anisotropic) {
-        return gonio_i_fail(w->context, GONIO_ERROR_ARGUMENT,
-                            "%s: an anisotropic material; gonio writes isotropic .bsdf files only",
-                            w->view->name);
+    const double *wavelength = w->view->wavelength;
+    for (size_t c = 0; c < w->channels; c++) {
+        size_t before = 0;
+        for (size_t k = 0; wavelength != NULL && k < w->channels; k++) {
+            const double apart = wavelength[k] - wavelength[c];
+            before += apart < 0.0 || (apart == 0.0 && k < c) ? 1 : 0;
+        }
+        w->order[wavelength != NULL ? before : c] = w->view->channels == 1 ? 0 : c;
     }
+}
+
+static gonio_status begin(writer *w, const gonio_material *material)
+{
+    w->view = gonio_material_describe(material);
+    const bool spectral = w->view->wavelength != NULL;
     if (w->view->channels > GONIO_I_RGL_WAVELENGTHS) {
         return gonio_i_fail(w->context, GONIO_ERROR_ARGUMENT,
                             "%s: %zu wavelengths; a .bsdf is written with at most %d",
@@ -381,11 +392,13 @@ static gonio_status begin(writer *w)
     for (size_t c = 0; c < w->channels; c++) {
         w->weight[c] = spectral ? 1.0 / (double)w->channels : rgb[c];
     }
-    return GONIO_OK;
+    find_order(w);
+    return gonio_i_sampler_begin(w->context, material, true, &w->sampler);
 }
 
 static void end(writer *w)
 {
+    gonio_i_sampler_end(&w->sampler);
     gonio_i_warp_free(&w->warp);
     free(w->value);
     free(w->luminance);
@@ -404,8 +417,8 @@ gonio_status gonio_material_write_rgl(gonio_context *context, const gonio_materi
     if (w == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    *w = (writer){.context = context, .material = material};
-    gonio_status status = begin(w);
+    *w = (writer){.context = context};
+    gonio_status status = begin(w, material);
     if (status == GONIO_OK) {
         status = find_ndf(w);
     }

@@ -1,0 +1,39 @@
+/* How a material is written: see write_options.h. */
+#include "write_options.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Three positive numbers with commas between them. */
+static bool read_steps(const char *text, double step[3])
+{
+    for (int k = 0; k < 3; k++) {
+        char *end = NULL;
+        step[k] = strtod(text, &end);
+        if (end == text || !(step[k] >= 0.1 && step[k] <= 90.0) || *end != (k < 2 ? ',' : '\0')) {
+            return false;
+        }
+        text = end + 1;
+    }
+    return true;
+}
+
+bool write_options_check(const tool *t, const write_options *options, gonio_write_options *how)
+{
+    double step[3] = {0.0};
+    gonio_write_options_default(how);
+    how->format = options->format;
+    if (options->format != NULL && gonio_material_writer_find("", options->format) < 0) {
+        return tool_refuse(t, "--format %s: gonio writes merl, rgl, table, klems, zemax and csv",
+                           options->format);
+    }
+    if (options->steps != NULL && !read_steps(options->steps, step)) {
+        return tool_refuse(t, "--steps %s: three numbers of degrees are needed, 0.1 to 90: 10,5,10",
+                           options->steps);
+    }
+    how->theta_i_step = step[0] * M_PI / 180.0;
+    how->theta_o_step = step[1] * M_PI / 180.0;
+    how->phi_step = step[2] * M_PI / 180.0;
+    return true;
+}

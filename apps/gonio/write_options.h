@@ -1,0 +1,31 @@
+/* How a material is written: options that commands share. */
+#ifndef GONIO_WRITE_OPTIONS_H
+#define GONIO_WRITE_OPTIONS_H
+
+#include "command_line.h"
+
+typedef struct write_options {
+    const char *format;
+    const char *steps;
+} write_options;
+
+#define WRITE_OPTIONS(options)                                                                     \
+    {"format",                                                                                     \
+     '\0',                                                                                         \
+     POPT_ARG_STRING,                                                                              \
+     &(options)->format,                                                                           \
+     0,                                                                                            \
+     "merl, rgl, table, klems, zemax or csv (default: as OUT's extension says: .bsdf is rgl, .h5 " \
+     "table, .xml klems, .csv csv, all else merl)",                                                \
+     "FORMAT"},                                                                                    \
+    {                                                                                              \
+        "steps", '\0', POPT_ARG_STRING, &(options)->steps, 0,                                      \
+            "Steps of theta_i, theta_o and phi in degrees, for csv and zemax (default: 10,5,10 "   \
+            "and 5,5,7.5)",                                                                        \
+            "T,T,P"                                                                                \
+    }
+
+/* Whether they can be, after a complaint; fills in what the library wants. */
+bool write_options_check(const tool *t, const write_options *options, gonio_write_options *how);
+
+#endif
