@@ -58,19 +58,14 @@ static gonio_status read_material(const tool *t, const options *o, const char *p
                                                  .seed = (uint64_t)o->seed,
                                                  .outliers = o->outliers / 100.0};
     gonio_material *material = NULL;
-    gonio_table *table = NULL;
     gonio_status status = tool_open_material(t, path, &material);
     if (status == GONIO_OK) {
-        status = gonio_table_load(t->context, material, &table);
-    }
-    if (status == GONIO_OK) {
-        status = gonio_measure(t->context, plan, table, &instrument);
+        status = gonio_measure_material(t->context, plan, material, &instrument);
     }
     if (status == GONIO_OK) {
         *name = strdup(gonio_material_name(material));
         status = *name != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
     }
-    gonio_table_free(&table);
     gonio_material_free(&material);
     return status;
 }

@@ -179,6 +179,13 @@ GONIO_API gonio_status gonio_measure(gonio_context *context, gonio_readings *rea
                                      const gonio_table *table,
                                      const gonio_instrument_options *options);
 
+/* The same of any material: where it can be evaluated at any directions, in its own channels, which
+ * become those of the readings, a channel without data at a direction not read; otherwise, and where
+ * the plan names colours that it has not, by way of its table. Errors: as above, those of the material. */
+GONIO_API gonio_status gonio_measure_material(gonio_context *context, gonio_readings *readings,
+                                              const gonio_material *material,
+                                              const gonio_instrument_options *options);
+
 #ifdef __cplusplus
 }
 #endif

@@ -5,10 +5,14 @@
 #include <stdlib.h>
 
 #include "../core/core.h"
+#include "inside.h"
 #include "look_up.h"
 #include "source.h"
 
-enum { BLOCK = 4096 /* directions that a thread evaluates at a time */ };
+enum {
+    MOST_CHANNELS = 4096, /* of a colour that is looked up directly */
+    BLOCK = 4096          /* directions that a thread evaluates at a time */
+};
 
 /* ---- by the source ---- */
 
@@ -133,4 +137,46 @@ gonio_status gonio_material_evaluate(gonio_context *context, const gonio_materia
     return gonio_i_material_source(material).evaluate != NULL
                ? evaluate_blocks(context, material, pairs, count, values)
                : look_up(context, material, pairs, count, values);
+}
+
+/* ---- one colour ---- */
+
+bool gonio_i_material_is_direct(const gonio_material *material)
+{
+    return material->source.evaluate != NULL && material->source.channels <= MOST_CHANNELS;
+}
+
+static double mix_channels(const gonio_material *material, const double *values, size_t channel)
+{
+    const size_t channels = material->source.channels;
+    if (material->weight == NULL) {
+        const double value = values[channels == 1 ? 0 : channel];
+        return isnan(value) ? 0.0 : value;
+    }
+    double sum = 0.0;
+    for (size_t k = 0; k < channels; k++) {
+        sum += isnan(values[k]) ? 0.0 : material->weight[channel * channels + k] * values[k];
+    }
+    return fmax(sum, 0.0);
+}
+
+bool gonio_i_material_colour(const gonio_material *material, gonio_pair pair,
+                             double rgb[GONIO_CHANNELS])
+{
+    const gonio_material_source *source = &material->source;
+    const gonio_material_view *view = gonio_material_describe(material);
+    double values[MOST_CHANNELS];
+    bool any = false;
+    rgb[0] = rgb[1] = rgb[2] = 0.0;
+    if (source->evaluate(source->self, NULL, &pair, 1, values) != GONIO_OK) {
+        return false;
+    }
+    take_out(view, &pair, values);
+    for (size_t k = 0; k < view->channels; k++) {
+        any = any || !isnan(values[k]);
+    }
+    for (size_t c = 0; c < GONIO_CHANNELS && any; c++) {
+        rgb[c] = mix_channels(material, values, c);
+    }
+    return any;
 }

@@ -3,6 +3,7 @@
 
 #include "../core/options.h"
 #include "../core/random.h"
+#include "../material/source.h"
 #include "readings.h"
 
 void gonio_instrument_options_default(gonio_instrument_options *options)
@@ -26,28 +27,41 @@ static uint64_t stream_of(const gonio_pair *pair)
     return stream;
 }
 
-static gonio_status read_one(gonio_context *context, gonio_readings *readings, size_t reading,
-                             const gonio_table *table, const gonio_instrument_options *options)
+static gonio_status no_data(gonio_context *context, const gonio_readings *readings, size_t reading)
+{
+    return gonio_i_fail(context, GONIO_ERROR_DATA,
+                        "%s:%zu: the material has no data around these directions; delete "
+                        "the line, or take another material (gonio info shows its share)",
+                        readings->path, readings->line[reading]);
+}
+
+/* What the instrument makes of a direction's true values. NaN stays. */
+static void disturb(const gonio_readings *readings, size_t reading,
+                    const gonio_instrument_options *options, double *value)
 {
     const gonio_pair *pair = &readings->pair[reading];
-    double *value = gonio_i_readings_values(readings, reading);
-    if (!gonio_table_value(table, gonio_half_difference_from_pair(*pair), value)) {
-        return gonio_i_fail(context, GONIO_ERROR_DATA,
-                            "%s:%zu: the material has no data around these directions; delete "
-                            "the line, or take another material (gonio info shows its share)",
-                            readings->path, readings->line[reading]);
-    }
     gonio_i_random random;
     gonio_i_random wrongness;
     gonio_i_random_seed(&random, options->seed, stream_of(pair));
     gonio_i_random_seed(&wrongness, ~options->seed, stream_of(pair));
     const bool wrong = gonio_i_random_uniform(&wrongness) < options->outliers;
     const double factor = !wrong ? 1.0 : gonio_i_random_uniform(&wrongness) < 0.5 ? 10.0 : 0.1;
-    for (int k = 0; k < GONIO_CHANNELS; k++) {
+    for (size_t k = 0; k < readings->channels; k++) {
         const double gain = 1.0 + options->noise * gonio_i_random_normal(&random);
         const double offset = options->floor * gonio_i_random_normal(&random);
-        value[k] = fmax(factor * value[k] * gain + offset, 0.0);
+        value[k] = isnan(value[k]) ? NAN : fmax(factor * value[k] * gain + offset, 0.0);
     }
+}
+
+static gonio_status read_one(gonio_context *context, gonio_readings *readings, size_t reading,
+                             const gonio_table *table, const gonio_instrument_options *options)
+{
+    const gonio_pair *pair = &readings->pair[reading];
+    double *value = gonio_i_readings_values(readings, reading);
+    if (!gonio_table_value(table, gonio_half_difference_from_pair(*pair), value)) {
+        return no_data(context, readings, reading);
+    }
+    disturb(readings, reading, options, value);
     return GONIO_OK;
 }
 
@@ -65,19 +79,81 @@ static gonio_status check(gonio_context *context, const gonio_instrument_options
     return GONIO_OK;
 }
 
+static gonio_status take_options(gonio_context *context, const gonio_instrument_options *given,
+                                 gonio_instrument_options *how)
+{
+    const gonio_status status = GONIO_I_TAKE(context, gonio_instrument_options, given, how);
+    return status == GONIO_OK ? check(context, how) : status;
+}
+
 gonio_status gonio_measure(gonio_context *context, gonio_readings *readings,
                            const gonio_table *table, const gonio_instrument_options *options)
 {
     gonio_instrument_options how;
-    gonio_status status = GONIO_I_TAKE(context, gonio_instrument_options, options, &how);
-    if (status == GONIO_OK) {
-        status = check(context, &how);
-    }
+    gonio_status status = take_options(context, options, &how);
     if (status == GONIO_OK) {
         status = gonio_i_readings_set_channels(context, readings, GONIO_CHANNELS, NULL);
     }
     for (size_t k = 0; k < readings->count && status == GONIO_OK; k++) {
         status = read_one(context, readings, k, table, &how);
     }
+    return status;
+}
+
+/* By the material's own evaluation, in its own channels. */
+static gonio_status evaluate(gonio_context *context, gonio_readings *readings,
+                             const gonio_material *material,
+                             const gonio_instrument_options *options)
+{
+    const gonio_material_view *view = gonio_material_describe(material);
+    gonio_status status =
+        gonio_i_readings_set_channels(context, readings, view->channels, view->wavelength);
+    if (status == GONIO_OK && readings->count > 0) {
+        status = gonio_material_evaluate(context, material, readings->pair, readings->count,
+                                         gonio_i_readings_values(readings, 0));
+    }
+    for (size_t k = 0; k < readings->count && status == GONIO_OK; k++) {
+        double *value = gonio_i_readings_values(readings, k);
+        bool any = false;
+        for (size_t c = 0; c < view->channels; c++) {
+            any = any || !isnan(value[c]);
+        }
+        disturb(readings, k, options, value);
+        status = any ? GONIO_OK : no_data(context, readings, k);
+    }
+    return status;
+}
+
+/* Whether what was planned can be read in the material's channels: a plan that names R, G or B
+ * needs colours. */
+static bool is_for_all(const gonio_readings *readings, const gonio_material *material)
+{
+    const gonio_material_view *view = gonio_material_describe(material);
+    const bool colours = view->wavelength == NULL && view->channels == GONIO_CHANNELS;
+    bool all = true;
+    for (size_t k = 0; k < readings->count; k++) {
+        all = all && readings->planned[k] == GONIO_ALL_CHANNELS;
+    }
+    return all || colours;
+}
+
+gonio_status gonio_measure_material(gonio_context *context, gonio_readings *readings,
+                                    const gonio_material *material,
+                                    const gonio_instrument_options *options)
+{
+    gonio_instrument_options how;
+    gonio_table *table = NULL;
+    gonio_status status = take_options(context, options, &how);
+    if (status != GONIO_OK) {
+        return status;
+    }
+    if (gonio_i_material_source(material).evaluate != NULL && is_for_all(readings, material)) {
+        return evaluate(context, readings, material, &how);
+    }
+    status = gonio_table_load(context, material, &table);
+    if (status == GONIO_OK) {
+        status = gonio_measure(context, readings, table, &how);
+    }
+    gonio_table_free(&table);
     return status;
 }

@@ -7,6 +7,7 @@
 
 #include "../core/core.h"
 #include "../direction/grid.h"
+#include "../material/source.h"
 #include "geometry.h"
 
 enum { VALUES = 4, HIGHLIGHT_THETA_D = 60 }; /* bins below 60 degrees show the highlight */
@@ -19,6 +20,7 @@ struct gonio_i_surface {
     double cumulative[GONIO_THETA_H_BINS + 1]; /* of half vectors, by theta_h */
     double density[GONIO_THETA_H_BINS];        /* of them, 1/sr */
     double highlight;                          /* the share of samples that go by them */
+    const gonio_material *direct;              /* what is evaluated; NULL: bins are looked up */
 };
 
 void gonio_i_surface_free(gonio_i_surface **surface)
@@ -178,6 +180,7 @@ static gonio_status fill_bins(gonio_context *context, const gonio_material *mate
     }
     find_highlight(surface);
     fill_holes(surface->bin);
+    surface->direct = gonio_i_material_is_direct(material) ? material : NULL;
     return GONIO_OK;
 }
 
@@ -218,13 +221,27 @@ gonio_i_meeting gonio_i_meet(const double i[3], const double o[3])
     return (gonio_i_meeting){.at = {.theta_h = atan2(radius, sum[2]),
                                     .theta_d = atan2(gonio_i_length(difference), length),
                                     .phi_d = phi_d < M_PI ? phi_d : 0.0},
+                             .towards_light = {i[0], i[1], i[2]},
+                             .towards_viewer = {o[0], o[1], o[2]},
                              .incident = i[2],
                              .half = 0.5 * length};
+}
+
+static gonio_angles angles_of(const double v[3])
+{
+    return (gonio_angles){atan2(sqrt(v[0] * v[0] + v[1] * v[1]), v[2]), atan2(v[1], v[0])};
 }
 
 void gonio_i_surface_value(const gonio_i_surface *surface, const gonio_i_meeting *meeting,
                            double rho[GONIO_CHANNELS])
 {
+    if (surface->direct != NULL) {
+        const gonio_pair pair = {angles_of(meeting->towards_light),
+                                 angles_of(meeting->towards_viewer)};
+        if (gonio_i_material_colour(surface->direct, pair, rho)) {
+            return;
+        }
+    }
     gonio_i_stencil stencil[GONIO_I_TRILINEAR];
     gonio_i_trilinear(meeting->at, stencil);
     double total = 0.0;

@@ -8,13 +8,16 @@
 
 typedef struct gonio_i_surface gonio_i_surface;
 
-/* Errors: _DATA if the material has no data at all, _MEMORY, _CANCELLED, those of the material. */
+/* The material must outlive what asks for values; sampling does without it. Errors: _DATA if the
+ * material has no data at all, _MEMORY, _CANCELLED, those of the material. */
 gonio_status gonio_i_surface_create(gonio_context *context, const gonio_material *material,
                                     gonio_i_surface **surface);
 void gonio_i_surface_free(gonio_i_surface **surface);
 
 /* Where two directions meet on the grid. */
 typedef struct gonio_i_meeting {
+    double towards_light[3]; /* the directions themselves */
+    double towards_viewer[3];
     gonio_half_difference at;
     double incident; /* cosine of the incident direction */
     double half;     /* cosine between either direction and the half vector */
@@ -22,8 +25,9 @@ typedef struct gonio_i_meeting {
 
 gonio_i_meeting gonio_i_meet(const double incident[3], const double outgoing[3]);
 
-/* The BRDF, 1/sr: as gonio_table_value, and where that has no data, of the nearest bin with data
- * (render.h). */
+/* The BRDF, 1/sr: as gonio_material_evaluate of a material that can be evaluated at any directions,
+ * otherwise as gonio_table_value; where that has no data, of the nearest bin with data (render.h).
+ */
 void gonio_i_surface_value(const gonio_i_surface *surface, const gonio_i_meeting *meeting,
                            double rho[GONIO_CHANNELS]);
 

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "made_direct.h"
 #include "made_material.h"
 #include "made_readings.h"
 
@@ -232,6 +233,51 @@ static void test_angles(void **state)
     gonio_readings_free(&readings);
 }
 
+/* A material that can be evaluated is read by its own evaluation, in its own channels. */
+static void test_a_material_in_its_own_channels(void **state)
+{
+    (void)state;
+    static const double wavelength[2] = {532.0, 1064.0};
+    static const double angles[2][4] = {{20.0, 70.0, 30.0, 200.0}, {70.0, 0.0, 10.0, 90.0}};
+    gonio_material *material = made_direct(2, wavelength, 1.3);
+    gonio_readings *readings = made_directions(angles, 2);
+    assert_int_equal(gonio_measure_material(NULL, readings, material, NULL), GONIO_OK);
+    const gonio_readings_view *view = gonio_readings_describe(readings);
+    assert_int_equal(view->channels, 2);
+    for (size_t k = 0; k < 4; k++) {
+        assert_true(view->wavelength[k % 2] == wavelength[k % 2]);
+        assert_true(fabs(view->value[k] - made_direct_value(view->pair[k / 2], k % 2)) < 1e-12);
+    }
+    gonio_material_free(&material);
+    material = made_direct(2, wavelength, 1.0); /* 70 degrees are beyond */
+    gonio_context *context = support_context();
+    assert_int_equal(gonio_measure_material(context, readings, material, NULL), GONIO_ERROR_DATA);
+    assert_non_null(strstr(support_message(), "no data"));
+    gonio_context_free(&context);
+    gonio_material_free(&material);
+    gonio_readings_free(&readings);
+}
+
+/* A plan that names a colour is read in colours. */
+static void test_a_plan_of_colours(void **state)
+{
+    (void)state;
+    static const double wavelength[2] = {450.0, 650.0};
+    const gonio_pair pair = {{0.3, 0.0}, {0.4, 1.0}};
+    const int planned = 2;
+    const gonio_readings_arrays arrays = {
+        .size = sizeof arrays, .count = 1, .channels = 3, .pair = &pair, .planned = &planned};
+    const gonio_readings_options options = {.size = sizeof options};
+    gonio_readings *readings = NULL;
+    gonio_material *material = made_direct(2, wavelength, 0.0);
+    assert_int_equal(gonio_readings_create(NULL, &arrays, &options, &readings), GONIO_OK);
+    assert_int_equal(gonio_measure_material(NULL, readings, material, NULL), GONIO_OK);
+    assert_true(gonio_readings_are_colours(readings));
+    assert_true(gonio_readings_value(readings, 0, 2) > 0.0);
+    gonio_material_free(&material);
+    gonio_readings_free(&readings);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -242,6 +288,8 @@ int main(void)
         cmocka_unit_test(test_readings_are_written_and_read),
         cmocka_unit_test(test_negative_noise_is_refused),
         cmocka_unit_test(test_angles),
+        cmocka_unit_test(test_a_material_in_its_own_channels),
+        cmocka_unit_test(test_a_plan_of_colours),
     };
     return cmocka_run_group_tests_name("measurement", tests, set_up, tear_down);
 }

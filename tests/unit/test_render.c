@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "core/core.h"
+#include "made_direct.h"
 #include "made_material.h"
 #include "render/environment.h"
 #include "render/surface.h"
@@ -507,10 +508,41 @@ static void what_was_not_initialised_is_refused(void **state)
     gonio_context_free(&context);
 }
 
+/* A material that can be evaluated is, at the directions themselves, as far as it has data. */
+static void what_can_be_evaluated_is_evaluated(void **state)
+{
+    (void)state;
+    gonio_material *material = made_direct(3, NULL, 1.2);
+    gonio_i_surface *surface = NULL;
+    assert_int_equal(gonio_i_surface_create(NULL, material, &surface), GONIO_OK);
+    for (int k = 0; k < 200; k++) {
+        const gonio_pair pair = {{1.19 * k / 200.0, 0.1 * k}, {1.18 - 1.18 * k / 200.0, 2.0}};
+        const gonio_pair beyond = {{1.3, 0.5}, {0.1, 0.0}};
+        double i[3];
+        double o[3];
+        double rho[3];
+        direction_of(pair.incident, i);
+        direction_of(pair.outgoing, o);
+        const gonio_i_meeting meeting = gonio_i_meet(i, o);
+        gonio_i_surface_value(surface, &meeting, rho);
+        for (size_t c = 0; c < 3; c++) {
+            assert_close(rho[c], made_direct_value(pair, c), 1e-9);
+        }
+        direction_of(beyond.incident, i);
+        direction_of(beyond.outgoing, o);
+        const gonio_i_meeting outside = gonio_i_meet(i, o);
+        gonio_i_surface_value(surface, &outside, rho);
+        assert_true(rho[0] > 0.0); /* the nearest data stand in */
+    }
+    gonio_i_surface_free(&surface);
+    gonio_material_free(&material);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bin_centres_give_their_own_values),
+        cmocka_unit_test(what_can_be_evaluated_is_evaluated),
         cmocka_unit_test(between_centres_it_is_the_tables_interpolation),
         cmocka_unit_test(holes_are_filled_from_what_is_near),
         cmocka_unit_test(tones_are_those_of_the_formula),
