@@ -31,7 +31,7 @@ static const double SAME = 1e-6;
 enum { MOST_CANDIDATES = 100000, MOST_RANK = 500 };
 
 /* Deviation, log units, of what the model leaves open beside what it knows of, wherever one reads:
- * by it the expected error is that of left-out materials (docs/accuracy.md). */
+ * by it the expected error is that of left-out materials (docs/experiments.md). */
 static const double LEFT_OPEN = 0.05;
 
 typedef struct place_list {

@@ -24,7 +24,7 @@ static double level(int k)
 
 /* ln of how much likelier levels make all readings before they are believed, of three channels; of
  * more, which say the same again, as their number's square root. Of readings that lack nothing the
- * best levels explain less than 1 (docs/accuracy.md). */
+ * best levels explain less than 1 (docs/experiments.md). */
 static const double CONVINCING = 8.0;
 
 /* From a usual material's to that of the most unusual one. */

@@ -21,7 +21,7 @@ static const double SHARE = 1.0 / 8.0;
 
 /* What a plain Gaussian is the less likely for beforehand than a mixture, in ln. Found, as the
  * share and what counts against remainders, on two splits of the neural MERL materials
- * (docs/accuracy.md). */
+ * (docs/experiments.md). */
 static const double FOR_PLAIN = 2.0 / 3.0;
 
 /* Models with less weight than this beside the likeliest are left out. */

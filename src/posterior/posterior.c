@@ -386,7 +386,7 @@ static double relative(const totals *t, double error)
 
 /* From sums over the columns to what they stand for. Of the error the Gaussian of the likeliest
  * model has one opinion and the database another; the geometric mean of both is nearer to the truth
- * than either, in and out of the database (docs/accuracy.md). */
+ * than either, in and out of the database (docs/experiments.md). */
 static void conclude(const finding *all)
 {
     const totals t = add_up(all);

@@ -19,7 +19,7 @@ enum { BLOCK = 128 };
 /* Weights below this do not count among the samples. */
 static const double NEGLIGIBLE = 1e-7;
 
-/* From the model's variances to those of materials that were left out (docs/accuracy.md).
+/* From the model's variances to those of materials that were left out (docs/experiments.md).
  * Deviations are widened so that 95 % of the true values lie within 1.96 of them, which takes more
  * than a Gaussian's, as errors come in all sizes. In the expected square of the error, which is
  * mostly that of the materials that are known worst, more is left open everywhere. */

@@ -28,7 +28,7 @@ static const double GROSS = 1.2;
 static const double MOST_WRONG = 0.1;
 
 /* What leaving out a direction has to explain, in ln of the density of three columns: nine tenths
- * of the suspects that were read wrongly do (docs/accuracy.md), and a third of the right readings
+ * of the suspects that were read wrongly do (docs/experiments.md), and a third of the right readings
  * of unusual materials that are suspect. */
 static const double DUE = 20.0;
 
