@@ -35,6 +35,7 @@ _gonio_values()
         --environment|-e) echo "studio sky furnace" ;;
         --light)    echo "directional point" ;;
         --start)    echo "random qr volume" ;;
+        --illuminant) echo "E D65 A" ;;
         --format)   echo "merl rgl table klems zemax csv" ;;
         *)
             case $(_gonio_value_name "$1" "$2") in

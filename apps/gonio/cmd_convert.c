@@ -29,6 +29,9 @@ static int run(tool *t, void *given)
     gonio_material *material = NULL;
     gonio_status status = tool_open_material(t, arguments[0], &material);
     if (status == GONIO_OK) {
+        status = write_options_apply(t, o, material);
+    }
+    if (status == GONIO_OK) {
         status = gonio_material_write(t->context, material, arguments[1], &how);
     }
     const int code =

@@ -194,11 +194,11 @@ static gonio_status write_more(tool *t, const options *o, const gonio_basis *bas
     return status;
 }
 
-/* Whether the output is a MERL table. */
+/* Whether the output is a MERL table, of colours under equal energy. */
 static bool is_merl(const options *o, const char *output)
 {
     const int writer = gonio_material_writer_find(output, o->how.format);
-    return strcmp(gonio_material_writer_name(writer), "merl") == 0;
+    return strcmp(gonio_material_writer_name(writer), "merl") == 0 && o->write.illuminant == NULL;
 }
 
 /* What was made, in the channels that the output holds: MERL tables have R, G, B. */
@@ -206,9 +206,15 @@ static gonio_status open_made(tool *t, const options *o, const gonio_basis *basi
                               const gonio_reconstruction *made, const char *output,
                               gonio_material **material)
 {
-    return (is_merl(o, output) ? gonio_reconstruction_material
-                               : gonio_reconstruction_spectral_material)(
-        t->context, basis, made, "reconstruction", material);
+    if (is_merl(o, output)) {
+        return gonio_reconstruction_material(t->context, basis, made, "reconstruction", material);
+    }
+    gonio_status status =
+        gonio_reconstruction_spectral_material(t->context, basis, made, "reconstruction", material);
+    if (status == GONIO_OK) {
+        status = write_options_apply(t, &o->write, *material);
+    }
+    return status;
 }
 
 /* One readings file, where something else than the table alone is wanted. */

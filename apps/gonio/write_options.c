@@ -4,6 +4,9 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
+
+enum { ILLUMINANTS = 3 };
 
 /* Three positive numbers with commas between them. */
 static bool read_steps(const char *text, double step[3])
@@ -19,6 +22,18 @@ static bool read_steps(const char *text, double step[3])
     return true;
 }
 
+/* The place of a name in the list; as many as there are for another one. */
+static size_t find_illuminant(const char *name)
+{
+    static const char *const names[] = {
+        [GONIO_ILLUMINANT_E] = "E", [GONIO_ILLUMINANT_D65] = "D65", [GONIO_ILLUMINANT_A] = "A"};
+    size_t k = 0;
+    while (k < ILLUMINANTS && strcasecmp(names[k], name) != 0) {
+        k++;
+    }
+    return k;
+}
+
 bool write_options_check(const tool *t, const write_options *options, gonio_write_options *how)
 {
     double step[3] = {0.0};
@@ -28,6 +43,9 @@ bool write_options_check(const tool *t, const write_options *options, gonio_writ
         return tool_refuse(t, "--format %s: gonio writes merl, rgl, table, klems, zemax and csv",
                            options->format);
     }
+    if (options->illuminant != NULL && find_illuminant(options->illuminant) == ILLUMINANTS) {
+        return tool_refuse(t, "--illuminant %s: E, D65 or A", options->illuminant);
+    }
     if (options->steps != NULL && !read_steps(options->steps, step)) {
         return tool_refuse(t, "--steps %s: three numbers of degrees are needed, 0.1 to 90: 10,5,10",
                            options->steps);
@@ -36,4 +54,13 @@ bool write_options_check(const tool *t, const write_options *options, gonio_writ
     how->theta_o_step = step[1] * M_PI / 180.0;
     how->phi_step = step[2] * M_PI / 180.0;
     return true;
+}
+
+gonio_status write_options_apply(const tool *t, const write_options *options,
+                                 gonio_material *material)
+{
+    return options->illuminant == NULL
+               ? GONIO_OK
+               : gonio_material_set_illuminant(
+                     t->context, material, (gonio_illuminant)find_illuminant(options->illuminant));
 }

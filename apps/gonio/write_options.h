@@ -7,6 +7,7 @@
 typedef struct write_options {
     const char *format;
     const char *steps;
+    const char *illuminant;
 } write_options;
 
 #define WRITE_OPTIONS(options)                                                                     \
@@ -18,6 +19,13 @@ typedef struct write_options {
      "merl, rgl, table, klems, zemax or csv (default: as OUT's extension says: .bsdf is rgl, .h5 " \
      "table, .xml klems, .csv csv, all else merl)",                                                \
      "FORMAT"},                                                                                    \
+        {"illuminant",                                                                             \
+         '\0',                                                                                     \
+         POPT_ARG_STRING,                                                                          \
+         &(options)->illuminant,                                                                   \
+         0,                                                                                        \
+         "What colours of spectra are seen under: E, D65 or A (default: E, equal energy)",         \
+         "NAME"},                                                                                  \
     {                                                                                              \
         "steps", '\0', POPT_ARG_STRING, &(options)->steps, 0,                                      \
             "Steps of theta_i, theta_o and phi in degrees, for csv and zemax (default: 10,5,10 "   \
@@ -27,5 +35,9 @@ typedef struct write_options {
 
 /* Whether they can be, after a complaint; fills in what the library wants. */
 bool write_options_check(const tool *t, const write_options *options, gonio_write_options *how);
+
+/* Sets the illuminant of a material that is about to be written. */
+gonio_status write_options_apply(const tool *t, const write_options *options,
+                                 gonio_material *material);
 
 #endif

@@ -99,9 +99,16 @@ typedef enum gonio_illuminant {
     GONIO_ILLUMINANT_A
 } gonio_illuminant;
 
+/* What the colours of a material's spectra are seen under, from now on: in slabs, tables,
+ * renderings and files of colours. Equal energy unless set. Not while others use the material.
+ * Errors: _MEMORY. */
+GONIO_API gonio_status gonio_material_set_illuminant(gonio_context *context,
+                                                     gonio_material *material,
+                                                     gonio_illuminant illuminant);
+
 /* Reads one slab into rho (GONIO_SLAB_VALUES doubles, the caller's). Thread-safe. Of a source that
  * is evaluated: at the centres of the bins, the mean of either side of the reciprocal pair and, if
- * it is anisotropic, of 8 azimuths of the half vector; spectra as linear sRGB under equal energy,
+ * it is anisotropic, of 8 azimuths of the half vector; spectra as linear sRGB under the illuminant,
  * in which a flat spectrum is white; one channel as grey; 0 in a channel without data where others
  * have some; no data beyond theta_limit. Errors: _ARGUMENT (theta_h outside 0 .. 89), and those of
  * the source (_IO, _FORMAT). */
@@ -136,7 +143,7 @@ GONIO_API gonio_status gonio_material_write_rgl(gonio_context *context,
 
 /* How a material is written. */
 typedef struct gonio_write_options {
-    size_t size;        /* of this struct, which gonio_write_options_default sets */
+    size_t size;         /* of this struct, which gonio_write_options_default sets */
     const char *format;  /* by name; NULL: that of the path's extension, a MERL table where it is
                           * none  that gonio knows */
     double theta_i_step; /* of directions on a grid (csv; zemax but for theta_o), radians; 0: the */

@@ -178,6 +178,23 @@ bool gonio_i_colours_known(const double *wavelength, size_t count)
     return most - least >= APART;
 }
 
+void gonio_i_note_colours(gonio_context *context, const char *name, const double *wavelength,
+                          size_t count)
+{
+    if (gonio_i_colours_known(wavelength, count)) {
+        return;
+    }
+    if (count == 1) {
+        gonio_i_note(context, "%s: colours cannot be known from %g nm alone; they are grey", name,
+                     wavelength[0]);
+    } else {
+        gonio_i_note(context,
+                     "%s: colours cannot be known from these %zu wavelengths, which are not 60 nm "
+                     "apart in the visible; they are made of what there is",
+                     name, count);
+    }
+}
+
 void gonio_i_xyz_to_rgb(const double xyz[3], double rgb[GONIO_CHANNELS])
 {
     static const double flat[3] = {1.0, 1.0, 1.0};

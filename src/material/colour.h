@@ -18,6 +18,10 @@ gonio_status gonio_i_colour_weights(gonio_context *context, const double *wavele
 /* Whether the wavelengths tell colours: at least two of them are visible, 60 nm apart or more. */
 bool gonio_i_colours_known(const double *wavelength, size_t count);
 
+/* Says so, where a table of colours is made of a spectrum that does not tell them. */
+void gonio_i_note_colours(gonio_context *context, const char *name, const double *wavelength,
+                          size_t count);
+
 /* Between X, Y, Z and linear R, G, B of reflectances under equal energy, in which a flat spectrum
  * has three times the same in either. */
 void gonio_i_xyz_to_rgb(const double xyz[3], double rgb[GONIO_CHANNELS]);

@@ -130,6 +130,15 @@ void gonio_material_free(gonio_material **material)
     *material = NULL;
 }
 
+gonio_status gonio_material_set_illuminant(gonio_context *context, gonio_material *material,
+                                           gonio_illuminant illuminant)
+{
+    return material->wavelength == NULL
+               ? GONIO_OK
+               : gonio_i_colour_weights(context, material->wavelength, material->source.channels,
+                                        illuminant, material->weight);
+}
+
 const char *gonio_material_name(const gonio_material *material)
 {
     return material->name;

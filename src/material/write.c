@@ -6,12 +6,17 @@
 
 #include "../core/core.h"
 #include "../core/options.h"
+#include "colour.h"
 #include "formats/writers.h"
 
 static gonio_status write_merl(gonio_context *context, const gonio_material *material,
                                const char *path, const gonio_write_options *options)
 {
+    const gonio_material_view *view = gonio_material_describe(material);
     (void)options;
+    if (view->wavelength != NULL) {
+        gonio_i_note_colours(context, view->name, view->wavelength, view->channels);
+    }
     return gonio_material_write_merl(context, material, path);
 }
 

@@ -5,10 +5,10 @@
 
 #include "../basis/basis.h"
 #include "../core/vector_math.h"
+#include "../material/colour.h"
 #include "../measurement/readings.h"
 #include "../posterior/observations.h"
 #include "field.h"
-#include "spectrum.h"
 
 double gonio_i_field_at(const gonio_basis *basis, const double *field, int channel,
                         gonio_half_difference at)
@@ -176,20 +176,41 @@ static void copy_grey(const gonio_reconstruction *r, spread_field *f)
     }
 }
 
-/* The colours of spectra, cell by cell. */
-static void mix_colours(const gonio_reconstruction *r, double *spectrum, spread_field *f)
+/* The colours of spectra, cell by cell. weight[channel][wavelengths]. */
+static void mix_colours(const gonio_reconstruction *r, const double *weight, spread_field *f)
 {
     for (size_t k = 0; k < f->view->cells; k++) {
-        double rgb[GONIO_CHANNELS];
+        double rgb[GONIO_CHANNELS] = {0.0};
         for (size_t j = 0; j < r->wavelengths; j++) {
             const double g = r->field[j * f->view->rows + k];
-            spectrum[j] = scale_of(f->basis, r, j) * expm1(fmin(fmax(g, 0.0), GONIO_I_LARGEST_LOG));
+            const double rho =
+                scale_of(f->basis, r, j) * expm1(fmin(fmax(g, 0.0), GONIO_I_LARGEST_LOG));
+            for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
+                rgb[channel] += weight[channel * r->wavelengths + j] * rho;
+            }
         }
-        gonio_i_spectrum_to_rgb(r->wavelength, spectrum, r->wavelengths, rgb);
         for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
-            f->g[channel * f->view->cells + k] = gonio_log_from_brdf(rgb[channel], (int)channel);
+            f->g[channel * f->view->cells + k] =
+                gonio_log_from_brdf(fmax(rgb[channel], 0.0), (int)channel);
         }
     }
+}
+
+/* Under equal energy, as colours of spectral materials are. */
+static gonio_status fill_spectra(gonio_context *context, const gonio_reconstruction *r,
+                                 spread_field *f)
+{
+    double *weight = gonio_i_allocate(context, GONIO_CHANNELS * r->wavelengths, sizeof *weight);
+    const gonio_status status = weight != NULL
+                                    ? gonio_i_colour_weights(context, r->wavelength, r->wavelengths,
+                                                             GONIO_ILLUMINANT_E, weight)
+                                    : GONIO_ERROR_MEMORY;
+    if (status == GONIO_OK) {
+        gonio_i_note_colours(context, "reconstruction", r->wavelength, r->wavelengths);
+        mix_colours(r, weight, f);
+    }
+    free(weight);
+    return status;
 }
 
 static gonio_status fill_field(gonio_context *context, const gonio_reconstruction *r,
@@ -209,13 +230,7 @@ static gonio_status fill_field(gonio_context *context, const gonio_reconstructio
                             "not of %zu channels",
                             r->columns);
     }
-    double *spectrum = gonio_i_allocate(context, r->wavelengths, sizeof *spectrum);
-    if (spectrum == NULL) {
-        return GONIO_ERROR_MEMORY;
-    }
-    mix_colours(r, spectrum, f);
-    free(spectrum);
-    return GONIO_OK;
+    return fill_spectra(context, r, f);
 }
 
 static gonio_status create(gonio_context *context, const gonio_basis *basis,

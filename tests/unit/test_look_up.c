@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "made_readings.h"
-#include "reconstruct/spectrum.h"
+#include "material/colour.h"
 
 static void assert_close(double value, double expected, double tolerance)
 {
@@ -172,6 +172,21 @@ static void test_readings_that_cannot_be_compared(void **state)
 
 /* ---- spectra as colours ---- */
 
+static void to_rgb(const double *wavelength, const double *value, size_t count,
+                   double rgb[GONIO_CHANNELS])
+{
+    double weight[GONIO_CHANNELS * 31];
+    assert_int_equal(gonio_i_colour_weights(NULL, wavelength, count, GONIO_ILLUMINANT_E, weight),
+                     GONIO_OK);
+    for (size_t c = 0; c < GONIO_CHANNELS; c++) {
+        rgb[c] = 0.0;
+        for (size_t k = 0; k < count; k++) {
+            rgb[c] += weight[c * count + k] * value[k];
+        }
+        rgb[c] = fmax(rgb[c], 0.0);
+    }
+}
+
 static void test_spectra_as_colours(void **state)
 {
     (void)state;
@@ -183,7 +198,7 @@ static void test_spectra_as_colours(void **state)
         wavelength[k] = 400.0 + 10.0 * (double)k;
         value[k] = 0.7;
     }
-    gonio_i_spectrum_to_rgb(wavelength, value, 31, colour); /* flat: white */
+    to_rgb(wavelength, value, 31, colour); /* flat: white */
     for (int c = 0; c < GONIO_CHANNELS; c++) {
         assert_close(colour[c], 0.7, 1e-12);
     }
@@ -193,7 +208,7 @@ static void test_spectra_as_colours(void **state)
         for (size_t k = 0; k < 31; k++) {
             value[k] = exp(-0.5 * pow((wavelength[k] - middle[c]) / 15.0, 2.0));
         }
-        gonio_i_spectrum_to_rgb(wavelength, value, 31, colour);
+        to_rgb(wavelength, value, 31, colour);
         for (int other = 0; other < GONIO_CHANNELS; other++) {
             assert_true(colour[other] >= 0.0 && isfinite(colour[other]));
             assert_true(other == c || colour[other] < 0.7 * colour[c]);
@@ -201,8 +216,18 @@ static void test_spectra_as_colours(void **state)
         for (size_t k = 0; k < 31; k++) {
             value[k] *= 2.0;
         }
-        gonio_i_spectrum_to_rgb(wavelength, value, 31, twice);
+        to_rgb(wavelength, value, 31, twice);
         assert_close(twice[c], 2.0 * colour[c], 1e-12);
+    }
+    /* Part of a flat spectrum, a line of any colour and infrared are white. */
+    static const double line[4][2] = {
+        {532.0, 560.0}, {633.0, 640.0}, {1064.0, 1550.0}, {380.0, 420.0}};
+    static const double flat[2] = {0.3, 0.3};
+    for (int k = 0; k < 8; k++) {
+        to_rgb(line[k / 2], flat, (size_t)(1 + k % 2), colour);
+        for (int c = 0; c < GONIO_CHANNELS; c++) {
+            assert_close(colour[c], 0.3, 1e-12);
+        }
     }
     /* Its order does not matter. */
     double backwards[31];
@@ -211,7 +236,7 @@ static void test_spectra_as_colours(void **state)
         backwards[k] = wavelength[30 - k];
         reversed[k] = value[30 - k];
     }
-    gonio_i_spectrum_to_rgb(backwards, reversed, 31, colour);
+    to_rgb(backwards, reversed, 31, colour);
     for (int c = 0; c < GONIO_CHANNELS; c++) {
         assert_close(colour[c], twice[c], 1e-12);
     }
