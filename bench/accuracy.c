@@ -85,9 +85,8 @@ static json_t *names_to_learn(const json_t *splits, size_t number)
 /* The kind of basis that a method is meant for. */
 static gonio_plan_basis basis_of(const setting *s)
 {
-    gonio_plan_basis kind = {.representation = GONIO_BIVARIATE};
-    gonio_plan_method_basis(s->method, &kind);
-    return kind;
+    const gonio_plan_basis *kind = gonio_plan_method_basis(s->method);
+    return kind != NULL ? *kind : (gonio_plan_basis){.representation = GONIO_BIVARIATE};
 }
 
 static bool is_posterior(const setting *s)

@@ -57,7 +57,9 @@ GONIO_API void gonio_basis_options_default(gonio_basis_options *options);
  * precision. max |V'V - I| is at most 1e-11: where it would be more, V is orthonormalised again
  * (Cholesky QR), to rounding. The result does not depend on the number of threads. Memory: the
  * basis, and a few MB a thread.
- * Errors: _ARGUMENT if K > columns - 1 (without mean, > columns); _DATA if the columns span fewer
+ * options may be NULL. *basis is the caller's; the database need not outlive it.
+ * Errors: _ARGUMENT if K > columns - 1 (without mean, > columns), for mixtures of another kind of
+ * database and for a material of the subset that it does not have; _DATA if the columns span fewer
  * than K dimensions; _MEMORY; those of gonio_database_read_rows. */
 GONIO_API gonio_status gonio_basis_learn(gonio_context *context, const gonio_database *database,
                                          const gonio_basis_options *options, gonio_basis **basis);
@@ -142,21 +144,24 @@ GONIO_API gonio_status gonio_basis_rows(gonio_context *context, const gonio_basi
                                         size_t first, size_t count, size_t components,
                                         double *values);
 
-/* S_k, k from 0. */
-GONIO_API double gonio_basis_singular_value(const gonio_basis_view *view, size_t k);
+/* S_k, k from 0; 0 from variance_count on. */
+GONIO_API double gonio_basis_singular_value(const gonio_basis *basis, size_t k);
 
 /* sum of the first k variances over the sum of all: what Fig. 2(a) of the paper plots. */
 GONIO_API double gonio_basis_cumulative_variance(const gonio_basis *basis, size_t k);
 
 /* The cell in the basis that stands for any cell of the grid: itself, or if the database had no
  * data there the nearest in index space (lowest index on ties). cell is theta_d + 90 theta_h, or a
- * bin's index for a full basis. Returns its position in view.cell. */
+ * bin's index for a full basis. Returns its position in view.cell, or the number of cells for one
+ * outside the grid. */
 GONIO_API size_t gonio_basis_position(const gonio_basis *basis, int32_t cell);
 
 /* The row that a reading in one channel at any directions sees, interpolated between cell centres
  * (bilinear in (sqrt theta_h, theta_d); for a full basis trilinear, phi_d periodic): the mean and
- * the first `components` values into row. At a cell's centre this is the cell's own row. */
-GONIO_API void gonio_basis_row_at(const gonio_basis *basis, gonio_half_difference coordinates,
+ * the first `components` values into row. At a cell's centre this is the cell's own row. The
+ * channel does not matter to a separate basis. False, and nothing is written, for a channel of a
+ * joint basis outside 0 .. 2 and for more components than there are. */
+GONIO_API bool gonio_basis_row_at(const gonio_basis *basis, gonio_half_difference coordinates,
                                   int channel, size_t components, double *mean, double *row);
 
 #ifdef __cplusplus

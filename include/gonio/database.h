@@ -66,13 +66,15 @@ typedef enum gonio_representation {
 GONIO_API const char *gonio_representation_name(gonio_representation representation);
 GONIO_API bool gonio_representation_parse(const char *name, gonio_representation *representation);
 
-/* Cells of the whole grid in a representation, those that can hold no data included. */
+/* Cells of the whole grid in a representation, those that can hold no data included; 0 for any
+ * other value. */
 GONIO_API int32_t gonio_grid_cells(gonio_representation representation);
 
-/* The bin in the middle of a cell's phi_d bins; of a bivariate cell phi_d bin 0. */
+/* The bin in the middle of a cell's phi_d bins; of a bivariate cell phi_d bin 0. All indices are -1
+ * for a cell outside the grid or no representation. */
 GONIO_API gonio_bin gonio_cell_bin(gonio_representation representation, int32_t cell);
 
-/* The cell that a bin lies in. */
+/* The cell that a bin lies in; -1 for a bin outside the grid or no representation. */
 GONIO_API int32_t gonio_cell_of_bin(gonio_representation representation, gonio_bin bin);
 
 typedef enum gonio_channel_model { GONIO_JOINT = 0, GONIO_SEPARATE = 1 } gonio_channel_model;
@@ -120,7 +122,9 @@ GONIO_API void gonio_database_options_default(gonio_database_options *options);
 
 /* Reads the materials at the given paths (as gonio_material_open takes them), several at a time.
  * The order of the columns is that of the paths, whatever the number of threads.
- * Errors: _ARGUMENT for sectors and the relative mapping; those of gonio_material_open and
+ * options may be NULL. *database is the caller's.
+ * Errors: _ARGUMENT for no paths, a representation, channel model or mapping that there is not, and
+ * for sectors with the relative mapping; those of gonio_material_open and
  * _read_slab; _DATA if a material has no data at all, if two have the same name, or if no cell has
  * data in all of them; _IO for the scratch files. */
 GONIO_API gonio_status gonio_database_create(gonio_context *context, const char *const *paths,

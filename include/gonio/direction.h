@@ -10,7 +10,9 @@
  *
  * The grid is MERL's: 90 x 90 x 180 bins in (theta_h, theta_d, phi_d), phi_d fastest, theta_h
  * spaced by a square root so that bins crowd around the mirror direction. A cell is a (theta_h,
- * theta_d) pair: all the bins that differ in phi_d only. */
+ * theta_d) pair: all the bins that differ in phi_d only.
+ *
+ * All functions are pure: threads may call them at the same time. */
 #ifndef GONIO_DIRECTION_H
 #define GONIO_DIRECTION_H
 
@@ -77,10 +79,12 @@ GONIO_API gonio_bin gonio_bin_of(gonio_half_difference coordinates);
  * phi_d = (k+1/2)/180 pi. */
 GONIO_API gonio_half_difference gonio_bin_centre(gonio_bin bin);
 
-/* Whether both directions at the bin's centre are above the horizon: 1,096,216 bins are. */
+/* Whether both directions at the bin's centre are above the horizon: 1,096,216 bins are. False for
+ * a bin outside the grid. */
 GONIO_API bool gonio_bin_is_valid(gonio_bin bin);
 
-/* Index of a bin in the grid, phi_d fastest: k + 180 (j + 90 i); and back. */
+/* Index of a bin in the grid, phi_d fastest: k + 180 (j + 90 i); and back. This is arithmetic
+ * alone: what is outside the grid stays outside. */
 GONIO_API int32_t gonio_bin_index(gonio_bin bin);
 GONIO_API gonio_bin gonio_bin_from_index(int32_t index);
 

@@ -91,8 +91,8 @@ typedef struct gonio_plan_basis {
     bool mixtures; /* whether it is learned from mixtures too */
 } gonio_plan_basis;
 
-/* Of a method; false if there is none of that name. */
-GONIO_API bool gonio_plan_method_basis(const char *method, gonio_plan_basis *basis);
+/* Of a method; NULL if there is none of that name. It is static. */
+GONIO_API const gonio_plan_basis *gonio_plan_method_basis(const char *method);
 
 /* Names and one-line descriptions of the starts that the condition method's swaps may begin with;
  * NULL past the last. */
@@ -109,8 +109,10 @@ GONIO_API gonio_status gonio_plan_create(gonio_context *context, const gonio_bas
 
 GONIO_API void gonio_plan_free(gonio_plan **plan);
 
-/* The rows of the basis that a plan made for it reads: rows[plan->count]. */
-GONIO_API void gonio_plan_rows(const gonio_plan *plan, const gonio_basis *basis, size_t *rows);
+/* The rows of the basis that a plan made for it reads: rows[plan->count]. Errors: _MISMATCH for an
+ * entry whose cell or channel the basis does not have. */
+GONIO_API gonio_status gonio_plan_rows(gonio_context *context, const gonio_plan *plan,
+                                       const gonio_basis *basis, size_t *rows);
 
 /* What gonio_plan_select found besides the rows. */
 typedef struct gonio_selection_report {
@@ -122,16 +124,19 @@ typedef struct gonio_selection_report {
 
 /* Chooses n of `rows` rows of a matrix V[rows][leading], of which the first `components` of each
  * row count, ascending, into chosen[n]; the engine under gonio_plan_create, for rows that come from
- * elsewhere. V is neither copied nor changed. Methods that need to know the basis are refused. */
+ * elsewhere. V is neither copied nor changed. options may be NULL; method NULL is condition.
+ * Errors: _ARGUMENT for methods that need to know the basis, for more components than `leading` and
+ * as gonio_plan_create; _DATA (rows of rank less than `components`); _CANCELLED; _MEMORY. */
 GONIO_API gonio_status gonio_plan_select(gonio_context *context, const double *vectors, size_t rows,
                                          size_t leading, size_t components,
                                          const gonio_plan_options *options, size_t *chosen,
                                          gonio_selection_report *report);
 
-/* kappa of X'X for the rows chosen[n] of V[rows][leading]: the first `components` of each row.
- * Infinity if singular to working precision. */
+/* kappa of X'X for the rows chosen[count] of V[rows][leading]: the first `components` of each row.
+ * Infinity if singular to working precision. Errors: _ARGUMENT for a row that there is not, or more
+ * components than `leading`; _MEMORY. */
 GONIO_API gonio_status gonio_condition_number(gonio_context *context, const double *vectors,
-                                              size_t leading, size_t components,
+                                              size_t rows, size_t leading, size_t components,
                                               const size_t *chosen, size_t count,
                                               double *condition_number);
 

@@ -75,8 +75,9 @@ typedef struct gonio_reconstruction {
 
 /* What a reconstruction by posterior says of the material at any directions: value[channels] in
  * 1/sr, and, unless it is NULL, the standard deviation of ln(1 + value/s) (needs
- * gonio_reconstruction.deviation). */
-GONIO_API void gonio_reconstruction_predict(const gonio_basis *basis,
+ * gonio_reconstruction.deviation). False, and nothing is written, if it is not one by posterior or
+ * has no deviations that are asked for. Threads may call it at the same time. */
+GONIO_API bool gonio_reconstruction_predict(const gonio_basis *basis,
                                             const gonio_reconstruction *reconstruction,
                                             gonio_half_difference at, double *value,
                                             double *deviation);

@@ -315,9 +315,14 @@ double gonio_i_basis_dot(const gonio_basis *basis, size_t row, const double *c, 
     return gonio_i_dot(basis->vectors + row * basis->components, c, components);
 }
 
-double gonio_basis_singular_value(const gonio_basis_view *view, size_t k)
+double gonio_i_singular_value(const gonio_basis_view *view, size_t k)
 {
     return sqrt(view->variances[k] * (double)(view->columns - 1));
+}
+
+double gonio_basis_singular_value(const gonio_basis *basis, size_t k)
+{
+    return k < basis->variance_count ? gonio_i_singular_value(&basis->view, k) : 0.0;
 }
 
 double gonio_basis_cumulative_variance(const gonio_basis *basis, size_t k)
@@ -333,7 +338,8 @@ double gonio_basis_cumulative_variance(const gonio_basis *basis, size_t k)
 
 size_t gonio_basis_position(const gonio_basis *basis, int32_t cell)
 {
-    return (size_t)basis->position[cell];
+    const bool held = cell >= 0 && cell < gonio_grid_cells(basis->representation);
+    return held ? (size_t)basis->position[cell] : basis->cells;
 }
 
 int gonio_i_row_bins(const gonio_basis_view *view, size_t row)
@@ -361,8 +367,19 @@ int gonio_i_rows_around(const gonio_basis *basis, gonio_half_difference at, int 
     return points;
 }
 
-void gonio_basis_row_at(const gonio_basis *basis, gonio_half_difference coordinates, int channel,
+bool gonio_basis_row_at(const gonio_basis *basis, gonio_half_difference coordinates, int channel,
                         size_t components, double *mean, double *row)
+{
+    const bool held = basis->channels != GONIO_JOINT || (channel >= 0 && channel < GONIO_CHANNELS);
+    if (!held || components > basis->components) {
+        return false;
+    }
+    gonio_i_basis_row_at(basis, coordinates, channel, components, mean, row);
+    return true;
+}
+
+void gonio_i_basis_row_at(const gonio_basis *basis, gonio_half_difference coordinates, int channel,
+                          size_t components, double *mean, double *row)
 {
     gonio_i_row_weight around[GONIO_I_TRILINEAR];
     const int points = gonio_i_rows_around(basis, coordinates, channel, around);

@@ -61,6 +61,13 @@ size_t gonio_i_basis_columns(const gonio_basis *basis);
 void gonio_i_basis_rows(const gonio_basis *basis, size_t first, size_t count, size_t components,
                         double *values);
 
+/* gonio_basis_row_at without its checks. */
+void gonio_i_basis_row_at(const gonio_basis *basis, gonio_half_difference coordinates, int channel,
+                          size_t components, double *mean, double *row);
+
+/* S_k of k below view->variance_count. */
+double gonio_i_singular_value(const gonio_basis_view *view, size_t k);
+
 /* The first `components` values of a row of V times c. */
 double gonio_i_basis_dot(const gonio_basis *basis, size_t row, const double *c, size_t components);
 

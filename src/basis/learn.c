@@ -502,6 +502,18 @@ static gonio_status check_mixtures(gonio_context *context, const gonio_database_
     return GONIO_OK;
 }
 
+static gonio_status check_subset(gonio_context *context, const gonio_database_view *view,
+                                 const gonio_basis_options *options)
+{
+    for (size_t k = 0; options->subset != NULL && k < options->subset_count; k++) {
+        if (options->subset[k] >= view->materials) {
+            return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "material %zu of a database of %zu",
+                                options->subset[k], view->materials);
+        }
+    }
+    return GONIO_OK;
+}
+
 /* K: what was asked for, or as many as the default and the columns allow. */
 static gonio_status choose_components(gonio_context *context, size_t columns,
                                       const gonio_basis_options *options, size_t *components)
@@ -543,6 +555,9 @@ gonio_status gonio_basis_learn(gonio_context *context, const gonio_database *dat
     l.any_rank = options->mixtures > 0 && options->components == 0;
     size_t components = 0;
     status = check_mixtures(context, l.view, options);
+    if (status == GONIO_OK) {
+        status = check_subset(context, l.view, options);
+    }
     if (status == GONIO_OK) {
         status = choose_components(context, l.columns, options, &components);
     }

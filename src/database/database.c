@@ -548,6 +548,25 @@ static gonio_database_view view_of(const gonio_database *database)
     };
 }
 
+static gonio_status check_kind(gonio_context *context, const gonio_database_options *options)
+{
+    if (gonio_representation_name(options->representation) == NULL ||
+        gonio_channel_model_name(options->channels) == NULL ||
+        gonio_mapping_name(options->mapping) == NULL) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "no representation, channel model and mapping have the numbers %d, %d "
+                            "and %d",
+                            (int)options->representation, (int)options->channels,
+                            (int)options->mapping);
+    }
+    if (options->representation == GONIO_SECTORED && options->mapping == GONIO_LOG_RELATIVE) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "the relative mapping is for the full and the bivariate grid, not for "
+                            "sectors (gonio learn --grid full)");
+    }
+    return GONIO_OK;
+}
+
 static gonio_status create(gonio_context *context, const sources *from, size_t count,
                            const gonio_database_options *options, gonio_database **database)
 {
@@ -559,10 +578,9 @@ static gonio_status create(gonio_context *context, const sources *from, size_t c
     if (count == 0) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "no materials given");
     }
-    if (how.representation == GONIO_SECTORED && how.mapping == GONIO_LOG_RELATIVE) {
-        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                            "the relative mapping is for the full and the bivariate grid, not for "
-                            "sectors (gonio learn --grid full)");
+    const gonio_status checked = check_kind(context, &how);
+    if (checked != GONIO_OK) {
+        return checked;
     }
     gonio_database *made = gonio_i_allocate(context, 1, sizeof *made);
     if (made == NULL) {

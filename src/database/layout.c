@@ -76,7 +76,9 @@ int gonio_i_phi_cells(gonio_representation representation)
 
 int32_t gonio_grid_cells(gonio_representation representation)
 {
-    return GONIO_BINS / gonio_i_phi_bins(representation);
+    return gonio_representation_name(representation) != NULL
+               ? GONIO_BINS / gonio_i_phi_bins(representation)
+               : 0;
 }
 
 gonio_i_bin_run gonio_i_cell_bins(gonio_representation representation, int32_t cell)
@@ -87,6 +89,9 @@ gonio_i_bin_run gonio_i_cell_bins(gonio_representation representation, int32_t c
 
 gonio_bin gonio_cell_bin(gonio_representation representation, int32_t cell)
 {
+    if (cell < 0 || cell >= gonio_grid_cells(representation)) {
+        return (gonio_bin){-1, -1, -1};
+    }
     gonio_bin bin = gonio_i_cell_bins(representation, cell).first;
     bin.phi_d += representations[representation].middle;
     return bin;
@@ -94,7 +99,8 @@ gonio_bin gonio_cell_bin(gonio_representation representation, int32_t cell)
 
 int32_t gonio_cell_of_bin(gonio_representation representation, gonio_bin bin)
 {
-    return gonio_bin_index(bin) / gonio_i_phi_bins(representation);
+    const bool held = gonio_i_is_bin(bin) && gonio_representation_name(representation) != NULL;
+    return held ? gonio_bin_index(bin) / gonio_i_phi_bins(representation) : -1;
 }
 
 gonio_i_bin_run gonio_i_valid_bins(gonio_i_bin_run run, int first_valid)

@@ -33,8 +33,17 @@ gonio_half_difference gonio_bin_centre(gonio_bin bin)
     };
 }
 
+bool gonio_i_is_bin(gonio_bin bin)
+{
+    return bin.theta_h >= 0 && bin.theta_h < GONIO_THETA_H_BINS && bin.theta_d >= 0 &&
+           bin.theta_d < GONIO_THETA_D_BINS && bin.phi_d >= 0 && bin.phi_d < GONIO_PHI_D_BINS;
+}
+
 bool gonio_bin_is_valid(gonio_bin bin)
 {
+    if (!gonio_i_is_bin(bin)) {
+        return false;
+    }
     double incident = 0.0;
     double outgoing = 0.0;
     gonio_cosines(gonio_bin_centre(bin), &incident, &outgoing);

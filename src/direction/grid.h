@@ -7,6 +7,9 @@
 /* The valid bins of a cell are those with first <= phi_d < 180 - first; 90 if there are none. */
 int gonio_i_first_valid_phi(int theta_h, int theta_d);
 
+/* Whether all indices are those of a bin. */
+bool gonio_i_is_bin(gonio_bin bin);
+
 /* cos theta_i cos theta_o = (cos th cos td)^2 - (sin th sin td cos pd)^2 at the centres of a slab's
  * bins: cosines[theta_d][phi_d]. */
 void gonio_i_slab_cosines(int theta_h, double *cosines);

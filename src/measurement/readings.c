@@ -476,7 +476,9 @@ static gonio_status fill_from_plan(gonio_context *context, gonio_readings *r,
     }
     for (size_t k = 0; k < plan->count && status == GONIO_OK; k++) {
         status = take_pair(context, r, k, &plan->entries[k].pair);
-        r->planned[k] = plan->entries[k].channel;
+        if (status == GONIO_OK) {
+            status = take_planned(context, r, k, plan->entries[k].channel);
+        }
     }
     r->basis = plan->basis;
     r->components = plan->expected == NULL ? plan->components : 0;

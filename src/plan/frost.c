@@ -11,6 +11,7 @@
 
 #include <omp.h>
 
+#include "../basis/basis.h"
 #include "../linalg/linalg.h"
 #include "method.h"
 
@@ -215,7 +216,7 @@ static void begin(const pursuit *p)
 {
     const gonio_basis_view *basis = p->problem->basis;
     for (size_t k = 0; k < p->n; k++) {
-        p->inverse[k] = 1.0 / gonio_basis_singular_value(basis, k);
+        p->inverse[k] = 1.0 / gonio_i_singular_value(basis, k);
         for (size_t material = 0; material < p->n; material++) {
             p->target[material * p->n + k] = basis->loadings[material * basis->components + k];
         }

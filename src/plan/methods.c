@@ -44,13 +44,10 @@ const char *gonio_plan_method_reconstruction(const char *method)
     return found != NULL ? found->reconstruction : NULL;
 }
 
-bool gonio_plan_method_basis(const char *method, gonio_plan_basis *basis)
+const gonio_plan_basis *gonio_plan_method_basis(const char *method)
 {
     const gonio_i_method *found = find_method(method);
-    if (found != NULL) {
-        *basis = found->basis;
-    }
-    return found != NULL;
+    return found != NULL ? &found->basis : NULL;
 }
 
 void gonio_plan_options_default(gonio_plan_options *options)
@@ -190,6 +187,10 @@ gonio_status gonio_plan_select(gonio_context *context, const double *vectors, si
     if (status == GONIO_OK && method->select == NULL) {
         status = gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
                               "%s works on a basis, not on bare rows", method->name);
+    }
+    if (status == GONIO_OK && (components == 0 || components > leading)) {
+        status = gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "%zu components of rows that have %zu",
+                              components, leading);
     }
     return status == GONIO_OK ? select_rows(method, &problem, &options, chosen, report) : status;
 }

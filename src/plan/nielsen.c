@@ -132,7 +132,7 @@ static gonio_status find_longest(const gonio_i_selection_problem *problem, size_
     double *length = gonio_i_allocate(problem->context, problem->rows, sizeof *length);
     const bool ready = singular != NULL && length != NULL;
     for (size_t j = 0; j < k && ready; j++) {
-        singular[j] = gonio_basis_singular_value(problem->basis, j);
+        singular[j] = gonio_i_singular_value(problem->basis, j);
     }
     const size_t rows = ready ? problem->rows : 0;
 #pragma omp parallel for schedule(static) num_threads(gonio_context_threads(problem->context))

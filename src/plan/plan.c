@@ -14,14 +14,31 @@ gonio_plan_entry gonio_i_plan_entry(const gonio_basis_view *basis, size_t row, d
                                   gonio_i_cell_direction(basis->representation, cell, phi_d))};
 }
 
-void gonio_plan_rows(const gonio_plan *plan, const gonio_basis *basis, size_t *rows)
+/* Whether a basis has what an entry reads. */
+static bool is_of(const gonio_basis_view *basis, const gonio_plan_entry *entry)
 {
-    const gonio_channel_model channels = gonio_basis_describe(basis)->channels;
+    const bool one = entry->channel >= 0 && entry->channel < GONIO_CHANNELS;
+    return entry->cell >= 0 && entry->cell < gonio_grid_cells(basis->representation) &&
+           (basis->channels == GONIO_JOINT ? one : entry->channel == GONIO_ALL_CHANNELS);
+}
+
+gonio_status gonio_plan_rows(gonio_context *context, const gonio_plan *plan,
+                             const gonio_basis *basis, size_t *rows)
+{
+    const gonio_basis_view *view = gonio_basis_describe(basis);
     for (size_t j = 0; j < plan->count; j++) {
-        const gonio_plan_entry *entry = &plan->entries[j];
-        const size_t position = gonio_basis_position(basis, entry->cell);
-        rows[j] = gonio_i_row_of(channels, position, entry->channel);
+        if (!is_of(view, &plan->entries[j])) {
+            return gonio_i_fail(context, GONIO_ERROR_MISMATCH,
+                                "entry %zu of the plan is of another kind of basis: cell %d, "
+                                "channel %d",
+                                j + 1, (int)plan->entries[j].cell, plan->entries[j].channel);
+        }
     }
+    for (size_t j = 0; j < plan->count; j++) {
+        const size_t position = gonio_basis_position(basis, plan->entries[j].cell);
+        rows[j] = gonio_i_row_of(view->channels, position, plan->entries[j].channel);
+    }
+    return GONIO_OK;
 }
 
 gonio_plan *gonio_i_allocate_plan(gonio_context *context, const gonio_basis_view *basis,

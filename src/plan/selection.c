@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../basis/basis.h"
 #include "../core/random.h"
 #include "../linalg/linalg.h"
 
@@ -75,7 +76,7 @@ void gonio_i_scaled_row(const gonio_i_selection_problem *problem, size_t row, do
 {
     const double *v = gonio_i_row(problem, row);
     for (size_t k = 0; k < problem->components; k++) {
-        scaled[k] = v[k] * gonio_basis_singular_value(problem->basis, k);
+        scaled[k] = v[k] * gonio_i_singular_value(problem->basis, k);
     }
 }
 
@@ -131,9 +132,22 @@ gonio_status gonio_i_random_choice(const gonio_i_selection_problem *problem, uin
 
 /* ---- any rows ---- */
 
-gonio_status gonio_condition_number(gonio_context *context, const double *vectors, size_t leading,
-                                    size_t components, const size_t *chosen, size_t count,
-                                    double *condition_number)
+static gonio_status check_chosen(gonio_context *context, size_t rows, const size_t *chosen,
+                                 size_t count)
+{
+    for (size_t j = 0; j < count; j++) {
+        if (chosen[j] >= rows) {
+            return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "row %zu of %zu rows", chosen[j],
+                                rows);
+        }
+    }
+    return GONIO_OK;
+}
+
+/* Of rows that are there. */
+static gonio_status condition_of(gonio_context *context, const double *vectors, size_t leading,
+                                 size_t components, const size_t *chosen, size_t count,
+                                 double *condition_number)
 {
     double *rows = gonio_i_allocate(context, count * components, sizeof *rows);
     size_t *all = gonio_i_allocate(context, count, sizeof *all);
@@ -154,4 +168,19 @@ gonio_status gonio_condition_number(gonio_context *context, const double *vector
     free(rows);
     free(all);
     return status;
+}
+
+gonio_status gonio_condition_number(gonio_context *context, const double *vectors, size_t rows,
+                                    size_t leading, size_t components, const size_t *chosen,
+                                    size_t count, double *condition_number)
+{
+    const gonio_status status = check_chosen(context, rows, chosen, count);
+    if (status != GONIO_OK) {
+        return status;
+    }
+    if (components == 0 || components > leading) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "%zu components of rows that have %zu",
+                            components, leading);
+    }
+    return condition_of(context, vectors, leading, components, chosen, count, condition_number);
 }

@@ -84,7 +84,7 @@ static void scale(const gonio_i_prior *prior, double *f)
 void gonio_i_prior_at(const gonio_i_prior *prior, gonio_half_difference at, int channel,
                       double *mean, double *f)
 {
-    gonio_basis_row_at(prior->basis, at, channel, prior->components, mean, f);
+    gonio_i_basis_row_at(prior->basis, at, channel, prior->components, mean, f);
     scale(prior, f);
 }
 

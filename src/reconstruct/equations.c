@@ -126,7 +126,7 @@ static gonio_status find_singular(solver *s, const gonio_basis_view *basis, size
 {
     s->singular = gonio_i_allocate(s->context, components, sizeof *s->singular);
     for (size_t k = 0; s->singular != NULL && k < components; k++) {
-        s->singular[k] = gonio_basis_singular_value(basis, k);
+        s->singular[k] = gonio_i_singular_value(basis, k);
     }
     return s->singular != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
 }
@@ -172,7 +172,7 @@ static gonio_status add_reading(const gathering *t, size_t reading, int channel,
     }
     const gonio_half_difference at = gonio_half_difference_from_pair(t->readings->pair[reading]);
     double mean = 0.0;
-    gonio_basis_row_at(t->basis, at, channel, components, &mean, e->x + e->count * components);
+    gonio_i_basis_row_at(t->basis, at, channel, components, &mean, e->x + e->count * components);
     e->b[e->count++] = gonio_mapped_from_brdf(t->mapping, value, channel, at) - mean;
     return GONIO_OK;
 }

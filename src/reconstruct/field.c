@@ -51,9 +51,12 @@ static const double *rows_of(const gonio_basis *basis, const double *field, size
     return field + (is_joint(basis) ? 0 : channel * gonio_basis_describe(basis)->rows);
 }
 
-void gonio_reconstruction_predict(const gonio_basis *basis, const gonio_reconstruction *r,
+bool gonio_reconstruction_predict(const gonio_basis *basis, const gonio_reconstruction *r,
                                   gonio_half_difference at, double *value, double *deviation)
 {
+    if (r->field == NULL || (deviation != NULL && r->deviation == NULL)) {
+        return false;
+    }
     for (size_t k = 0; k < channels_of(basis, r); k++) {
         const double g = gonio_i_field_at(basis, rows_of(basis, r->field, k), (int)k, at);
         value[k] = scale_of(basis, r, k) * expm1(fmin(fmax(g, 0.0), GONIO_I_LARGEST_LOG));
@@ -61,6 +64,7 @@ void gonio_reconstruction_predict(const gonio_basis *basis, const gonio_reconstr
             deviation[k] = gonio_i_field_at(basis, rows_of(basis, r->deviation, k), (int)k, at);
         }
     }
+    return true;
 }
 
 gonio_status gonio_reconstruction_predict_readings(gonio_context *context, const gonio_basis *basis,

@@ -7,6 +7,7 @@
 
 #include "../basis/basis.h"
 #include "../core/options.h"
+#include "method.h"
 
 /* A cell to read. */
 typedef struct place {
@@ -107,6 +108,10 @@ gonio_status gonio_material_rows(gonio_context *context, const gonio_basis *basi
                                  const gonio_material *material, const size_t *rows, size_t count,
                                  double *b)
 {
+    gonio_status status = gonio_i_reconstruct_check_rows(context, basis, rows, count);
+    if (status != GONIO_OK) {
+        return status;
+    }
     reader r = {.context = context,
                 .material = material,
                 .basis = gonio_basis_describe(basis),
@@ -114,7 +119,7 @@ gonio_status gonio_material_rows(gonio_context *context, const gonio_basis *basi
                 .g = gonio_i_allocate(context, GONIO_SLAB_VALUES, sizeof *r.g),
                 .data = gonio_i_allocate(context, GONIO_SLAB_BINS, sizeof *r.data)};
     place *places = gonio_i_allocate(context, count, sizeof *places);
-    gonio_status status = GONIO_ERROR_MEMORY;
+    status = GONIO_ERROR_MEMORY;
     if (r.g != NULL && r.data != NULL && places != NULL) {
         for (size_t k = 0; k < count; k++) {
             places[k] = (place){gonio_i_row_cell(r.basis, rows[k]),
@@ -163,6 +168,9 @@ gonio_status gonio_reconstruct_material(gonio_context *context, const gonio_basi
 {
     gonio_reconstruct_options how;
     gonio_status status = GONIO_I_TAKE(context, gonio_reconstruct_options, options, &how);
+    if (status == GONIO_OK) {
+        status = gonio_i_reconstruct_check_rows(context, basis, rows, count);
+    }
     if (status != GONIO_OK) {
         return status;
     }

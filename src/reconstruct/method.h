@@ -68,6 +68,10 @@ extern const gonio_i_reconstruct_method gonio_i_least_squares_method;
 extern const gonio_i_reconstruct_method gonio_i_ridge_method;
 extern const gonio_i_reconstruct_method gonio_i_posterior_method;
 
+/* Whether the basis has all of rows[count]. Errors: _ARGUMENT. */
+gonio_status gonio_i_reconstruct_check_rows(gonio_context *context, const gonio_basis *basis,
+                                            const size_t *rows, size_t count);
+
 /* Whether basis and options are what the method wants, and so are readings, unless they are NULL.
  * Errors: _ARGUMENT; _MISMATCH (spectra and a joint basis). */
 gonio_status gonio_i_reconstruct_check(gonio_context *context,

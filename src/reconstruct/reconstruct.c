@@ -139,6 +139,20 @@ gonio_status gonio_i_reconstruct_check(gonio_context *context,
                                                   : status;
 }
 
+gonio_status gonio_i_reconstruct_check_rows(gonio_context *context, const gonio_basis *basis,
+                                            const size_t *rows, size_t count)
+{
+    const size_t all = gonio_basis_describe(basis)->rows;
+    for (size_t k = 0; k < count; k++) {
+        if (rows[k] >= all) {
+            return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "row %zu of a basis of %zu rows",
+                                rows[k], all);
+        }
+    }
+    return count > 0 ? GONIO_OK
+                     : gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "no rows of the basis given");
+}
+
 /* ---- a task ---- */
 
 /* The method asked for, or that of the plan (its method's name, or NULL), or the usual one. */
@@ -213,7 +227,10 @@ gonio_status gonio_reconstruct_rows(gonio_context *context, const gonio_basis *b
     gonio_reconstruct_options_default(&options);
     const gonio_i_reconstruct_task task = {context, &gonio_i_least_squares_method, basis, &options,
                                            default_eta};
-    return gonio_i_equations_of_rows(&task, components, rows, count, b, reconstruction);
+    const gonio_status status = gonio_i_reconstruct_check_rows(context, basis, rows, count);
+    return status == GONIO_OK
+               ? gonio_i_equations_of_rows(&task, components, rows, count, b, reconstruction)
+               : status;
 }
 
 gonio_status gonio_reconstruct_rows_with(gonio_context *context, const gonio_basis *basis,
@@ -229,6 +246,9 @@ gonio_status gonio_reconstruct_rows_with(gonio_context *context, const gonio_bas
     }
     if (status == GONIO_OK) {
         status = gonio_i_reconstruct_check(context, task.method, basis, NULL, &how);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_reconstruct_check_rows(context, basis, rows, count);
     }
     return status == GONIO_OK ? task.method->from_rows(&task, rows, count, b, reconstruction)
                               : status;

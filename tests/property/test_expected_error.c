@@ -407,7 +407,7 @@ static void test_methods(void **state)
     size_t rows[8];
     size_t chosen[8];
     gonio_selection_report report;
-    gonio_plan_rows(plan, basis, rows);
+    assert_int_equal(gonio_plan_rows(NULL, plan, basis, rows), GONIO_OK);
     double *vectors = support_vectors(basis);
     assert_int_equal(gonio_plan_select(one_thread, vectors, view->rows, view->components, 4,
                                        &options, chosen, &report),

@@ -100,7 +100,7 @@ static double error_of(const char *method, size_t count)
     gonio_plan *plan = NULL;
     assert_int_equal(gonio_plan_create(data.context, data.basis, &how, &plan), GONIO_OK);
     size_t *rows = malloc(count * sizeof *rows);
-    gonio_plan_rows(plan, data.basis, rows);
+    assert_int_equal(gonio_plan_rows(data.context, plan, data.basis, rows), GONIO_OK);
     const gonio_reconstruct_options options = {.size = sizeof options,
                                                .components = plan->components,
                                                .method = gonio_plan_method_reconstruction(method)};

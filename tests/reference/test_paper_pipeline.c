@@ -302,8 +302,9 @@ static void check_random_rows(const split *s)
                 (size_t)json_integer_value(json_array_get(json_object_get(expected, "rows"), k));
         }
         double condition = 0.0;
-        assert_int_equal(gonio_condition_number(data.context, s->vectors, s->view->components,
-                                                components, rows, count, &condition),
+        assert_int_equal(gonio_condition_number(data.context, s->vectors, s->view->rows,
+                                                s->view->components, components, rows, count,
+                                                &condition),
                          GONIO_OK);
         assert_close(condition, number(expected, "condition_number"), 1e-3);
         assert_close(mean_error(s, components, rows, count), number(expected, "e6_mean_percent"),

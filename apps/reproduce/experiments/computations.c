@@ -113,7 +113,11 @@ static gonio_status record_start(gonio_context *context, const gonio_basis *basi
     if (row == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    gonio_plan_rows(plan, basis, row);
+    const gonio_status status = gonio_plan_rows(context, plan, basis, row);
+    if (status != GONIO_OK) {
+        free(row);
+        return status;
+    }
     json_t *steps = json_array();
     json_t *chosen = json_array();
     for (size_t k = 0; k < plan->steps; k++) {

@@ -142,10 +142,10 @@ static gonio_status make_plan(trial *t, gonio_i_size size, uint64_t seed, gonio_
     if (t->rows == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    const gonio_status status = gonio_plan_create(t->context, t->basis, &options, plan);
+    gonio_status status = gonio_plan_create(t->context, t->basis, &options, plan);
     if (status == GONIO_OK) {
         t->plan = *plan;
-        gonio_plan_rows(*plan, t->basis, t->rows);
+        status = gonio_plan_rows(t->context, *plan, t->basis, t->rows);
     }
     return status;
 }
