@@ -90,7 +90,8 @@ GONIO_API gonio_status gonio_reconstruction_predict_readings(
     gonio_readings *readings);
 
 /* The standard deviations of g as a material, in place of rho/s: the numbers that a MERL table of
- * it holds are the deviations. The basis and the reconstruction must outlive it. Errors: _MEMORY;
+ * it holds are the deviations. Of spectra and of a single channel they are those of the colours that
+ * a table has, the errors of all wavelengths taken as going together. The basis and the reconstruction must outlive it. Errors: _MEMORY;
  * _ARGUMENT if they were not asked for. */
 GONIO_API gonio_status gonio_reconstruction_deviation_material(
     gonio_context *context, const gonio_basis *basis, const gonio_reconstruction *reconstruction,

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "../material/colour.h"
+
 static json_t *number(double value)
 {
     return isfinite(value) ? json_real(value) : json_null();
@@ -117,12 +119,48 @@ static json_t *values_at(const gonio_table *table, gonio_pair pair)
                : json_null();
 }
 
-/* The values of R, G, B; NaN of other channels. */
+/* The colour of the wavelengths that were read, NaN of none; false when out of memory. */
+static bool mix_colour(const gonio_readings_view *view, size_t reading,
+                       double value[GONIO_CHANNELS])
+{
+    const double *read = view->value + reading * view->channels;
+    double *kept = malloc((2 + GONIO_CHANNELS) * view->channels * sizeof *kept);
+    size_t count = 0;
+    if (kept == NULL) {
+        return false;
+    }
+    double *values = kept + view->channels;
+    double *weight = values + view->channels;
+    for (size_t k = 0; k < view->channels; k++) {
+        if (!isnan(read[k])) {
+            kept[count] = view->wavelength[k];
+            values[count++] = read[k];
+        }
+    }
+    const bool done = count > 0 && gonio_i_colour_weights(NULL, kept, count, GONIO_ILLUMINANT_E,
+                                                          weight) == GONIO_OK;
+    for (size_t c = 0; c < GONIO_CHANNELS; c++) {
+        double sum = done ? 0.0 : NAN;
+        for (size_t k = 0; k < count && done; k++) {
+            sum += weight[c * count + k] * values[k];
+        }
+        value[c] = sum < 0.0 ? 0.0 : sum;
+    }
+    free(kept);
+    return true;
+}
+
+/* The values of R, G, B; of spectra their colours, of a single channel grey, of others NaN. */
 static void colours_of(const gonio_readings *readings, size_t reading, double value[GONIO_CHANNELS])
 {
+    const gonio_readings_view *view = gonio_readings_describe(readings);
+    if (view->wavelength != NULL && mix_colour(view, reading, value)) {
+        return;
+    }
     const bool colours = gonio_readings_are_colours(readings);
+    const bool grey = view->channels == 1;
     for (size_t c = 0; c < GONIO_CHANNELS; c++) {
-        value[c] = colours ? gonio_readings_value(readings, reading, c) : NAN;
+        value[c] = colours || grey ? gonio_readings_value(readings, reading, grey ? 0 : c) : NAN;
     }
 }
 

@@ -200,6 +200,31 @@ static void mix_colours(const gonio_reconstruction *r, const double *weight, spr
     }
 }
 
+/* Deviations of the colours' g, errors of all wavelengths taken as going together, from those of
+ * the channels: d rho = (rho + s) d g. weight[channel][columns]; NULL for a single channel. */
+static void mix_deviations(const gonio_reconstruction *r, const double *weight, spread_field *f)
+{
+    const size_t count = r->columns;
+    for (size_t k = 0; k < f->view->cells; k++) {
+        double rgb[GONIO_CHANNELS] = {0.0};
+        double deviation[GONIO_CHANNELS] = {0.0};
+        for (size_t j = 0; j < count; j++) {
+            const double s = scale_of(f->basis, r, j);
+            const double g = r->field[j * f->view->rows + k];
+            const double rho = s * expm1(fmin(fmax(g, 0.0), GONIO_I_LARGEST_LOG));
+            for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
+                const double w = weight != NULL ? weight[channel * count + j] : 1.0;
+                rgb[channel] += w * rho;
+                deviation[channel] += fabs(w) * (rho + s) * r->deviation[j * f->view->rows + k];
+            }
+        }
+        for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
+            f->g[channel * f->view->cells + k] =
+                deviation[channel] / (fmax(rgb[channel], 0.0) + gonio_log_scale((int)channel));
+        }
+    }
+}
+
 /* Under equal energy, as colours of spectral materials are. */
 static gonio_status fill_spectra(gonio_context *context, const gonio_reconstruction *r,
                                  spread_field *f)
@@ -209,7 +234,9 @@ static gonio_status fill_spectra(gonio_context *context, const gonio_reconstruct
                                     ? gonio_i_colour_weights(context, r->wavelength, r->wavelengths,
                                                              GONIO_ILLUMINANT_E, weight)
                                     : GONIO_ERROR_MEMORY;
-    if (status == GONIO_OK) {
+    if (status == GONIO_OK && f->plain) {
+        mix_deviations(r, weight, f);
+    } else if (status == GONIO_OK) {
         gonio_i_note_colours(context, "reconstruction", r->wavelength, r->wavelengths);
         mix_colours(r, weight, f);
     }
@@ -225,7 +252,11 @@ static gonio_status fill_field(gonio_context *context, const gonio_reconstructio
         return GONIO_OK;
     }
     if (r->wavelengths == 0 && r->columns == 1) {
-        copy_grey(r, f);
+        if (f->plain) {
+            mix_deviations(r, NULL, f);
+        } else {
+            copy_grey(r, f);
+        }
         return GONIO_OK;
     }
     if (r->wavelengths == 0) {
@@ -273,10 +304,9 @@ gonio_status gonio_reconstruction_deviation_material(gonio_context *context,
                                                      const gonio_reconstruction *r,
                                                      gonio_material **material)
 {
-    if (r->deviation == NULL || !has_colours(basis, r)) {
+    if (r->deviation == NULL) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                            "a table of deviations is made of readings in R, G, B, where they "
-                            "were asked for");
+                            "a table of deviations is made where they were asked for");
     }
     return create(context, basis, r, r->deviation, true, "deviation", material);
 }
