@@ -207,10 +207,12 @@ static bool check(const tool *t, const options *o, const char *reference, bool r
                            reference);
     }
     if (o->leave_out != NULL && !readings) {
-        return tool_refuse(t, "--leave-out is for readings: %s is none", reference);
+        return tool_refuse(t, "--leave-out needs readings, but %s is not a readings file",
+                           reference);
     }
     if (o->render && readings) {
-        return tool_refuse(t, "--render is for whole materials: %s is readings", reference);
+        return tool_refuse(t, "--render needs whole materials, but %s is a readings file",
+                           reference);
     }
     return true;
 }

@@ -102,7 +102,7 @@ static bool check(const tool *t, const options *o, const char **arguments, size_
         return tool_refuse(t, "PLAN and MATERIAL are needed");
     }
     if (!(o->outliers >= 0.0 && o->outliers <= 100.0)) {
-        return tool_refuse(t, "--outliers is a share in per cent, 0 to 100");
+        return tool_refuse(t, "--outliers must be 0 to 100 per cent");
     }
     return tool_check_not_negative(t, "--noise", o->noise) &&
            tool_check_not_negative(t, "--floor", o->floor) &&

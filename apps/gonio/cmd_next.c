@@ -36,7 +36,8 @@ static int report(const tool *t, const options *o, const answer *a)
                          "suspicion", a->suspicion));
     }
     if (!tool_quiet && plan == NULL) {
-        printf("expected error (E6) %.2f %%: the target is met, nothing more to read\n", a->now);
+        printf("expected error (E6) %.2f %%: the target is met, no more readings are needed\n",
+               a->now);
     } else if (!tool_quiet) {
         printf("%s: %zu more reading%s; expected error (E6) now %.2f %%, then %.2f %%\n", o->output,
                plan->count, tool_plural(plan->count), a->now, plan->expected[plan->count - 1]);
@@ -92,7 +93,7 @@ static int next(tool *t, const options *o, const char *basis_path, const char *p
 static bool check(const tool *t, const options *o, const char *const *inputs, size_t count)
 {
     if (count == 0 || count > 2) {
-        return tool_refuse(t, "READINGS, and before it a BASIS if you have one, are needed");
+        return tool_refuse(t, "READINGS are needed; give a BASIS before them if you have one");
     }
     return tool_check_output(t, o->output, inputs, count) &&
            planning_options_check(t, &o->planning, o->output) &&
@@ -124,11 +125,11 @@ int cmd_next(int argc, const char **argv)
     const tool_command_line line = {
         .table = table,
         .usage = "[OPTION...] [BASIS] READINGS -o PLAN",
-        .text = "Without BASIS, the basis of the built-in materials serves. What was read "
-                "tells what the material is like; the proposed directions are those that "
-                "leave the least expected error of such materials.\n"
-                "Example: gonio next merl.gonio readings.csv -n 5 --target-error 3% "
-                "-o more.csv",
+        .text =
+            "Without BASIS, the basis of the built-in materials serves. The proposed directions "
+            "are those that leave the least expected error, given the readings so far.\n"
+            "Example: gonio next merl.gonio readings.csv -n 5 --target-error 3% "
+            "-o more.csv",
         .work = run,
         .options = &o};
     return tool_run(argc, argv, &line);

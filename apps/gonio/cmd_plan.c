@@ -71,7 +71,7 @@ static gonio_status make_plan(tool *t, const options *o, const char *basis_path,
 static bool check(const tool *t, const options *o, size_t count, const char **arguments)
 {
     if (count > 1) {
-        return tool_refuse(t, "one BASIS at most, not %zu", count);
+        return tool_refuse(t, "give at most one BASIS, not %zu", count);
     }
     if (!tool_check_output(t, o->output, arguments, count) ||
         (o->history != NULL && !tool_check_output(t, o->history, arguments, count))) {

@@ -67,16 +67,16 @@ static void warn(const gonio_reconstruction *r, const char *output, const energy
 {
     tool_note_suspicion("reconstruct", output, r->suspicion);
     if (r->dark != NULL && !tool_quiet) {
-        fprintf(
-            stderr,
-            "gonio reconstruct: note: %s: the instrument seems to subtract up to "
-            "%.2g/cos(theta_i) 1/sr too much, which is corrected for (--no-checks: do not look)\n",
-            output, largest(r->dark, r->columns));
+        fprintf(stderr,
+                "gonio reconstruct: note: %s: the instrument seems to subtract up to "
+                "%.2g/cos(theta_i) 1/sr too much, which is corrected for (--no-checks turns this "
+                "off)\n",
+                output, largest(r->dark, r->columns));
     }
     if (e->known && e->albedo > 1.0 && !tool_quiet) {
         fprintf(stderr,
-                "gonio reconstruct: note: %s reflects %.2f times the light that comes from "
-                "theta_i = %g degrees, which no material does\n",
+                "gonio reconstruct: note: %s reflects %.2f times the light from theta_i = %g "
+                "degrees, which no material can do\n",
                 output, e->albedo, e->theta_i);
     }
 }
@@ -127,7 +127,7 @@ static void print(const gonio_reconstruction *r, const char *output, const energ
         printf(", albedo at most %.2f", e->albedo);
     }
     if (r->outlying > 0) {
-        printf(", %zu value%s that the others contradict", r->outlying, tool_plural(r->outlying));
+        printf(", %zu value%s contradicted by the others", r->outlying, tool_plural(r->outlying));
     }
     putchar('\n');
 }
@@ -335,8 +335,8 @@ static bool check_different(const tool *t, const char *const *paths, char *const
     for (size_t k = 1; k < count; k++) {
         for (size_t j = 0; j < k; j++) {
             if (strcmp(outputs[j], outputs[k]) == 0) {
-                return tool_refuse(t, "%s and %s would both become %s", paths[j], paths[k],
-                                   outputs[k]);
+                return tool_refuse(t, "%s and %s would both be written to %s; rename one", paths[j],
+                                   paths[k], outputs[k]);
             }
         }
     }
@@ -372,7 +372,7 @@ static bool check_more(const tool *t, const options *o, const char *const *input
 static bool check(const tool *t, const options *o, const char *const *inputs, size_t count)
 {
     if (count == 0) {
-        return tool_refuse(t, "READINGS, and before it a BASIS if you have one, are needed");
+        return tool_refuse(t, "READINGS are needed; give a BASIS before them if you have one");
     }
     if (count > 2 && !is_folder(o->output)) {
         return tool_refuse(t, "several READINGS need a folder that exists: -o DIR");
@@ -455,7 +455,7 @@ int cmd_reconstruct(int argc, const char **argv)
          "a basis with mixtures and least-squares for others)",
          "METHOD"},
         {"eta", '\0', POPT_ARG_DOUBLE, &o.eta, 0,
-         "How much ridge holds against large coefficients (default: 40)", "ETA"},
+         "How strongly ridge penalises large coefficients (default: 40)", "ETA"},
         {"all-channels", '\0', POPT_ARG_NONE, &o.all_channels, 0,
          "Use every channel that was read, not only the planned one", NULL},
         POSTERIOR_OPTIONS(&o.posterior),

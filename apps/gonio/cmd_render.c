@@ -94,7 +94,7 @@ static bool set_view(const tool *t, const options *o, gonio_render_options *how)
         return tool_refuse(t, "--view: '%s' is not AZIMUTH,ELEVATION in degrees", o->view);
     }
     if (!(o->field_of_view >= 0.0 && o->field_of_view <= 110.0)) {
-        return tool_refuse(t, "--fov: %g is not 0 to 110 degrees", o->field_of_view);
+        return tool_refuse(t, "--fov: %g is outside 0 to 110 degrees", o->field_of_view);
     }
     how->azimuth = angle[0] * degree;
     how->elevation = angle[1] * degree;
@@ -118,9 +118,7 @@ static bool set_lamp(const tool *t, const options *o, gonio_render_options *how)
                            point ? "[,DISTANCE]" : "");
     }
     if (point && at[2] <= 1.0) {
-        return tool_refuse(t,
-                           "--light-at: distance %g is not more than 1, the radius of the "
-                           "object",
+        return tool_refuse(t, "--light-at: distance %g must be above 1, the radius of the object",
                            at[2]);
     }
     how->lamp = point ? GONIO_LAMP_POINT : GONIO_LAMP_DIRECTIONAL;
@@ -138,7 +136,7 @@ static bool set_options(const tool *t, const options *o, gonio_render_options *h
         return tool_refuse(t, "--size: '%s' is not N or WIDTHxHEIGHT in pixels", size);
     }
     if (!(o->key > 0.0 && isfinite(o->key))) {
-        return tool_refuse(t, "--key: %g is not more than 0", o->key);
+        return tool_refuse(t, "--key: %g must be above 0", o->key);
     }
     if (!tool_check_count(t, "--samples", o->samples, 1)) {
         return false;
@@ -411,7 +409,7 @@ static int compare_all(const tool *t, const options *o, const scene *s, const ch
     gonio_status status = make_picture(t, count / columns, columns, &p);
     if (status == GONIO_OK && o->labels != NULL && !read_labels(o->labels, &p)) {
         free_picture(&p);
-        tool_refuse(t, "--labels: '%s' is not %zu names between commas", o->labels, columns);
+        tool_refuse(t, "--labels: '%s' must be %zu names separated by commas", o->labels, columns);
         return EXIT_USAGE;
     }
     for (size_t row = 0; row < p.rows && status == GONIO_OK; row++) {
@@ -439,7 +437,8 @@ static bool check_arguments(const tool *t, const options *o, size_t count)
         return tool_refuse(t, "REFERENCE and at least one OTHER are needed");
     }
     if (o->columns < 0 || o->columns == 1 || (o->columns > 1 && count % (size_t)o->columns != 0)) {
-        return tool_refuse(t, "--columns: %zu materials are not rows of %ld", count, o->columns);
+        return tool_refuse(t, "--columns: %zu materials do not fill rows of %ld", count,
+                           o->columns);
     }
     return true;
 }

@@ -73,14 +73,14 @@ static gonio_status write_page(const tool *t, const options *o, const shown *s)
 static bool check(const tool *t, const options *o, const char **arguments, size_t count)
 {
     if (count < 1 || count > 2) {
-        return tool_refuse(t, "a REFERENCE, perhaps with a RECONSTRUCTION, or the folder of a "
-                              "reproduction is needed");
+        return tool_refuse(
+            t, "give a REFERENCE and optionally a RECONSTRUCTION, or the folder of a reproduction");
     }
     if (is_folder(arguments[0]) && (count > 1 || o->readings != NULL || o->deviation != NULL)) {
-        return tool_refuse(t, "%s is a folder, which is shown on its own", arguments[0]);
+        return tool_refuse(t, "%s is a folder: give it alone", arguments[0]);
     }
     if (o->deviation != NULL && count < 2) {
-        return tool_refuse(t, "--deviation needs a RECONSTRUCTION that it is of");
+        return tool_refuse(t, "--deviation needs the RECONSTRUCTION that it belongs to");
     }
     const char *const inputs[] = {o->readings, o->deviation};
     return tool_check_output(t, o->output, arguments, count) &&
@@ -134,7 +134,8 @@ int cmd_report(int argc, const char **argv)
         .text =
             "Writes a page for a browser, one file that needs no network: spheres to light and "
             "turn,\n"
-            "where was measured, the image slice, lobes and errors. OUTDIR is a folder of 'gonio\n"
+            "the measured directions, the image slice, lobes and errors. OUTDIR is a folder of "
+            "'gonio\n"
             "reproduce', whose figures become charts.\n"
             "Example: gonio report gold.binary gold-80.binary --readings readings.csv -o gold.html",
         .work = run,

@@ -108,10 +108,10 @@ int tool_on_progress(void *user, const char *task, double fraction)
 void tool_note_suspicion(const char *command, const char *path, const char *suspicion)
 {
     if (suspicion != NULL && !tool_quiet) {
-        fprintf(
-            stderr,
-            "gonio %s: note: %s: the readings are far likelier if %s (--no-checks: do not look)\n",
-            command, path, suspicion);
+        fprintf(stderr,
+                "gonio %s: note: %s: the readings fit far better if %s (--no-checks turns this "
+                "check off)\n",
+                command, path, suspicion);
     }
 }
 

@@ -34,7 +34,8 @@ bool planning_options_check(const tool *t, const planning_options *o, const char
     return (o->count == PLANNING_USUAL_COUNT || tool_check_count(t, "-n", o->count, 1)) &&
            (o->metric == NULL || check_metric(t, o->metric)) &&
            (o->target == NULL || percent(o->target) > 0.0 ||
-            tool_refuse(t, "--target-error: '%s' is no error in per cent above 0", o->target)) &&
+            tool_refuse(t, "--target-error: '%s' is not an error in per cent above 0",
+                        o->target)) &&
            (o->candidates == NULL || tool_check_output(t, output, &o->candidates, 1));
 }
 

@@ -47,7 +47,8 @@ bool write_options_check(const tool *t, const write_options *options, gonio_writ
         return tool_refuse(t, "--illuminant %s: E, D65 or A", options->illuminant);
     }
     if (options->steps != NULL && !read_steps(options->steps, step)) {
-        return tool_refuse(t, "--steps %s: three numbers of degrees are needed, 0.1 to 90: 10,5,10",
+        return tool_refuse(t,
+                           "--steps %s: give three steps of 0.1 to 90 degrees, for example 10,5,10",
                            options->steps);
     }
     how->theta_i_step = step[0] * M_PI / 180.0;

@@ -302,7 +302,7 @@ gonio_status gonio_basis_rows(gonio_context *context, const gonio_basis *basis, 
 {
     if (first > basis->rows || count > basis->rows - first || components > basis->components) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                            "%zu components of the rows %zu .. %zu asked for, but the basis has "
+                            "%zu components of rows %zu to %zu requested, but the basis has "
                             "%zu components and %zu rows",
                             components, first, first + count, basis->components, basis->rows);
     }

@@ -495,9 +495,9 @@ static gonio_status check_mixtures(gonio_context *context, const gonio_database_
 {
     if (options->mixtures > 0 && (view->representation == GONIO_FULL ||
                                   view->mapping != GONIO_LOG || options->without_mean)) {
-        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                            "mixtures are for the log mapping with a mean, on the sectored or the "
-                            "bivariate grid");
+        return gonio_i_fail(
+            context, GONIO_ERROR_ARGUMENT,
+            "mixtures need the log mapping with a mean, on the sectored or the bivariate grid");
     }
     return GONIO_OK;
 }

@@ -561,7 +561,7 @@ static gonio_status check_kind(gonio_context *context, const gonio_database_opti
     }
     if (options->representation == GONIO_SECTORED && options->mapping == GONIO_LOG_RELATIVE) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                            "the relative mapping is for the full and the bivariate grid, not for "
+                            "the relative mapping needs the full or the bivariate grid, not "
                             "sectors (gonio learn --grid full)");
     }
     return GONIO_OK;
@@ -710,13 +710,14 @@ static gonio_status check_request(gonio_context *context, const gonio_database_v
 {
     if (count == 0 || first >= view->rows || count > view->rows - first) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                            "rows %zu to %zu of a matrix of %zu rows", first, first + count,
-                            view->rows);
+                            "rows %zu to %zu are outside a matrix of %zu rows", first,
+                            first + count, view->rows);
     }
     for (size_t k = 0; subset != NULL && k < subset_count; k++) {
         if (subset[k] >= view->materials) {
-            return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "material %zu of a database of %zu",
-                                subset[k], view->materials);
+            return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                                "material %zu is outside a database of %zu", subset[k],
+                                view->materials);
         }
     }
     return GONIO_OK;

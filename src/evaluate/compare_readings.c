@@ -103,8 +103,8 @@ gonio_status gonio_compare_readings(gonio_context *context, const gonio_readings
         return status;
     }
     if (!(sums.metric[GONIO_E6].reference > 0.0)) {
-        return gonio_i_fail(context, GONIO_ERROR_DATA, "%s: nothing to compare, or only darkness",
-                            view->path);
+        return gonio_i_fail(context, GONIO_ERROR_DATA,
+                            "%s: no readings to compare, or all of them are zero", view->path);
     }
     *compared = count_readings(view->count, left_out);
     *error = gonio_i_error_of(&sums, (double)values);

@@ -18,7 +18,7 @@ gonio_status gonio_i_sampler_begin(gonio_context *context, const gonio_material 
                                  .turns = 1};
     if (average && sampler->view->anisotropic) {
         sampler->turns = TURNS;
-        gonio_i_note(context, "%s: anisotropic; written is the mean over %d azimuths of the sample",
+        gonio_i_note(context, "%s: anisotropic; the mean over %d azimuths of the sample is written",
                      sampler->view->name, TURNS);
     }
     return material->source.evaluate == NULL ? gonio_table_load(context, material, &sampler->table)

@@ -70,11 +70,10 @@ static gonio_status check(gonio_context *context, const gonio_instrument_options
     if (!(options->noise >= 0.0 && isfinite(options->noise)) ||
         !(options->floor >= 0.0 && isfinite(options->floor))) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                            "noise and floor are finite numbers from 0");
+                            "noise and floor must be finite and not negative");
     }
     if (!(options->outliers >= 0.0 && options->outliers <= 1.0)) {
-        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                            "the share of outliers is a number from 0 to 1");
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "the share of outliers must be 0 to 1");
     }
     return GONIO_OK;
 }

@@ -125,7 +125,7 @@ static gonio_status check_wavelengths(gonio_context *context, const char *path, 
 {
     for (size_t k = 0; k < channels && wavelength != NULL; k++) {
         if (!(wavelength[k] > 0.0 && wavelength[k] < 1e6)) {
-            return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "%s: %g is no wavelength in nm",
+            return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "%s: %g is not a wavelength in nm",
                                 path, wavelength[k]);
         }
         for (size_t j = 0; j < k; j++) {

@@ -204,8 +204,8 @@ static gonio_status check(gonio_context *context, const gonio_page_content *cont
 {
     if (!gonio_page_is_built()) {
         return gonio_i_fail(context, GONIO_ERROR_IO,
-                            "the page is not in this gonio, which was built without Node.js: "
-                            "install nodejs (18.19 or newer) and npm, and run make again");
+                            "this gonio was built without Node.js and cannot write pages: install "
+                            "nodejs (18.19 or newer) and npm, and run make again");
     }
     if (content->reference == NULL && content->folder == NULL) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "a page needs a material or a folder");
@@ -215,7 +215,7 @@ static gonio_status check(gonio_context *context, const gonio_page_content *cont
     }
     if (content->reconstruction == NULL && content->deviation != NULL) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                            "standard deviations need a reconstruction that they are of");
+                            "standard deviations need the reconstruction that they belong to");
     }
     return GONIO_OK;
 }

@@ -185,8 +185,8 @@ gonio_status gonio_plan_select(gonio_context *context, const double *vectors, si
     const gonio_i_method *method = NULL;
     status = choose_method(context, NULL, &options, &method);
     if (status == GONIO_OK && method->select == NULL) {
-        status = gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                              "%s works on a basis, not on bare rows", method->name);
+        status = gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "%s needs a basis, not only its rows",
+                              method->name);
     }
     if (status == GONIO_OK && (components == 0 || components > leading)) {
         status = gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "%zu components of rows that have %zu",
@@ -246,7 +246,7 @@ static gonio_status check_options(gonio_context *context, const gonio_basis_view
 {
     if (options->candidates != NULL || options->target > 0.0) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                            "candidates and target errors are for the method %s",
+                            "candidates and target errors need the method %s",
                             usual_method(true)->name);
     }
     if (components > basis->components) {

@@ -260,10 +260,9 @@ static gonio_status fill_field(gonio_context *context, const gonio_reconstructio
         return GONIO_OK;
     }
     if (r->wavelengths == 0) {
-        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                            "a table is made of R, G, B, of a spectrum or of a single channel, "
-                            "not of %zu channels",
-                            r->columns);
+        return gonio_i_fail(
+            context, GONIO_ERROR_ARGUMENT,
+            "a table needs R, G, B, a spectrum or a single channel, not %zu channels", r->columns);
     }
     return fill_spectra(context, r, f);
 }
@@ -306,7 +305,7 @@ gonio_status gonio_reconstruction_deviation_material(gonio_context *context,
 {
     if (r->deviation == NULL) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                            "a table of deviations is made where they were asked for");
+                            "the reconstruction has no deviations; reconstruct with them");
     }
     return create(context, basis, r, r->deviation, true, "deviation", material);
 }

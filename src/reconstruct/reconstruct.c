@@ -90,7 +90,7 @@ static gonio_status check_basis(gonio_context *context, const gonio_i_reconstruc
 {
     if (method->wants.log_mapping && basis->mapping != GONIO_LOG) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                            "%s works on a basis of the log mapping (gonio learn without "
+                            "%s needs a basis of the log mapping (gonio learn without "
                             "--mapping relative)",
                             method->name);
     }
@@ -101,8 +101,9 @@ static gonio_status check_basis(gonio_context *context, const gonio_i_reconstruc
                             method->name, basis->components, options->components);
     }
     if (method->wants.noise && !is_noise(options)) {
-        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                            "noise, floor and saturation are numbers from 0");
+        return gonio_i_fail(
+            context, GONIO_ERROR_ARGUMENT,
+            "noise and floor must be finite and not negative, saturation not negative");
     }
     return GONIO_OK;
 }
@@ -115,9 +116,9 @@ static gonio_status check_readings(gonio_context *context, const gonio_i_reconst
     }
     if (method->wants.colours) {
         const gonio_readings_view *view = gonio_readings_describe(readings);
-        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "%s: %s are for --method %s", view->path,
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "%s: %s need --method %s", view->path,
                             view->wavelength != NULL ? "spectral readings"
-                                                     : "readings other than of R, G, B",
+                                                     : "channels other than R, G, B",
                             method_of_any_channels());
     }
     if (basis->channels == GONIO_JOINT) {

@@ -222,8 +222,8 @@ static gonio_status check_pixels(gonio_context *context, const char *name, bool 
         }
         if (!repair) {
             return gonio_i_fail(context, GONIO_ERROR_DATA,
-                                "%s: the pixel in row %zu, column %zu is (%g, %g, %g), which is no "
-                                "light; --repair takes such pixels as black",
+                                "%s: the pixel in row %zu, column %zu is (%g, %g, %g), which is "
+                                "not a radiance; --repair replaces such pixels by black",
                                 name, k / (size_t)image->width + 1, k % (size_t)image->width + 1,
                                 (double)pixel[0], (double)pixel[1], (double)pixel[2]);
         }
@@ -231,8 +231,8 @@ static gonio_status check_pixels(gonio_context *context, const char *name, bool 
         bad++;
     }
     if (bad > 0) {
-        gonio_i_warn(context, "%s: %zu of %zu pixels are no light and are taken as black", name,
-                     bad, pixels);
+        gonio_i_warn(context, "%s: %zu of %zu pixels are not radiances and are replaced by black",
+                     name, bad, pixels);
     }
     return GONIO_OK;
 }

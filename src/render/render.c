@@ -282,19 +282,20 @@ static gonio_status check(gonio_context *context, const gonio_render_options *o)
 {
     const double distance = gonio_i_length(o->lamp_position);
     if (o->samples < 1) {
-        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "%d samples a pixel: at least 1",
-                            o->samples);
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "%d samples a pixel are too few: at least 1 is needed", o->samples);
     }
     if (!(o->field_of_view >= 0.0 && o->field_of_view <= 2.0) || !isfinite(o->azimuth) ||
         !isfinite(o->elevation) || !isfinite(o->environment_turn)) {
-        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                            "no view: the field of view must be 0 to 2 rad, angles finite");
+        return gonio_i_fail(
+            context, GONIO_ERROR_ARGUMENT,
+            "invalid view: the field of view must be 0 to 2 rad, the angles finite");
     }
     if (o->environment == NULL && (!isfinite(distance) || distance == 0.0 ||
                                    (o->lamp == GONIO_LAMP_POINT && distance <= 1.0))) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                            "no lamp: its position must be finite and not the origin, that of a "
-                            "point farther away than 1, the radius of the object");
+                            "invalid lamp: its position must be finite and not the origin; a point "
+                            "lamp must be farther than 1, the radius of the object");
     }
     return GONIO_OK;
 }

@@ -43,19 +43,20 @@ static gonio_status check(gonio_context *context, const gonio_sheet *sheet)
 {
     const gonio_image *first = sheet->rows > 0 && sheet->columns > 0 ? sheet->cells[0].image : NULL;
     if (first == NULL) {
-        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "a comparison picture of nothing");
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "a comparison picture needs images");
     }
     for (size_t k = 0; k < sheet->rows * sheet->columns; k++) {
         const gonio_image *image = sheet->cells[k].image;
         if (image == NULL && k % sheet->columns == 0) {
             return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                                "a comparison picture without a reference in row %zu",
+                                "row %zu of a comparison picture has no reference",
                                 k / sheet->columns + 1);
         }
         if (image != NULL && (image->width != first->width || image->height != first->height)) {
-            return gonio_i_fail(context, GONIO_ERROR_MISMATCH,
-                                "a comparison picture of images of %d x %d and %d x %d pixels",
-                                first->width, first->height, image->width, image->height);
+            return gonio_i_fail(
+                context, GONIO_ERROR_MISMATCH,
+                "a comparison picture needs images of one size, not %d x %d and %d x %d pixels",
+                first->width, first->height, image->width, image->height);
         }
     }
     return GONIO_OK;

@@ -175,7 +175,8 @@ static gonio_status fill_bins(gonio_context *context, const gonio_material *mate
     }
     const size_t holes = valid_bins() - data;
     if (holes > 0) {
-        gonio_i_note(context, "%s: %zu directions have no data; their nearest ones stand in",
+        gonio_i_note(context,
+                     "%s: %zu directions have no data; the nearest directions with data are used",
                      gonio_material_name(material), holes);
     }
     find_highlight(surface);

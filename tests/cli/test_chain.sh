@@ -121,7 +121,7 @@ expect_same many/other.binary many/again.binary
 expect_same many/other.binary one/out.binary
 expect_fail 2 'several READINGS need a folder that exists' reconstruct b.gonio other.csv again.csv -o new
 cp other.csv many/again.csv
-expect_fail 2 'would both become many/again.binary' \
+expect_fail 2 'would both be written to many/again.binary' \
     reconstruct b.gonio again.csv many/again.csv -o many
 
 # ---- JSON ----

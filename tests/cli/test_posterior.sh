@@ -77,7 +77,7 @@ expect_true 'more light than there is is told' \
 
 awk -F, -v OFS=, '/^[#t]/ { print; next } ++n == 7 { $6 *= 20; $7 *= 20; $8 *= 20 } { print }' \
     all.csv >wrong.csv
-expect_output ' values that the others contradict' reconstruct b.gonio wrong.csv -o wrong.binary
+expect_output ' values contradicted by the others' reconstruct b.gonio wrong.csv -o wrong.binary
 expect_ok reconstruct b.gonio all.csv -o right.binary
 expect_true 'a wrong reading hardly matters' \
     test "$(error right.binary wrong.binary)" -lt 2
@@ -94,13 +94,13 @@ expect_ok measure next.csv $new -o more.csv
 expect_output 'from 15 readings in 3 channels' reconstruct b.gonio longer.csv -o longer.binary
 expect_output '"target_met": false' next b.gonio r.csv --target-error 0.1% --json -o next.csv
 rm next.csv
-expect_output 'the target is met, nothing more to read' \
+expect_output 'the target is met, no more readings are needed' \
     next b.gonio r.csv --target-error 60% -o next.csv
 expect_true 'then there is no plan' test ! -e next.csv
 expect_output '"target_met": true' next b.gonio r.csv --target-error 60% --json -o next.csv
 expect_ok next b.gonio r.csv --candidates all.csv -n 3 -o among.csv
 expect_ok measure among.csv all.csv -o among-readings.csv
-expect_fail 2 "--target-error: '0' is no error" next b.gonio r.csv --target-error 0 -o next.csv
+expect_fail 2 "--target-error: '0' is not an error" next b.gonio r.csv --target-error 0 -o next.csv
 expect_fail 2 'is an input' next b.gonio r.csv -o r.csv
 expect_fail 1 'missing.csv: cannot read' next b.gonio missing.csv -o next.csv
 
@@ -152,12 +152,12 @@ suspect() { # FILE PART
     expect_true "$1: '$2'" grep -q "note: .*$2" "$root/work/stderr"
     expect_output "\"suspicion\": \"" reconstruct b.gonio "$1" --json -o suspect.binary
     expect_ok reconstruct b.gonio "$1" --no-checks -o suspect.binary
-    expect_not_said 'far likelier' "$1: --no-checks does not look"
+    expect_not_said 'fit far better' "$1: --no-checks does not look"
     expect_ok next b.gonio "$1" -n 1 -o suspect.csv
     expect_true "next, $1: '$2'" grep -q "note: .*$2" "$root/work/stderr"
     expect_output "\"suspicion\": \"" next b.gonio "$1" -n 1 --json -q -o suspect.csv
     expect_ok next b.gonio "$1" -n 1 --no-checks -o suspect.csv
-    expect_not_said 'far likelier' "next, $1: --no-checks does not look"
+    expect_not_said 'fit far better' "next, $1: --no-checks does not look"
 }
 suspect percent.csv 'the values are in per cent'
 suspect cosine.csv 'the values include the cosine'
@@ -191,17 +191,17 @@ learned='learn atlas:oak-sawn atlas:red-cotton -o x.gonio'
     expect_fail 2 '--mixtures: -5 is too small' $learned --mixtures -5
     expect_fail 2 'invalid numeric value' $learned --mixtures many
     expect_fail 2 'invalid numeric value' $learned --seed one
-    expect_fail 2 'mixtures are for the log mapping' $learned --mixtures 5 --mapping relative --grid full
-    expect_fail 2 'the relative mapping is for the full and the bivariate grid' $learned --mapping relative
-    expect_fail 2 'mixtures are for the log mapping' $learned --mixtures 5 --no-mean
-    expect_fail 2 'mixtures are for the log mapping' $learned --mixtures 5 --grid full
+    expect_fail 2 'mixtures need the log mapping' $learned --mixtures 5 --mapping relative --grid full
+    expect_fail 2 'the relative mapping needs the full or the bivariate grid' $learned --mapping relative
+    expect_fail 2 'mixtures need the log mapping' $learned --mixtures 5 --no-mean
+    expect_fail 2 'mixtures need the log mapping' $learned --mixtures 5 --grid full
 }
 planned='plan b.gonio -n 4 -o x.csv'
 # shellcheck disable=SC2086
 {
     expect_fail 2 "--metric: 'best' is none of e6, cube-root, log-relative" $planned --metric best
     for target in 0 -1 nan inf 3x % '5%%'; do
-        expect_fail 2 "--target-error: '$target' is no error in per cent" \
+        expect_fail 2 "--target-error: '$target' is not an error in per cent" \
             $planned --target-error $target
     done
     expect_fail 2 'above the target of 0.01 %' $planned --target-error 0.01
@@ -214,7 +214,7 @@ planned='plan b.gonio -n 4 -o x.csv'
 }
 expect_fail 2 '-n: 0 is too small' plan b.gonio -n 0 --target-error 3 -o x.csv
 for share in -1 101 nan; do
-    expect_fail 2 '--outliers is a share in per cent' measure p.csv $new --outliers $share -o x.csv
+    expect_fail 2 '--outliers must be 0 to 100 per cent' measure p.csv $new --outliers $share -o x.csv
 done
 expect_fail 1 'has no reading at these directions' measure p40.csv r.csv -o x.csv
 made='reconstruct b.gonio r.csv -o x.binary'
@@ -225,7 +225,7 @@ made='reconstruct b.gonio r.csv -o x.binary'
         expect_fail 2 'cannot be negative' $made $option nan
         expect_fail 2 'invalid numeric value' $made $option much
     done
-    expect_fail 2 'numbers from 0' $made --noise inf
+    expect_fail 2 'must be finite and not negative' $made --noise inf
     expect_fail 1 'missing.csv: cannot read' $made --predict-at missing.csv
     expect_fail 2 'posterior uses all 64 components' $made --components 10
     expect_fail 1 'nowhere/d.binary' $made --deviation nowhere/d.binary
@@ -238,9 +238,9 @@ expect_fail 2 'is an input' reconstruct b.gonio r.csv --predict-at all.csv -o al
 mkdir folder
 expect_fail 2 '--predict-at and --deviation take one READINGS' \
     reconstruct b.gonio r.csv all.csv --predict-at p.csv -o folder
-expect_fail 2 '--leave-out is for readings' compare out.binary out.binary --leave-out p.csv
+expect_fail 2 '--leave-out needs readings' compare out.binary out.binary --leave-out p.csv
 expect_fail 1 'missing.csv: cannot read' compare all.csv at.csv --leave-out missing.csv
-expect_fail 1 'nothing to compare' compare all.csv at.csv --leave-out all.csv
+expect_fail 1 'no readings to compare' compare all.csv at.csv --leave-out all.csv
 expect_fail 1 'has no reading at these directions' compare all.csv r.csv
 printf '2\n400 500\n0.1 0 0.2 0 1\n' >cut.brdf
 expect_fail 1 'ends within a reading' reconstruct b.gonio cut.brdf -o x.binary

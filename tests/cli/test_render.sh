@@ -55,8 +55,8 @@ r='render atlas:oak-sawn'
     expect_fail 2 'must end in .png' render --compare atlas:oak-sawn atlas:red-cotton -o x.exr
     expect_fail 2 'one MATERIAL is needed' $r atlas:red-cotton -o x.png
     expect_fail 2 'at least one OTHER' render --compare atlas:oak-sawn -o x.png
-    expect_fail 2 'are not rows of 2' render --compare --columns 2 atlas:oak-sawn atlas:red-cotton atlas:oak-sawn -o x.png
-    expect_fail 2 'is not 2 names' render --compare atlas:oak-sawn atlas:red-cotton $small --labels a -o x.png
+    expect_fail 2 'do not fill rows of 2' render --compare --columns 2 atlas:oak-sawn atlas:red-cotton atlas:oak-sawn -o x.png
+    expect_fail 2 'must be 2 names' render --compare atlas:oak-sawn atlas:red-cotton $small --labels a -o x.png
     expect_fail 2 'go with --compare' $r --columns 2 -o x.png
     expect_fail 2 '0 x 16 pixels' $r --size 0x16 -o x.png
     expect_fail 2 '0 x 0 pixels' $r --size 0 -o x.png
@@ -66,13 +66,13 @@ r='render atlas:oak-sawn'
     done
     expect_fail 2 '--samples: 0 is too small' $r --samples 0 -o x.png
     expect_fail 2 '--seed: -1 is too small' $r --seed -1 -o x.png
-    expect_fail 2 '--key: 0 is not more than 0' $r --key 0 -o x.png
+    expect_fail 2 '--key: 0 must be above 0' $r --key 0 -o x.png
     expect_fail 2 '--fov: 180' $r --fov 180 -o x.png
     expect_fail 2 "--view: '1' is not" $r --view 1 -o x.png
     expect_fail 2 "--view: '0,91' is not" $r --view 0,91 -o x.png
     expect_fail 2 "--light: 'sun' is neither" $r --light sun -o x.png
     expect_fail 2 'exclude each other' $r --light point -e sky -o x.png
-    expect_fail 2 'distance 0.5 is not more than 1' $r --light point --light-at 0,0,0.5 -o x.png
+    expect_fail 2 'distance 0.5 must be above 1' $r --light point --light-at 0,0,0.5 -o x.png
     expect_fail 2 'is not AZIMUTH,ELEVATION' $r --light directional --light-at 0,0,2 -o x.png
 }
 cp t.obj t.obj.png
@@ -166,10 +166,10 @@ one='\x00\x00\x80\x3f' minus_one='\x00\x00\x80\xbf' zero='\x00\x00\x00\x00' nan=
     expect_true 'the second pixel lights' test "$(cmp -s dark-lit.exr light-lit.exr; echo $?)" -eq 1
     for bad in $minus_one $nan $infinity; do
         openexr bad.exr 2 $one$bad $one$one $one$one
-        expect_fail 1 '--repair takes such pixels as black' $r $small -e bad.exr -o x.png
+        expect_fail 1 '--repair replaces such pixels by black' $r $small -e bad.exr -o x.png
         run $r $small -e bad.exr --repair -o repaired.exr || failed '--repair' "$(cat "$root/work/stderr")"
         expect_true 'repaired pixels are told' \
-            grep -qx 'gonio render: warning: bad.exr: 1 of 2 pixels are no light and are taken as black' "$root/work/stderr"
+            grep -qx 'gonio render: warning: bad.exr: 1 of 2 pixels are not radiances and are replaced by black' "$root/work/stderr"
         expect_same repaired.exr dark-lit.exr
     done
     expect_ok $r $small -e light.exr --repair -o untouched.exr

@@ -38,7 +38,7 @@ fi
 expect_fail 2 'a REFERENCE' report -o x.html
 expect_fail 2 'a REFERENCE' report $gold $gold $gold -o x.html
 expect_fail 2 'no output' report $gold
-expect_fail 2 'needs a RECONSTRUCTION' report $gold --deviation noise.binary -o x.html
+expect_fail 2 'needs the RECONSTRUCTION' report $gold --deviation noise.binary -o x.html
 expect_fail 2 'is an input' report '<script>.binary' -o '<script>.binary'
 expect_fail 2 'is an input' report $gold --readings plan.csv -o plan.csv
 expect_fail 1 'nowhere.binary' report nowhere.binary -o x.html

@@ -41,7 +41,7 @@ cp -r out again
 rm again/pieces/fig3b* again/pieces/fig5-w* again/pieces/fig7* again/report.md again/figures/fig3a.*
 # shellcheck disable=SC2086
 expect_output 'again: see' reproduce $materials --quick -o again
-expect_true 'going on is told' grep -q 'note: reproducing: going on' "$root/work/stderr"
+expect_true 'going on is told' grep -q 'note: reproducing: resuming' "$root/work/stderr"
 same 'going on' again
 
 # One experiment after the other.
@@ -129,7 +129,7 @@ done
 head -c 1000 db/oak.binary >db/broken.binary
 cp db/oak.binary db/tree.binary
 cp db/red-cotton.binary twins/red-cotton.binary
-expect_fail 1 '3 of 7 materials cannot be used (--skip-bad goes on without); db/broken.binary: ' \
+expect_fail 1 '3 of 7 materials cannot be used (--skip-bad leaves them out); db/broken.binary: ' \
     reproduce db twins -o no
 expect_fail 1 'db/tree.binary: has the same values as db/oak.binary; twins/red-cotton.binary: there is another' \
     reproduce db twins -o no

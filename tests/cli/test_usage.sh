@@ -34,10 +34,10 @@ expect_fail 2 'IN and OUT are needed' convert
 expect_fail 2 'IN and OUT are needed' convert b.gonio
 expect_fail 2 'IN and OUT are needed' convert a b c
 expect_fail 2 'no materials given' learn -o x.gonio
-expect_fail 2 'one BASIS at most, not 2' plan b.gonio b.gonio -o x.csv
+expect_fail 2 'give at most one BASIS, not 2' plan b.gonio b.gonio -o x.csv
 expect_fail 2 'PLAN and MATERIAL are needed' measure p.csv -o x.csv
 expect_fail 2 'PLAN and MATERIAL are needed' measure p.csv a b -o x.csv
-expect_fail 2 'READINGS, and before it a BASIS' reconstruct -o x.binary
+expect_fail 2 'READINGS are needed; give a BASIS' reconstruct -o x.binary
 expect_fail 2 'several READINGS need a folder that exists' reconstruct a b c -o x.binary
 expect_fail 2 'REFERENCE and at least one OTHER are needed' compare
 expect_fail 2 'REFERENCE and at least one OTHER are needed' compare atlas:white-linen
@@ -98,7 +98,7 @@ expect_fail 2 'b.gonio is an input' plan b.gonio -n 5 --history b.gonio -o x.csv
 expect_fail 2 'cannot be negative' measure p.csv atlas:white-linen --noise -1 -o x.csv
 expect_fail 2 'cannot be negative' measure p.csv atlas:white-linen --floor -1 -o x.csv
 expect_fail 2 'cannot be negative' measure p.csv atlas:white-linen --noise nan -o x.csv
-expect_fail 2 'finite numbers from 0' measure p.csv atlas:white-linen --noise inf -o x.csv
+expect_fail 2 'must be finite and not negative' measure p.csv atlas:white-linen --noise inf -o x.csv
 expect_fail 2 '4 components asked for, but the basis has 3' \
     reconstruct b.gonio r.csv -K 4 -o x.binary
 expect_fail 2 '--components: -1 is too small' reconstruct b.gonio r.csv -K -1 -o x.binary

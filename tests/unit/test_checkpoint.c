@@ -452,7 +452,7 @@ static void test_two_runs_at_once_are_refused(void **state)
     json_t *who = identity(1);
     assert_int_equal(gonio_i_pieces_open(f->context, f->out, who, NULL, &pieces), GONIO_OK);
     assert_int_equal(open_as(f, f->out, json_incref(who)), GONIO_ERROR_ARGUMENT);
-    assert_tells(f, "another run is at work");
+    assert_tells(f, "another run is using");
     gonio_i_pieces_free(&pieces);
     assert_null(pieces);
     assert_int_equal(open_as(f, f->out, who), GONIO_OK);
@@ -535,7 +535,7 @@ static void test_names(void **state)
     assert_int_equal(entries_in(f->folder, ""), 2);
     s.naming = same;
     assert_int_equal(run(f->context, f->out, &s, NULL, NULL), GONIO_ERROR_ARGUMENT);
-    assert_tells(f, "two pieces are called 'twin'");
+    assert_tells(f, "two computations are called 'twin'");
     s.naming = not_utf8;
     assert_int_equal(run(f->context, f->out, &s, NULL, NULL), GONIO_ERROR_MEMORY);
     assert_tells(f, "not UTF-8");

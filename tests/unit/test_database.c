@@ -169,7 +169,7 @@ static void test_what_cannot_be_read(void **state)
                      GONIO_ERROR_ARGUMENT);
     assert_int_equal(gonio_database_read_rows(context, database, 0, 1, no_such, 1, &value),
                      GONIO_ERROR_ARGUMENT);
-    assert_non_null(strstr(support_message(), "material 3 of a database of 3"));
+    assert_non_null(strstr(support_message(), "material 3 is outside a database of 3"));
     gonio_database_free(&database);
     const gonio_database_options nowhere = {.size = sizeof nowhere, .scratch = "/nonexistent"};
     assert_int_equal(gonio_database_create(context, paths, MATERIALS, &nowhere, &database),

@@ -481,7 +481,7 @@ static void test_xml_that_lies(void **state)
     check_refused(path, "entity");
     x = begin_xml("", "Columns");
     end_xml(&x, path);
-    check_refused(path, "no block of reflection");
+    check_refused(path, "no reflection data");
     x = begin_xml("", "TensorTree9");
     say_matrix(&x, "Integral", "Visible", "Reflection Front", 1.0, ",");
     end_xml(&x, path);

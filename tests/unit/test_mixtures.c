@@ -269,7 +269,7 @@ static void test_what_has_no_mixtures(void **state)
         assert_int_equal(gonio_basis_learn(context, database, &options, &basis),
                          GONIO_ERROR_ARGUMENT);
         assert_null(basis);
-        assert_non_null(strstr(support_message(), "mixtures are for the log mapping with a mean"));
+        assert_non_null(strstr(support_message(), "mixtures need the log mapping with a mean"));
         gonio_database_free(&database);
     }
     gonio_context_free(&context);

@@ -247,7 +247,7 @@ static void test_what_arrays_may_not_hold(void **state)
          "400 nm occurs twice"},
         {{size, 2, 2, two_pairs, NULL, no_waves, good, NULL},
          GONIO_ERROR_ARGUMENT,
-         "-1 is no wavelength"},
+         "-1 is not a wavelength"},
         {{size, 2, 2, two_pairs, planned, NULL, good, NULL},
          GONIO_ERROR_ARGUMENT,
          "channel 2 of 2"},

@@ -118,7 +118,7 @@ static gonio_status refuse(gonio_context *context, const candidate *candidates, 
     fclose(stream);
     const gonio_status status = gonio_i_fail(
         context, GONIO_ERROR_DATA,
-        "%zu of %zu materials cannot be used (--skip-bad goes on without)%s", faults, count, text);
+        "%zu of %zu materials cannot be used (--skip-bad leaves them out)%s", faults, count, text);
     free(text);
     return status;
 }

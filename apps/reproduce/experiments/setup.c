@@ -68,7 +68,7 @@ static gonio_status choose_experiments(gonio_context *context, const char *only,
         }
         if (!can_run(experiment)) {
             return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                                "%s needs the renderer, without which gonio was built",
+                                "%s needs the renderer, but this gonio was built without it",
                                 names[experiment]);
         }
         study->wanted[experiment] = true;

@@ -383,7 +383,7 @@ static void note_undrawn(const gonio_i_sheet *sheet, gonio_i_figures *figures)
 {
     if (!figures->undrawn) {
         gonio_i_note(sheet->context,
-                     "no pictures were drawn, as there is no gnuplot on PATH: install it "
+                     "no figures were drawn, because gnuplot is not on PATH: install it "
                      "(gnuplot-nox) and, in %s, run: for f in *.gp; do gnuplot $f; done",
                      figures->folder);
     }

@@ -119,7 +119,7 @@ static json_t *read_piece(gonio_context *context, const gonio_i_pieces *pieces, 
         free(text);
         fclose(file);
         if (result == NULL) {
-            gonio_i_warn(context, "%s: damaged, or of another run: computed again", path);
+            gonio_i_warn(context, "%s: damaged, or of another run; it is computed again", path);
         }
     }
     free(path);
@@ -177,8 +177,9 @@ static gonio_status list_jobs(run *r)
     qsort(r->job, work->count, sizeof *r->job, compare_names);
     for (size_t k = 1; k < work->count; k++) {
         if (compare_names(&r->job[k - 1], &r->job[k]) == 0) {
-            return gonio_i_fail(r->context, GONIO_ERROR_ARGUMENT, "%s: two pieces are called '%s'",
-                                work->title, r->job[k].name);
+            return gonio_i_fail(r->context, GONIO_ERROR_ARGUMENT,
+                                "%s: two computations are called '%s'", work->title,
+                                r->job[k].name);
         }
     }
     qsort(r->job, work->count, sizeof *r->job, compare_costs);
@@ -221,8 +222,8 @@ static void drop_finished(run *r)
         json_decref(result);
     }
     if (left < r->count && left > 0 && r->pieces->team.rank == 0) {
-        gonio_i_note(r->context, "%s: going on, %zu of %zu pieces are finished", r->work->title,
-                     r->count - left, r->count);
+        gonio_i_note(r->context, "%s: resuming, %zu of %zu computations are finished",
+                     r->work->title, r->count - left, r->count);
     }
     r->count = left;
 }
@@ -303,7 +304,7 @@ static gonio_status do_jobs(run *r, int threads)
 static gonio_status wait_for_all(gonio_context *context, const process_group *team)
 {
     if (team->size > 1 && !team->barrier(team->user)) {
-        return gonio_i_fail(context, GONIO_ERROR_IO, "the other processes of the team are gone");
+        return gonio_i_fail(context, GONIO_ERROR_IO, "the other MPI processes have ended");
     }
     return GONIO_OK;
 }
@@ -320,7 +321,7 @@ static gonio_status gather(const run *r, json_t **results)
                 results[i] = NULL;
             }
             return gonio_i_fail(r->context, GONIO_ERROR_IO,
-                                "%s: the finished piece '%s' cannot be read back",
+                                "%s: the finished computation '%s' cannot be read back",
                                 r->pieces->folder, j->name);
         }
     }

@@ -214,7 +214,7 @@ static gonio_status lock(gonio_context *context, const char *folder, int *descri
     if (flock(*descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
         close(*descriptor);
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                            "%s: another run is at work in this folder: wait for it, or give "
+                            "%s: another run is using this folder: wait for it, or give "
                             "another folder",
                             folder);
     }
@@ -264,10 +264,10 @@ gonio_status gonio_i_run_folder_check(gonio_context *context, const char *folder
     const gonio_status status =
         access(path, F_OK) == 0
             ? check_run_file(context, folder, path, run)
-            : gonio_i_fail(context, GONIO_ERROR_IO,
-                           "%s: not seen by every process of the team: the folder must be one "
-                           "that all machines share",
-                           path);
+            : gonio_i_fail(
+                  context, GONIO_ERROR_IO,
+                  "%s: not every MPI process can see this folder: all machines must share it",
+                  path);
     free(path);
     return status;
 }

@@ -662,8 +662,7 @@ static gonio_status read_xml(parse *p, choice *c, klems_brdf *k, char **descript
     }
     if (!choose(p, c)) {
         return gonio_i_fail(p->context, GONIO_ERROR_FORMAT,
-                            "%s: no block of reflection; gonio does not read transmission",
-                            p->path);
+                            "%s: no reflection data; gonio does not read transmission", p->path);
     }
     status = make_material(p, c, k);
     if (status == GONIO_OK) {

@@ -126,7 +126,7 @@ static gonio_status read_wavelengths(gonio_context *context, const char *path, h
         good = t->wavelength[k] > 0.0 && isfinite(t->wavelength[k]);
     }
     return good ? GONIO_OK
-                : damaged(context, path, "wavelength_nm has not a wavelength for each channel");
+                : damaged(context, path, "wavelength_nm must have one wavelength for each channel");
 }
 
 static gonio_status read_table(gonio_context *context, const char *path, hid_t file, table *t)

@@ -145,8 +145,7 @@ static gonio_status check_values(gonio_context *context, const char *path, utia 
         value[k] = from_file(value[k]);
         if (!(fabs(value[k]) <= LARGEST)) {
             return gonio_i_fail(context, GONIO_ERROR_FORMAT,
-                                "%s: value %zu is not a finite number of a size that a BRDF has",
-                                path, k);
+                                "%s: value %zu is not finite, or too large for a BRDF", path, k);
         }
         value[k] = fmax(value[k], 0.0);
     }

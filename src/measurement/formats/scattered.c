@@ -53,8 +53,8 @@ static gonio_status read_number(numbers *n, double *value)
     read_word(n, word);
     *value = strtod(word, &end);
     if (*end != '\0' || end == word || !isfinite(*value)) {
-        return gonio_i_fail(n->context, GONIO_ERROR_FORMAT, "%s:%zu: '%.40s' is no number", n->path,
-                            n->line, word);
+        return gonio_i_fail(n->context, GONIO_ERROR_FORMAT, "%s:%zu: '%.40s' is not a number",
+                            n->path, n->line, word);
     }
     return GONIO_OK;
 }
@@ -77,7 +77,7 @@ static gonio_status read_wavelength(numbers *n, double *wavelength, size_t k)
         return status;
     }
     if (!(wavelength[k] > 0.0 && wavelength[k] < 1e6)) {
-        return gonio_i_fail(n->context, GONIO_ERROR_FORMAT, "%s:%zu: %g is no wavelength in nm",
+        return gonio_i_fail(n->context, GONIO_ERROR_FORMAT, "%s:%zu: %g is not a wavelength in nm",
                             n->path, n->line, wavelength[k]);
     }
     for (size_t j = 0; j < k; j++) {
