@@ -162,7 +162,7 @@ static void test_readings_that_cannot_be_compared(void **state)
                      GONIO_ERROR_DATA);
     assert_int_equal(gonio_compare_readings(context, a, a, all, &error, &compared),
                      GONIO_ERROR_DATA);
-    assert_non_null(strstr(support_message(), "nothing to compare"));
+    assert_non_null(strstr(support_message(), "no readings to compare"));
     gonio_readings_free(&dark);
     gonio_readings_free(&spectral);
     gonio_readings_free(&fewer);
