@@ -5,7 +5,7 @@
 
 #include "results/paper_figures.h"
 #include "results/markdown.h"
-#include "results/tables.h"
+#include "results/csv_tables.h"
 
 /* A folder in the folder of the run; released with free(). */
 static char *inside(gonio_context *context, const char *folder, const char *name)

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "crew.h"
+#include "parallel_for.h"
 #include "leave_one_out.h"
 
 /* Levels in units of s, and none: from what makes no difference to what makes an instrument

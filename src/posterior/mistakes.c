@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "crew.h"
+#include "parallel_for.h"
 #include "leave_one_out.h"
 
 /* A factor of pi alone is not among the hypotheses: materials differ by more than that. */

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "crew.h"
+#include "parallel_for.h"
 
 /* Narrow peaks only where there is much that the database does not know: for materials like its own
  * they cost a tenth. */

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "../linalg/linalg.h"
-#include "crew.h"
+#include "parallel_for.h"
 #include "fields.h"
 #include "learned_error.h"
 #include "merge.h"

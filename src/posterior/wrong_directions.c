@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "crew.h"
+#include "parallel_for.h"
 
 /* Remainders that an unknown kind of material may have: smooth ones, and with narrow peaks. */
 static const struct remainder {
@@ -28,8 +28,8 @@ static const double GROSS = 1.2;
 static const double MOST_WRONG = 0.1;
 
 /* What leaving out a direction has to explain, in ln of the density of three columns: nine tenths
- * of the suspects that were read wrongly do (docs/experiments.md), and a third of the right readings
- * of unusual materials that are suspect. */
+ * of the suspects that were read wrongly do (docs/experiments.md), and a third of the right
+ * readings of unusual materials that are suspect. */
 static const double DUE = 20.0;
 
 /* Fewer directions than this know less of each other, and more is asked of them. */

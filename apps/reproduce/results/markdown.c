@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "tables.h"
+#include "csv_tables.h"
 #include "../run/text_file.h"
 
 typedef struct page {

@@ -7,7 +7,7 @@
 
 #include "../figures/figure.h"
 #include "../experiments/renderings.h"
-#include "tables.h"
+#include "csv_tables.h"
 
 typedef struct drawer {
     gonio_context *context;

@@ -1,6 +1,6 @@
 /* All raw numbers of the experiments as CSV files. */
-#ifndef GONIO_REPRODUCE_TABLES_H
-#define GONIO_REPRODUCE_TABLES_H
+#ifndef GONIO_REPRODUCE_CSV_TABLES_H
+#define GONIO_REPRODUCE_CSV_TABLES_H
 
 #include "summary.h"
 

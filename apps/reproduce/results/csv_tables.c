@@ -1,5 +1,5 @@
-/* All raw numbers as CSV: see tables.h. */
-#include "tables.h"
+/* All raw numbers as CSV: see csv_tables.h. */
+#include "csv_tables.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-/* Work done side by side: see crew.h. */
-#include "crew.h"
+/* Work done side by side: see parallel_for.h. */
+#include "parallel_for.h"
 
 #include <stdlib.h>
 

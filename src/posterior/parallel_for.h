@@ -1,6 +1,6 @@
 /* Independent pieces of work, one a column, done side by side. */
-#ifndef GONIO_CREW_H
-#define GONIO_CREW_H
+#ifndef GONIO_PARALLEL_FOR_H
+#define GONIO_PARALLEL_FOR_H
 
 #include "../core/core.h"
 
