@@ -464,6 +464,93 @@ static void test_compressed_klems(void **state)
     support_remove(folder);
 }
 
+/* ---- tensor trees ---- */
+
+static void say_tree(const char *path, const char *structure, const char *tree)
+{
+    xml x = begin_xml("", structure);
+    say(&x, "<WavelengthData><Wavelength unit=\"Integral\">Visible</Wavelength>"
+            "<WavelengthDataBlock><WavelengthDataDirection>Reflection Front"
+            "</WavelengthDataDirection><AngleBasis>LBNL/Shirley-Chiu</AngleBasis>"
+            "<ScatteringDataType>BRDF</ScatteringDataType><ScatteringData>");
+    say(&x, tree);
+    say(&x, "</ScatteringData></WavelengthDataBlock></WavelengthData>");
+    end_xml(&x, path);
+}
+
+static double value_at(const gonio_material *material, double theta_i, double phi_i, double theta_o,
+                       double phi_o)
+{
+    const gonio_pair pair = {{theta_i * degree, phi_i * degree},
+                             {theta_o * degree, phi_o * degree}};
+    double value = 0.0;
+    assert_int_equal(gonio_material_evaluate(NULL, material, &pair, 1, &value), GONIO_OK);
+    return value;
+}
+
+/* The incident direction is the first dimension; the outgoing one is seen from where light goes:
+ * with light from 0 degrees it goes to 180. */
+static void test_tensor_trees(void **state)
+{
+    (void)state;
+    char *folder = support_folder();
+    char path[4096];
+    snprintf(path, sizeof path, "%s/x.xml", folder);
+    say_tree(path, "TensorTree3", "{ 0.318309886 }");
+    gonio_material *material = open_good(path);
+    assert_false(gonio_material_describe(material)->anisotropic);
+    assert_true(fabs(value_at(material, 20.0, 30.0, 50.0, 70.0) - 0.318309886) < 1e-7);
+    gonio_material_free(&material);
+
+    /* Eight boxes, the first dimension the lowest bit; one of them a grid, the last fastest. */
+    say_tree(path, "TensorTree3",
+             "{ {10} {11} {12} {13} {14} {15} { 20, 21, 22, 23, 24, 25, 26, 27 } {17} }");
+    material = open_good(path);
+    assert_true(value_at(material, 40.0, 0.0, 30.0, 180.0 - 20.0) == 12.0); /* x upper, y lower */
+    assert_true(value_at(material, 40.0, 0.0, 30.0, 0.0 - 20.0) == 14.0);
+    assert_true(value_at(material, 40.0, 0.0, 30.0, 0.0 + 20.0) == 10.0);
+    assert_true(value_at(material, 40.0, 50.0, 30.0, 50.0 + 20.0) == 10.0); /* isotropic */
+    /* x and y upper: 20 degrees off, at sin theta_o of 0.17 and 0.98 the square's inner, outer x;
+     * y = 0.5 + 0.5 r 20/45 is in the lower half of its box; sin theta_i above 0.5: lower too. */
+    assert_true(value_at(material, 50.0, 0.0, 10.0, 180.0 + 20.0) == 20.0);
+    assert_true(value_at(material, 50.0, 0.0, 80.0, 180.0 + 20.0) == 22.0);
+    assert_true(value_at(material, 20.0, 0.0, 80.0, 180.0 + 20.0) == 26.0);
+    assert_true(value_at(material, 20.0, 0.0, 85.0, 180.0 + 40.0) == 27.0);
+    gonio_material_free(&material);
+    check_mutations(path, folder);
+
+    say_tree(path, "TensorTree4", "{0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15}");
+    material = open_good(path);
+    assert_true(gonio_material_describe(material)->anisotropic);
+    /* Light goes to 20 degrees: x and y upper, 8 + 4; outgoing at 160: x lower, y upper, 1. */
+    assert_true(value_at(material, 40.0, 200.0, 30.0, 160.0) == 13.0);
+    assert_true(value_at(material, 40.0, 20.0, 30.0, -20.0) == 2.0);
+    gonio_material_free(&material);
+    support_remove(folder);
+}
+
+static void test_trees_that_lie(void **state)
+{
+    (void)state;
+    static const char *const trees[][2] = {
+        {"", "without '{'"},          {"{1", "finite"},       {"{1 2 3}", "wrong number"},
+        {"{{1} {2}}", "without '{'"}, {"{nan}", "finite"},    {"{1} {2}", "text after"},
+        {"{1e40}", "finite"},         {"{}", "wrong number"},
+    };
+    char *folder = support_folder();
+    char path[4096];
+    char deep[8192] = "";
+    snprintf(path, sizeof path, "%s/x.xml", folder);
+    for (size_t k = 0; k < sizeof trees / sizeof *trees; k++) {
+        say_tree(path, "TensorTree3", trees[k][0]);
+        check_refused(path, trees[k][1]);
+    }
+    memset(deep, '{', 1000);
+    say_tree(path, "TensorTree4", deep);
+    check_refused(path, "deep");
+    support_remove(folder);
+}
+
 static void test_xml_that_lies(void **state)
 {
     (void)state;
@@ -523,6 +610,8 @@ int main(void)
         cmocka_unit_test(test_klems),
         cmocka_unit_test(test_klems_in_channels),
         cmocka_unit_test(test_compressed_klems),
+        cmocka_unit_test(test_tensor_trees),
+        cmocka_unit_test(test_trees_that_lie),
         cmocka_unit_test(test_xml_that_lies),
     };
     return cmocka_run_group_tests_name("material_formats", tests, NULL, NULL);

@@ -29,7 +29,8 @@ typedef struct writer {
 static gonio_angles sample_patch(const gonio_i_klems *basis, size_t patch, size_t k, double shift,
                                  bool incident)
 {
-    const double across = ((double)(k / ACROSS) + shift) / ACROSS;
+    const size_t row = k / ACROSS;
+    const double across = ((double)row + shift) / ACROSS;
     const double around = ((double)(k % ACROSS) + shift) / ACROSS;
     return gonio_i_klems_direction(basis, patch, across, around, incident);
 }
@@ -39,9 +40,10 @@ static void aim(const writer *w, size_t in)
     for (size_t out = 0; out < w->patches; out++) {
         for (size_t k = 0; k < SAMPLES * SAMPLES; k++) {
             /* the diagonal of the square of strata, so that each half vector is another one */
-            const double shift = ((double)(k / SAMPLES) + 0.5) / SAMPLES;
+            const size_t of_incident = k / SAMPLES;
+            const double shift = ((double)of_incident + 0.5) / SAMPLES;
             w->pair[out * SAMPLES * SAMPLES + k] =
-                (gonio_pair){sample_patch(w->basis, in, k / SAMPLES, 0.5, true),
+                (gonio_pair){sample_patch(w->basis, in, of_incident, 0.5, true),
                              sample_patch(w->basis, out, k % SAMPLES, shift, false)};
         }
     }

@@ -189,7 +189,8 @@ static place aim(const writer *w, size_t t, size_t node, gonio_pair *pair)
 {
     const gonio_i_blend slice = {1, {0}, {1.0}};
     const double last = (double)(w->side - 1);
-    const double s[2] = {(double)(node % w->side) / last, (double)(node / w->side) / last};
+    const size_t row = node / w->side;
+    const double s[2] = {(double)(node % w->side) / last, (double)row / last};
     const double theta_i = (double)w->theta[t];
     double u[2];
     const double density = gonio_i_warp_sample(&w->warp, &slice, s, u);

@@ -128,7 +128,8 @@ static double find_albedo(const utia *u)
             double sum = 0.0;
             for (size_t in = t * PHIS; in < (t + 1) * PHIS; in++) {
                 for (size_t out = 0; out < DIRECTIONS; out++) {
-                    const double theta = (double)(out / PHIS) * THETA_STEP;
+                    const size_t polar = out / PHIS;
+                    const double theta = (double)polar * THETA_STEP;
                     sum += u->value[c][in][out] * cos(theta) * sin(theta);
                 }
             }
