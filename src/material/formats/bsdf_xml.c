@@ -336,8 +336,7 @@ static gonio_status read_xml(reader *in, choice *c, xml_brdf *k, char **descript
     }
     if (!choose(in, c)) {
         return gonio_i_fail(in->context, GONIO_ERROR_FORMAT,
-                            "%s: no block of reflection; gonio does not read transmission",
-                            in->path);
+                            "%s: no reflection data; gonio does not read transmission", in->path);
     }
     status = make_material(in, c, k);
     if (status == GONIO_OK) {
