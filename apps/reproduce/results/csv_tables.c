@@ -8,8 +8,7 @@
 #include "../run/run_folder.h"
 #include "../figures/figure_writer.h"
 #include "../run/text_file.h"
-
-#define ERROR_COLUMNS "e6_percent,cube_root_percent,log_relative"
+#include "reported_errors.h"
 
 typedef struct tables {
     const gonio_i_study *study;
@@ -31,16 +30,6 @@ const char *gonio_i_series_name(const gonio_i_study *study, size_t series, char 
 
 /* ---- cells ---- */
 
-static void put_error(FILE *f, gonio_error error)
-{
-    gonio_i_put_number(f, error.value[GONIO_E6]);
-    fputc(',', f);
-    gonio_i_put_number(f, error.value[GONIO_CUBE_ROOT]);
-    fputc(',', f);
-    gonio_i_put_number(f, error.value[GONIO_LOG_RELATIVE_ERROR]);
-    fputc('\n', f);
-}
-
 static void put_name(FILE *f, const gonio_i_study *study, size_t material)
 {
     gonio_i_put_cell(f, gonio_i_name_of(&study->collection, material));
@@ -56,7 +45,7 @@ static void put_tests(FILE *f, const gonio_i_study *study, size_t split, const c
         put_name(f, study, study->splits.split[split].test[k]);
         gonio_i_put_number(f, condition);
         fputc(',', f);
-        put_error(f, gonio_i_json_error(json_array_get(errors, k)));
+        gonio_i_put_error(f, gonio_i_json_error(json_array_get(errors, k)));
     }
 }
 
@@ -80,10 +69,11 @@ static void put_splits(const tables *t, FILE *f)
 
 static void put_bivariate(const tables *t, FILE *f)
 {
-    fputs("material," ERROR_COLUMNS "\n", f);
+    fputs("material,", f);
+    gonio_i_put_error_columns(f);
     for (size_t m = 0; m < t->study->collection.count; m++) {
         put_name(f, t->study, m);
-        put_error(f, t->findings->bivariate[m]);
+        gonio_i_put_error(f, t->findings->bivariate[m]);
     }
 }
 
@@ -148,7 +138,8 @@ static void put_grid_line(const tables *t, FILE *f, size_t split, size_t k)
 
 static void put_grid(const tables *t, FILE *f)
 {
-    fputs("split,components,samples,material,condition_number," ERROR_COLUMNS "\n", f);
+    fputs("split,components,samples,material,condition_number,", f);
+    gonio_i_put_error_columns(f);
     for (size_t s = 0; s < t->study->splits.count; s++) {
         for (size_t k = 0; k < t->study->grid_components; k++) {
             put_grid_line(t, f, s, k);
@@ -159,7 +150,8 @@ static void put_grid(const tables *t, FILE *f)
 static void put_grid_means(const tables *t, FILE *f)
 {
     const gonio_i_study *study = t->study;
-    fputs("components,samples,condition_number," ERROR_COLUMNS "\n", f);
+    fputs("components,samples,condition_number,", f);
+    gonio_i_put_error_columns(f);
     for (size_t k = 0; k < study->grid_components; k++) {
         for (size_t l = 0; l < study->grid_samples; l++) {
             const size_t at = k * study->grid_samples + l;
@@ -167,17 +159,18 @@ static void put_grid_means(const tables *t, FILE *f)
                 fprintf(f, "%zu,%zu,", study->grid_component[k], study->grid_sample[l]);
                 gonio_i_put_number(f, t->findings->grid_condition[at]);
                 fputc(',', f);
-                put_error(f, t->findings->grid[at]);
+                gonio_i_put_error(f, t->findings->grid[at]);
             }
         }
         fprintf(f, "%zu,all,1,", study->grid_component[k]);
-        put_error(f, t->findings->limit[k]);
+        gonio_i_put_error(f, t->findings->limit[k]);
     }
 }
 
 static void put_methods(const tables *t, FILE *f)
 {
-    fputs("method,components,samples,split,material,condition_number," ERROR_COLUMNS "\n", f);
+    fputs("method,components,samples,split,material,condition_number,", f);
+    gonio_i_put_error_columns(f);
     for (size_t m = 0; m < gonio_i_methods(t->study); m++) {
         const gonio_i_method_entry *method = gonio_i_method_at(m);
         const gonio_i_size size = gonio_i_method_size(t->study, method);
@@ -218,7 +211,8 @@ static void put_directions(const tables *t, FILE *f)
 
 static void put_left_out(const tables *t, FILE *f)
 {
-    fputs("material,reconstructed_from,components,condition_number," ERROR_COLUMNS "\n", f);
+    fputs("material,reconstructed_from,components,condition_number,", f);
+    gonio_i_put_error_columns(f);
     for (size_t k = 0; k < t->study->left_out_count; k++) {
         const json_t *conditions =
             json_object_get(json_array_get(t->results->left_out, k), "condition");
@@ -235,7 +229,7 @@ static void put_left_out(const tables *t, FILE *f)
                 gonio_i_put_number(f, gonio_i_json_number(json_array_get(conditions, s)));
             }
             fputc(',', f);
-            put_error(f, t->findings->left_out[k * GONIO_I_LEFT_OUT_SERIES + s]);
+            gonio_i_put_error(f, t->findings->left_out[k * GONIO_I_LEFT_OUT_SERIES + s]);
         }
     }
     const gonio_i_size size = gonio_i_quoted_size(t->study->collection.count - 1);
@@ -245,7 +239,7 @@ static void put_left_out(const tables *t, FILE *f)
         gonio_i_put_number(f, gonio_i_json_number(json_object_get(
                                   json_array_get(t->results->quoted, q), "condition")));
         fputc(',', f);
-        put_error(f, t->findings->quoted[q]);
+        gonio_i_put_error(f, t->findings->quoted[q]);
     }
 }
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "csv_tables.h"
+#include "reported_errors.h"
 #include "../run/text_file.h"
 
 typedef struct page {
@@ -27,9 +28,10 @@ static void put_number(FILE *f, double value, int digits)
 
 static void put_error(FILE *f, gonio_error error)
 {
-    put_number(f, error.value[GONIO_E6], 2);
-    put_number(f, error.value[GONIO_CUBE_ROOT], 2);
-    put_number(f, error.value[GONIO_LOG_RELATIVE_ERROR], 4);
+    for (int k = 0; k < GONIO_I_REPORTED; k++) {
+        const gonio_metric_view *metric = gonio_metric_describe((int)gonio_i_reported[k]);
+        put_number(f, error.value[gonio_i_reported[k]], *metric->unit == '%' ? 2 : 4);
+    }
     fputc('\n', f);
 }
 
@@ -296,16 +298,9 @@ static json_t *number(double value)
     return isfinite(value) ? json_real(value) : json_null();
 }
 
-static json_t *error_json(gonio_error error)
-{
-    return json_pack("{s:o, s:o, s:o}", "e6_percent", number(error.value[GONIO_E6]),
-                     "cube_root_percent", number(error.value[GONIO_CUBE_ROOT]), "log_relative",
-                     number(error.value[GONIO_LOG_RELATIVE_ERROR]));
-}
-
 static json_t *sized(gonio_error error, size_t components, size_t samples, double condition)
 {
-    json_t *json = error_json(error);
+    json_t *json = gonio_i_reported_json(error);
     json_object_set_new(json, "components", json_integer((json_int_t)components));
     json_object_set_new(json, "samples",
                         samples > 0 ? json_integer((json_int_t)samples) : json_string("all"));
@@ -364,7 +359,8 @@ static json_t *series_json(const gonio_i_study *study, const gonio_error *errors
     json_t *series = json_object();
     char text[32];
     for (size_t s = 0; s < GONIO_I_LEFT_OUT_SERIES; s++) {
-        json_object_set_new(series, gonio_i_series_name(study, s, text), error_json(errors[s]));
+        json_object_set_new(series, gonio_i_series_name(study, s, text),
+                            gonio_i_reported_json(errors[s]));
     }
     return series;
 }
@@ -379,7 +375,7 @@ static json_t *left_out_json(const gonio_i_study *study, const gonio_i_findings 
     json_t *quoted = json_object();
     for (size_t q = 0; q < study->quoted_count; q++) {
         json_object_set_new(quoted, gonio_i_name_of(&study->collection, study->quoted[q].material),
-                            error_json(findings->quoted[q]));
+                            gonio_i_reported_json(findings->quoted[q]));
     }
     return json_pack("{s:o, s:o, s:o}", "mean", series_json(study, findings->left_out_mean),
                      "materials", materials, gonio_i_quoted_method()->name, quoted);
@@ -401,7 +397,7 @@ static json_t *results_json(const gonio_i_study *study, const gonio_i_findings *
         json_pack("{s:s, s:I, s:I, s:I, s:b, s:o, s:o}", "gonio", gonio_version(), "materials",
                   (json_int_t)study->collection.count, "splits", (json_int_t)study->splits.count,
                   "seed", (json_int_t)study->seed, "quick", study->quick, "bivariate_mean",
-                  error_json(findings->bivariate_mean), "claims", claims_json(claims));
+                  gonio_i_reported_json(findings->bivariate_mean), "claims", claims_json(claims));
     if (study->wanted[GONIO_I_SPECTRUM]) {
         json_object_set_new(json, "fig2a", cumulative_json(findings));
     }
