@@ -7,7 +7,11 @@
 #include "../core/core.h"
 #include "../core/csv.h"
 
-static const char *const channel_names[] = {"all", "R", "G", "B"};
+const char *gonio_i_planned_channel_name(int channel)
+{
+    static const char *const names[] = {"all", "R", "G", "B"};
+    return names[channel - GONIO_ALL_CHANNELS];
+}
 
 static bool add_origin(gonio_i_comments *comments, const char *kind, const char *command)
 {
@@ -47,7 +51,7 @@ static bool add_entry(gonio_i_csv *csv, const gonio_plan_entry *entry)
            gonio_i_csv_set(csv, row, 1, "%.9f", entry->pair.incident.phi * degrees) &&
            gonio_i_csv_set(csv, row, 2, "%.9f", entry->pair.outgoing.theta * degrees) &&
            gonio_i_csv_set(csv, row, 3, "%.9f", entry->pair.outgoing.phi * degrees) &&
-           gonio_i_csv_set(csv, row, 4, "%s", channel_names[entry->channel + 1]);
+           gonio_i_csv_set(csv, row, 4, "%s", gonio_i_planned_channel_name(entry->channel));
 }
 
 static bool fill_plan(gonio_i_csv *csv, const gonio_plan *plan, const char *command)

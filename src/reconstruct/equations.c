@@ -17,7 +17,7 @@ static gonio_reconstruction *allocate(gonio_context *context, const gonio_basis_
         return NULL;
     }
     made->components = components;
-    made->columns = basis->channels == GONIO_JOINT ? 1 : GONIO_CHANNELS;
+    made->columns = gonio_i_columns_per_material(basis->channels);
     made->coefficients =
         gonio_i_allocate(context, made->columns * components, sizeof *made->coefficients);
     if (made->coefficients == NULL) {

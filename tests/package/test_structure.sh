@@ -83,4 +83,19 @@ if [[ $# -gt 0 ]]; then
     fi
 fi
 
+# Every public function is called by a test of the library's interface.
+untested() { grep -vwFf <(cat) <(cat include/gonio/*.h | sed 's#/\*.*\*/##' | tr '\n' ' ' | grep -oE 'GONIO_API[^;(]*\(' |
+    grep -oE 'gonio_[a-z0-9_]+ *\($' | tr -d ' (' | sort -u) || true; }
+called=$(find tests -name '*.[ch]' -exec grep -ohE 'gonio_[a-z0-9_]+' {} + | sort -u)
+if [[ $(untested <<<"gonio_plan_free") != *gonio_plan_create* ]]; then
+    echo "functions without a test are not found" >&2
+    failed=1
+fi
+found=$(untested <<<"$called")
+if [[ -n $found ]]; then
+    echo "public functions that no test calls:" >&2
+    echo "$found" >&2
+    failed=1
+fi
+
 exit $failed

@@ -244,6 +244,36 @@ static void test_materials_in_memory_that_are_refused(void **state)
     gonio_context_free(&context);
 }
 
+/* A slab in log space, in either mapping, is its bins one by one; in place too. */
+static void test_slabs_are_mapped_bin_by_bin(void **state)
+{
+    (void)state;
+    enum { THETA_H = 37 };
+    gonio_material *material = NULL;
+    double *rho = malloc(2 * GONIO_SLAB_VALUES * sizeof *rho);
+    assert_non_null(rho);
+    double *g = rho + GONIO_SLAB_VALUES;
+    assert_int_equal(gonio_material_open(NULL, "atlas:gold-polished", &material), GONIO_OK);
+    for (int m = 0; m < 2; m++) {
+        const gonio_mapping mapping = m == 0 ? GONIO_LOG : GONIO_LOG_RELATIVE;
+        assert_int_equal(gonio_material_read_slab(NULL, material, THETA_H, rho), GONIO_OK);
+        gonio_slab_to_mapped(mapping, THETA_H, rho, g);
+        for (int k = 0; k < GONIO_SLAB_VALUES; k++) {
+            const gonio_bin bin =
+                gonio_bin_from_index(k % GONIO_SLAB_BINS + THETA_H * (int)GONIO_SLAB_BINS);
+            const double expected =
+                rho[k] < 0.0 ? 0.0
+                             : gonio_mapped_from_brdf(mapping, rho[k], k / (int)GONIO_SLAB_BINS,
+                                                      gonio_bin_centre(bin));
+            assert_true(fabs(g[k] - expected) < 1e-12);
+        }
+        gonio_slab_to_mapped(mapping, THETA_H, rho, rho);
+        assert_memory_equal(rho, g, GONIO_SLAB_VALUES * sizeof *g);
+    }
+    gonio_material_free(&material);
+    free(rho);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -252,6 +282,7 @@ int main(void)
         cmocka_unit_test(test_what_cannot_be_read),
         cmocka_unit_test(test_materials_in_memory),
         cmocka_unit_test(test_materials_in_memory_that_are_refused),
+        cmocka_unit_test(test_slabs_are_mapped_bin_by_bin),
     };
     return cmocka_run_group_tests_name("database", tests, NULL, NULL);
 }

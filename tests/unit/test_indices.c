@@ -2,6 +2,8 @@
  * out of range are refused, and nothing is written. */
 #include "../support.h"
 
+#include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <gonio/gonio.h>
@@ -214,6 +216,44 @@ static void test_predictions_that_there_are_not(void **state)
     gonio_readings_free(&readings);
 }
 
+/* The material of deviations holds those that are predicted at the middles of cells. */
+static void test_deviations_as_a_material(void **state)
+{
+    const fixture *f = *state;
+    static const double rows[][7] = {{30, 0, 50, 40, 0.1, 0.2, 0.3}, {10, 0, 20, 0, 0.3, 0.2, 0.1}};
+    gonio_readings *readings = made_colours(rows, 2);
+    gonio_material *material = NULL;
+    double *slab = malloc(GONIO_SLAB_VALUES * sizeof *slab);
+    assert_non_null(slab);
+    for (int k = 0; k < 2; k++) {
+        gonio_reconstruction *made = NULL;
+        const gonio_reconstruct_options options = {
+            .size = sizeof options, .method = "posterior", .noise = 0.01, .deviation = k == 1};
+        assert_int_equal(gonio_reconstruct(f->context, f->separate, readings, &options, &made),
+                         GONIO_OK);
+        assert_int_equal(
+            gonio_reconstruction_deviation_material(f->context, f->separate, made, &material),
+            k == 1 ? GONIO_OK : GONIO_ERROR_ARGUMENT);
+        for (int theta_d = 0; theta_d < 60 && k == 1; theta_d += 7) {
+            const gonio_bin bin = {25, theta_d, 90};
+            const size_t at = (size_t)(theta_d * GONIO_PHI_D_BINS + bin.phi_d);
+            double value[GONIO_CHANNELS], deviation[GONIO_CHANNELS];
+            assert_int_equal(gonio_material_read_slab(f->context, material, 25, slab), GONIO_OK);
+            assert_true(gonio_reconstruction_predict(f->separate, made, gonio_bin_centre(bin),
+                                                     value, deviation));
+            for (int c = 0; c < GONIO_CHANNELS; c++) {
+                const double stored = slab[(size_t)c * GONIO_SLAB_BINS + at] / gonio_log_scale(c);
+                assert_true(deviation[c] > 0.0);
+                assert_true(fabs(stored / deviation[c] - 1.0) < 1e-9);
+            }
+        }
+        gonio_material_free(&material);
+        gonio_reconstruction_free(&made);
+    }
+    free(slab);
+    gonio_readings_free(&readings);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -225,6 +265,7 @@ int main(void)
         cmocka_unit_test(test_rows_to_reconstruct_from),
         cmocka_unit_test(test_plans_of_other_bases),
         cmocka_unit_test(test_predictions_that_there_are_not),
+        cmocka_unit_test(test_deviations_as_a_material),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -132,6 +132,7 @@ typedef union unset {
     gonio_reconstruct_options reconstruct;
     gonio_material_source source;
     gonio_page_content page;
+    gonio_write_options write;
 } unset;
 
 static void assert_refused(gonio_status status, const char *type)
@@ -229,6 +230,8 @@ static void refuse_the_rest(fixture *f, const unset *no)
     assert_refused(gonio_material_create(f->context, "a", "b", &no->source, &material),
                    "gonio_material_source");
     assert_refused(gonio_page_write(f->context, &no->page, "/nonexistent"), "gonio_page_content");
+    assert_refused(gonio_material_write(f->context, f->material, "/nonexistent", &no->write),
+                   "gonio_write_options");
     assert_true(context == NULL && material == NULL);
 }
 
@@ -330,6 +333,57 @@ static void test_no_options_are_the_defaults_of_a_reconstruction(void **state)
     gonio_reconstruction_free(&made[1]);
 }
 
+static void test_no_options_are_the_defaults_of_a_context(void **state)
+{
+    (void)state;
+    gonio_context_options options;
+    gonio_context *contexts[2] = {NULL};
+    gonio_context_options_default(&options);
+    assert_true(options.message == NULL && options.progress == NULL && options.threads == 0);
+    assert_int_equal(gonio_context_create(&contexts[0], NULL), GONIO_OK);
+    assert_int_equal(gonio_context_create(&contexts[1], &options), GONIO_OK);
+    assert_int_equal(gonio_context_threads(contexts[0]), gonio_context_threads(NULL));
+    assert_int_equal(gonio_context_threads(contexts[1]), gonio_context_threads(NULL));
+    gonio_context_free(&contexts[0]);
+    gonio_context_free(&contexts[1]);
+}
+
+static void test_no_options_are_the_defaults_of_a_writer(void **state)
+{
+    const fixture *f = *state;
+    gonio_write_options options;
+    gonio_write_options_default(&options);
+    assert_true(options.size == sizeof options && options.format == NULL);
+    assert_int_equal(gonio_material_write(f->context, f->material, "/nonexistent/a.csv", NULL),
+                     GONIO_ERROR_IO);
+    assert_int_equal(gonio_material_write(f->context, f->material, "/nonexistent/a.csv", &options),
+                     GONIO_ERROR_IO);
+}
+
+/* Repeats and negative values are refused unless options accept them. */
+static void test_no_options_are_the_defaults_of_readings(void **state)
+{
+    const fixture *f = *state;
+    static const gonio_pair pair[2] = {{{0.1, 0.0}, {0.2, 3.0}}, {{0.1, 0.0}, {0.2, 3.0}}};
+    static const double value[2] = {-1.0, 1.0};
+    gonio_readings_options options;
+    gonio_readings_options_default(&options);
+    assert_true(options.values_needed);
+    for (size_t count = 1; count <= 2; count++) {
+        const gonio_readings_arrays arrays = {.size = sizeof arrays,
+                                              .count = count,
+                                              .channels = 1,
+                                              .pair = pair,
+                                              .value = count == 1 ? value : NULL};
+        gonio_readings *readings = NULL;
+        assert_int_equal(gonio_readings_create(f->context, &arrays, NULL, &readings),
+                         GONIO_ERROR_DATA);
+        assert_int_equal(gonio_readings_create(f->context, &arrays, &options, &readings),
+                         GONIO_ERROR_DATA);
+        assert_null(readings);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -337,6 +391,9 @@ int main(void)
         cmocka_unit_test(test_newer_callers_fields_are_left_out),
         cmocka_unit_test(test_sizes_that_were_not_set),
         cmocka_unit_test(test_every_function_refuses_what_was_not_initialised),
+        cmocka_unit_test(test_no_options_are_the_defaults_of_a_context),
+        cmocka_unit_test(test_no_options_are_the_defaults_of_a_writer),
+        cmocka_unit_test(test_no_options_are_the_defaults_of_readings),
         cmocka_unit_test(test_no_options_are_the_defaults_of_a_plan),
         cmocka_unit_test(test_no_options_are_the_defaults_of_the_next_readings),
         cmocka_unit_test(test_no_options_choose_rows_too),

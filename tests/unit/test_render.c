@@ -483,6 +483,68 @@ static void what_cannot_be_rendered_is_said(void **state)
     gonio_material_free(&material);
 }
 
+/* A reference is the rendering of its material; what is compared with it is rendered as it was. */
+static void a_reference_is_a_rendering_to_compare_with(void **state)
+{
+    (void)state;
+    gonio_material *material = made_material((made_constant){{0.3, 0.2, 0.1}, NULL});
+    gonio_material *other = made_material((made_constant){{0.25, 0.2, 0.1}, NULL});
+    gonio_render_options options;
+    gonio_reference *reference = NULL;
+    gonio_image *image[2] = {NULL};
+    gonio_image_error error, expected;
+    gonio_render_options_default(&options);
+    options.width = options.height = 24;
+    options.samples = 4;
+    assert_int_equal(gonio_reference_create(NULL, material, &options, &reference), GONIO_OK);
+    assert_int_equal(gonio_render(NULL, material, &options, &image[0]), GONIO_OK);
+    const size_t size = sizeof(float) * 24 * 24 * GONIO_IMAGE_CHANNELS;
+    assert_memory_equal(gonio_reference_image(reference)->rgba, image[0]->rgba, size);
+    const gonio_tone tone = gonio_reference_tone(reference);
+    const gonio_tone measured = gonio_tone_measure(image[0], 0.18);
+    assert_true(tone.key == measured.key && tone.average == measured.average &&
+                tone.white == measured.white);
+    assert_int_equal(gonio_reference_compare(NULL, reference, material, &error), GONIO_OK);
+    assert_true(isinf(error.psnr) && error.delta_e_itp == 0.0);
+    assert_int_equal(gonio_reference_render(NULL, reference, other, &image[1]), GONIO_OK);
+    assert_int_equal(gonio_image_compare(NULL, image[0], image[1], &tone, &expected, NULL),
+                     GONIO_OK);
+    assert_int_equal(gonio_reference_compare(NULL, reference, other, &error), GONIO_OK);
+    assert_true(error.psnr == expected.psnr && error.delta_e_itp == expected.delta_e_itp);
+    assert_true(error.delta_e_itp > 0.5);
+    gonio_image_free(&image[0]);
+    gonio_image_free(&image[1]);
+    gonio_reference_free(&reference);
+    gonio_material_free(&other);
+    gonio_material_free(&material);
+}
+
+/* The signature and the size; that browsers show them is tested with the page. */
+static void pictures_are_png(void **state)
+{
+    (void)state;
+    static const unsigned char head[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0,
+                                         0,    0,   13,  'I', 'H',  'D',  'R',  0,    0,
+                                         0,    7,   0,   0,   0,    5,    8};
+    gonio_image *image = NULL;
+    char *folder = support_folder();
+    char path[256];
+    unsigned char found[sizeof head];
+    snprintf(path, sizeof path, "%s/a.png", folder);
+    assert_int_equal(gonio_image_create(NULL, 7, 5, &image), GONIO_OK);
+    const gonio_tone tone = gonio_tone_measure(image, 0.18);
+    assert_int_equal(gonio_image_write_png(NULL, image, &tone, path), GONIO_OK);
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    assert_int_equal(fread(found, 1, sizeof found, file), sizeof found);
+    fclose(file);
+    assert_memory_equal(found, head, sizeof head);
+    assert_int_equal(gonio_image_write_png(NULL, image, &tone, "/nonexistent/a.png"),
+                     GONIO_ERROR_IO);
+    gonio_image_free(&image);
+    support_remove(folder);
+}
+
 /* Structs whose size nobody set. */
 static void what_was_not_initialised_is_refused(void **state)
 {
@@ -556,6 +618,8 @@ int main(void)
         cmocka_unit_test(environments_without_light_are_refused),
         cmocka_unit_test(environments_are_the_right_way_round),
         cmocka_unit_test(what_cannot_be_rendered_is_said),
+        cmocka_unit_test(a_reference_is_a_rendering_to_compare_with),
+        cmocka_unit_test(pictures_are_png),
         cmocka_unit_test(what_was_not_initialised_is_refused),
     };
     return cmocka_run_group_tests(tests, begin, end);

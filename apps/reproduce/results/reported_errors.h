@@ -7,7 +7,7 @@
 #include <gonio/metric.h>
 #include <jansson.h>
 
-/* The metrics, in the order of the columns. */
+/* The metrics, in the order of the columns: those of the paper and of what it is compared with. */
 enum { GONIO_I_REPORTED = 3 };
 extern const gonio_metric gonio_i_reported[GONIO_I_REPORTED];
 

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../plan/plan_file.h"
 #include "../rules.h"
 #include "csv_columns.h"
 #include "format.h"
@@ -63,9 +64,8 @@ enum { NO_CHANNEL = -2 };
 /* The channel that a cell names, colours first; NO_CHANNEL if it names none. */
 static int channel_of(const gonio_readings *readings, const char *cell)
 {
-    static const char *const colours[] = {"all", "R", "G", "B"};
     for (int k = GONIO_ALL_CHANNELS; k < GONIO_CHANNELS; k++) {
-        if (strcasecmp(cell, colours[k + 1]) == 0) {
+        if (strcasecmp(cell, gonio_i_planned_channel_name(k)) == 0) {
             return k;
         }
     }

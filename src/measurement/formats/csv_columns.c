@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../plan/plan_file.h"
 #include "../rules.h"
 
 typedef enum family { COLOUR, WAVELENGTH, UNNAMED } family;
@@ -212,14 +213,12 @@ void gonio_i_csv_columns_free(gonio_i_csv_columns *columns)
     *columns = (gonio_i_csv_columns){0};
 }
 
-static const char *const channel_names[] = {"all", "R", "G", "B"};
-
 void gonio_i_csv_name_channel(const gonio_readings *readings, int channel,
                               char name[GONIO_I_NAME_ROOM])
 {
     const bool colour = gonio_readings_are_colours(readings) && channel < GONIO_CHANNELS;
     if (channel == GONIO_ALL_CHANNELS || colour) {
-        snprintf(name, GONIO_I_NAME_ROOM, "%s", channel_names[channel + 1]);
+        snprintf(name, GONIO_I_NAME_ROOM, "%s", gonio_i_planned_channel_name(channel));
     } else if (readings->wavelength != NULL && (size_t)channel < readings->channels) {
         snprintf(name, GONIO_I_NAME_ROOM, "%.10gnm", readings->wavelength[channel]);
     } else {
