@@ -88,9 +88,9 @@ GONIO_API void gonio_recipe_paper(gonio_recipe *recipe);
 GONIO_API void gonio_recipe_for_grid(gonio_recipe *recipe, gonio_representation representation);
 
 /* Learns a basis from the materials at paths[count] (as gonio_material_open takes them), in their
- * order. recipe may be NULL for the default one. *basis is the caller's, and is set on success
- * only. The result does not depend on the number of threads. Errors: _ARGUMENT (a recipe that was
- * not set by one of the functions above); those of gonio_database_create and gonio_basis_learn. */
+ * order. recipe may be NULL for the default one. *basis is the caller's. The result does not depend
+ * on the number of threads. Errors: _ARGUMENT (a recipe that was not set by one of the functions
+ * above); those of gonio_database_create and gonio_basis_learn. */
 GONIO_API gonio_status gonio_learn(gonio_context *context, const char *const *paths, size_t count,
                                    const gonio_recipe *recipe, gonio_basis **basis);
 
@@ -147,7 +147,8 @@ GONIO_API gonio_status gonio_basis_rows(gonio_context *context, const gonio_basi
 /* S_k, k from 0; 0 from variance_count on. */
 GONIO_API double gonio_basis_singular_value(const gonio_basis *basis, size_t k);
 
-/* sum of the first k variances over the sum of all: what Fig. 2(a) of the paper plots. */
+/* sum of the first k variances over the sum of all: what Fig. 2(a) of the paper plots. 1 for k past
+ * the last. */
 GONIO_API double gonio_basis_cumulative_variance(const gonio_basis *basis, size_t k);
 
 /* The cell in the basis that stands for any cell of the grid: itself, or if the database had no

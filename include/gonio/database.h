@@ -30,7 +30,7 @@
 extern "C" {
 #endif
 
-/* s_c, 1/sr, for channel 0, 1, 2; 1/1500 for any other. */
+/* s_c, 1/sr, for channel 0, 1, 2; 1/1500 for any other, here and in the functions below. */
 GONIO_API double gonio_log_scale(int channel);
 
 /* g = ln(1 + rho/s_c); and back, rho = s_c (e^g - 1), clamped at 0. */
@@ -161,7 +161,8 @@ GONIO_API const gonio_database_view *gonio_database_describe(const gonio_databas
 
 /* Reads rows first .. first + count - 1 of H into block[column][count] (column-major), for the
  * columns of the given materials (indices into names) in that order; subset NULL for all materials.
- * Errors: _ARGUMENT (outside the matrix), _IO. */
+ * Threads may call it at the same time. Errors: _ARGUMENT (rows outside the matrix, a material of
+ * the subset that there is not), _IO, _MEMORY. */
 GONIO_API gonio_status gonio_database_read_rows(gonio_context *context,
                                                 const gonio_database *database, size_t first,
                                                 size_t count, const size_t *subset,

@@ -25,7 +25,7 @@ GONIO_API gonio_status gonio_compare(gonio_context *context, const gonio_materia
 /* The same errors over readings: of reference reading k and of reading k of the other, which is at
  * the same directions (gonio_readings_look_up), in all channels that both have. left_out[count], or
  * NULL: readings that do not count, for they were used. Errors: _MISMATCH (other numbers of
- * readings or channels), _DATA (nothing to compare). */
+ * readings or channels), _DATA (nothing to compare). *compared: how many readings count. */
 GONIO_API gonio_status gonio_compare_readings(gonio_context *context,
                                               const gonio_readings *reference,
                                               const gonio_readings *other, const bool *left_out,

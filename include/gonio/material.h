@@ -66,7 +66,9 @@ GONIO_API gonio_status gonio_material_open(gonio_context *context, const char *p
                                            gonio_material **material);
 
 /* Wraps a source, for materials that come from elsewhere. On success the material owns source.self
- * and releases it with itself; on failure the caller still owns it. The strings are copied. */
+ * and releases it with itself; on failure the caller still owns it. The strings are copied. Errors:
+ * _ARGUMENT (neither read_slab nor evaluate, channels without wavelengths other than 1 and 3, a
+ * source that was not initialised), _MEMORY. */
 GONIO_API gonio_status gonio_material_create(gonio_context *context, const char *name,
                                              const char *format,
                                              const gonio_material_source *source,
@@ -118,7 +120,8 @@ GONIO_API gonio_status gonio_material_read_slab(gonio_context *context,
 
 /* A 64-bit fingerprint of a material's values: XXH3 over the slabs in order, as little-endian
  * doubles in 1/sr. Copies of a MERL table have the same fingerprint; a neural BRDF and the table
- * made from it may differ in a last digit, and so in this. Feed all 90 slabs in order. */
+ * made from it may differ in a last digit, and so in this. Feed all 90 slabs in order. Errors of
+ * making one, which have no message: _MEMORY. */
 typedef struct gonio_fingerprint gonio_fingerprint;
 GONIO_API gonio_status gonio_fingerprint_create(gonio_fingerprint **fingerprint);
 GONIO_API void gonio_fingerprint_add(gonio_fingerprint *fingerprint, const void *data, size_t size);
@@ -178,7 +181,7 @@ GONIO_API gonio_status gonio_table_load(gonio_context *context, const gonio_mate
                                         gonio_table **table);
 GONIO_API void gonio_table_free(gonio_table **table);
 
-/* All values, rho[theta_h][channel][theta_d][phi_d] (90 slabs). */
+/* All values, rho[theta_h][channel][theta_d][phi_d] (90 slabs); they belong to the table. */
 GONIO_API const double *gonio_table_values(const gonio_table *table);
 
 /* The BRDF at any directions, trilinear between bin centres in (sqrt theta_h, theta_d, phi_d),

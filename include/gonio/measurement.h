@@ -133,7 +133,7 @@ GONIO_API gonio_status gonio_readings_set_deviations(gonio_context *context,
  * radians and a value in 1/sr for each wavelength, with line breaks anywhere.
  *
  * Angles: theta in [0, 90) degrees (a direction at or below the horizon is refused), phi in
- * [-360, 360]. options may be NULL.
+ * [-360, 360]. options may be NULL. *readings is the caller's.
  * Errors: _IO, _FORMAT (not such a file, missing columns, not a number), _DATA (angles out of
  * range, repeats, negative or non-finite values, no readings); the message names the line. */
 GONIO_API gonio_status gonio_readings_read(gonio_context *context, const char *path,
@@ -147,13 +147,13 @@ GONIO_API gonio_status gonio_readings_write(gonio_context *context, const gonio_
 
 /* ---- readings of other readings ---- */
 
-/* Which readings have the directions of one in `others`: same[count]. */
+/* Which readings have the directions of one in `others`: same[count]. Errors: _MEMORY. */
 GONIO_API gonio_status gonio_readings_find(gonio_context *context, const gonio_readings *readings,
                                            const gonio_readings *others, bool *same);
 
 /* Takes the values of a plan's directions from readings of the same material at more directions:
  * those with the same half/difference coordinates to 1e-4 radians. Errors: _DATA if there are none
- * at a direction. */
+ * at a direction; _MEMORY. */
 GONIO_API gonio_status gonio_readings_look_up(gonio_context *context, gonio_readings *plan,
                                               const gonio_readings *known);
 
@@ -173,15 +173,17 @@ GONIO_API void gonio_instrument_options_default(gonio_instrument_options *option
 
 /* The simulated instrument: puts a known material at the directions of `readings` (a plan) and
  * fills in R, G, B with rho (1 + noise z) + floor z', z and z' standard normal and
- * independent, clamped at 0. A direction that occurs several times is read once. Errors: _DATA if
- * the material has no data around a direction; _ARGUMENT for negative noise. */
+ * independent, clamped at 0. A direction that occurs several times is read once. options may be
+ * NULL. Errors: _DATA if the material has no data around a direction; _ARGUMENT for negative noise.
+ */
 GONIO_API gonio_status gonio_measure(gonio_context *context, gonio_readings *readings,
                                      const gonio_table *table,
                                      const gonio_instrument_options *options);
 
 /* The same of any material: where it can be evaluated at any directions, in its own channels, which
- * become those of the readings, a channel without data at a direction not read; otherwise, and where
- * the plan names colours that it has not, by way of its table. Errors: as above, those of the material. */
+ * become those of the readings, a channel without data at a direction not read; otherwise, and
+ * where the plan names colours that it has not, by way of its table. Errors: as above, those of the
+ * material. */
 GONIO_API gonio_status gonio_measure_material(gonio_context *context, gonio_readings *readings,
                                               const gonio_material *material,
                                               const gonio_instrument_options *options);

@@ -101,9 +101,11 @@ GONIO_API const char *gonio_plan_start_summary(int index);
 
 /* Makes a plan. A chosen cell becomes the pair at its centre with phi_h = 0 and the given phi_d (of
  * a full basis, the bin's own phi_d); where that pair would be at or below the horizon, the valid
- * phi_d nearest to it is taken. Errors: _ARGUMENT (unknown method, K more than the basis has, n < K
- * for the condition method, n more than there are rows, phi_d outside [0, pi), a method that works
- * on another kind of basis); _DATA (rows of rank less than K); _CANCELLED. */
+ * phi_d nearest to it is taken. options may be NULL. *plan is the caller's; the basis need not
+ * outlive it. The same plan on any number of threads. Errors: _ARGUMENT (unknown method, K more
+ * than the basis has, n < K for the condition method, n more than there are rows, phi_d outside [0,
+ * pi), a method that works on another kind of basis); _DATA (rows of rank less than K); _CANCELLED.
+ */
 GONIO_API gonio_status gonio_plan_create(gonio_context *context, const gonio_basis *basis,
                                          const gonio_plan_options *options, gonio_plan **plan);
 
@@ -141,11 +143,12 @@ GONIO_API gonio_status gonio_condition_number(gonio_context *context, const doub
                                               double *condition_number);
 
 /* A plan as CSV (docs/plan-and-readings.md): `#` lines, then columns theta_i_deg, phi_i_deg,
- * theta_o_deg, phi_o_deg, channel. Whole or not at all. command may be NULL. */
+ * theta_o_deg, phi_o_deg, channel. Whole or not at all. command may be NULL. Errors: _IO, _MEMORY.
+ */
 GONIO_API gonio_status gonio_plan_write(gonio_context *context, const gonio_plan *plan,
                                         const char *command, const char *path);
 
-/* kappa against swaps, as CSV: restart, swap, condition_number. */
+/* kappa against swaps, as CSV: restart, swap, condition_number. Errors and command as above. */
 GONIO_API gonio_status gonio_plan_write_history(gonio_context *context, const gonio_plan *plan,
                                                 const char *command, const char *path);
 

@@ -66,7 +66,8 @@ typedef struct gonio_reconstruction {
     size_t wavelengths;  /* 0 without wavelengths: R, G, B if there are three */
     double *wavelength;  /* [wavelengths], nm */
     const char *suspicion; /* what would explain the readings far better than what they say they
-                            * are ("the values include the cosine of theta_o"); NULL if nothing */
+                            * are ("the values include the cosine of theta_o"), static; NULL if
+                            * nothing */
     double *dark; /* [columns], 1/sr: what the instrument seems to subtract too much; it reads
                    * max(0, rho - dark/cos theta_i) of rho. The field is the material's, without it.
                    * NULL where no reading is zero, where levels explain little, with a suspicion,
@@ -90,31 +91,35 @@ GONIO_API gonio_status gonio_reconstruction_predict_readings(
     gonio_readings *readings);
 
 /* The standard deviations of g as a material, in place of rho/s: the numbers that a MERL table of
- * it holds are the deviations. Of spectra and of a single channel they are those of the colours that
- * a table has, the errors of all wavelengths taken as going together. The basis and the reconstruction must outlive it. Errors: _MEMORY;
- * _ARGUMENT if they were not asked for. */
+ * it holds are the deviations. Of spectra and of a single channel they are those of the colours
+ * that a table has, the errors of all wavelengths taken as going together. The basis and the
+ * reconstruction must outlive it. Errors: _MEMORY; _ARGUMENT if they were not asked for. */
 GONIO_API gonio_status gonio_reconstruction_deviation_material(
     gonio_context *context, const gonio_basis *basis, const gonio_reconstruction *reconstruction,
     gonio_material **material);
 
-/* Solves for the coefficients.
- * Errors: _UNDETERMINED if the readings have fewer than K independent rows (the message says how
- * many and what to do); _MISMATCH if they were planned with another basis, or for more components
- * than the basis has; _ARGUMENT (options->components more than the basis has, an unknown method, a
- * negative eta); _DATA (a planned channel was not read). */
+/* Solves for the coefficients. options may be NULL. *reconstruction is the caller's; basis and
+ * readings need not outlive it. The same on any number of threads. Errors: _UNDETERMINED if the
+ * readings have fewer than K independent rows (the message says how many and what to do); _MISMATCH
+ * if they were planned with another basis, or for more components than the basis has; _ARGUMENT
+ * (options->components more than the basis has, an unknown method, a negative eta); _DATA (a
+ * planned channel was not read). */
 GONIO_API gonio_status gonio_reconstruct(gonio_context *context, const gonio_basis *basis,
                                          const gonio_readings *readings,
                                          const gonio_reconstruct_options *options,
                                          gonio_reconstruction **reconstruction);
 
 /* The same by least squares for rows of the basis given by number, with b in the basis's log space:
- * c for columns x count values b[column][count]. */
+ * c for columns x count values b[column][count]. Errors: _ARGUMENT (no rows, a row or components
+ * that the basis does not have); _UNDETERMINED; _MEMORY. */
 GONIO_API gonio_status gonio_reconstruct_rows(gonio_context *context, const gonio_basis *basis,
                                               size_t components, const size_t *rows, size_t count,
                                               const double *b,
                                               gonio_reconstruction **reconstruction);
 
-/* The same by any method: options' components, method (NULL for least-squares) and eta count. */
+/* The same by any method: options' components, method and eta count. method NULL: posterior for a
+ * basis with mixtures, least-squares for any other. options may be NULL. Errors: the same, and
+ * those of gonio_reconstruct. */
 GONIO_API gonio_status gonio_reconstruct_rows_with(gonio_context *context, const gonio_basis *basis,
                                                    const gonio_reconstruct_options *options,
                                                    const size_t *rows, size_t count,
@@ -124,14 +129,16 @@ GONIO_API gonio_status gonio_reconstruct_rows_with(gonio_context *context, const
 /* What an instrument without noise would read of a material at rows of the basis, in its log space:
  * a cell's value is that of database.h (of a bivariate cell the mean over phi_d).
  * b[column][count]: of a joint basis one column; of a separate one R, G, B.
- * Errors: _DATA if the material has no data in a cell; _MEMORY; those of the material. */
+ * Errors: _ARGUMENT (no rows, a row that the basis does not have); _DATA if the material has no
+ * data in a cell; _MEMORY; those of the material. */
 GONIO_API gonio_status gonio_material_rows(gonio_context *context, const gonio_basis *basis,
                                            const gonio_material *material, const size_t *rows,
                                            size_t count, double *b);
 
 /* Both at once, without files: a known material, read at rows of the basis (gonio_plan_rows) and
- * reconstructed. With options->all_channels every channel is read in the cells of the rows. The
- * basis must outlive the result, the original need not. Errors: those of the parts. */
+ * reconstructed. With options->all_channels every channel is read in the cells of the rows. options
+ * may be NULL. The basis must outlive the result, the original need not. Errors: those of the
+ * parts. */
 GONIO_API gonio_status gonio_reconstruct_material(gonio_context *context, const gonio_basis *basis,
                                                   const gonio_material *original,
                                                   const size_t *rows, size_t count,
@@ -140,12 +147,13 @@ GONIO_API gonio_status gonio_reconstruct_material(gonio_context *context, const 
 
 /* What to read next of a material of which something was read: the directions that leave the least
  * expected error given what the readings say it is like (the covariance of the posterior, averaged
- * over the channels). plan_options: count, metric, candidates and target count, as for the method
- * expected-error; readings that were made are not proposed again, and expected[] is per cent of
- * this material. A dark level and usual mistakes are looked for as in a reconstruction:
- * *suspicion is gonio_reconstruction.suspicion (suspicion may be NULL). *expected_now: the E6 to
- * expect without another reading; if it is at most plan_options->target (above 0), there is nothing
- * to read and *plan is NULL. Errors: those of gonio_reconstruct and gonio_plan_create. */
+ * over the channels). Both options may be NULL. plan_options: count, metric, candidates and target
+ * count, as for the method expected-error; readings that were made are not proposed again, and
+ * expected[] is per cent of this material. A dark level and usual mistakes are looked for as in a
+ * reconstruction: *suspicion is gonio_reconstruction.suspicion. *expected_now: the E6 to expect
+ * without another reading; if it is at most plan_options->target (above 0), there is nothing
+ * to read and *plan is NULL. suspicion and expected_now may be NULL. Errors: those of
+ * gonio_reconstruct and gonio_plan_create. */
 GONIO_API gonio_status gonio_plan_next(gonio_context *context, const gonio_basis *basis,
                                        const gonio_readings *readings,
                                        const gonio_reconstruct_options *options,
@@ -173,7 +181,7 @@ GONIO_API gonio_status gonio_reconstruction_spectral_material(
  * (material.h), several at a time. Every table appears whole or not at all, and after those before
  * it: if one fails, those before it are in place, it and those after it are not. Of several
  * failures of solving the first is told. The bytes do not depend on the number of threads; memory
- * does, not on `count`.
+ * does, not on `count`. options may be NULL.
  * made: `count` pointers; on return, success or not, the reconstructions of the tables that are in
  * place, to be freed by the caller, and NULL for the others.
  * Errors: those of gonio_reconstruct; _IO; _MEMORY; _CANCELLED. */
@@ -184,7 +192,7 @@ GONIO_API gonio_status gonio_reconstruct_tables(gonio_context *context, const go
                                                 gonio_reconstruction **made);
 
 /* A material's own bivariate average (database.h) as a material: the best any bivariate method can
- * do. The original must outlive it. */
+ * do. The original must outlive it. Errors: _MEMORY. */
 GONIO_API gonio_status gonio_bivariate_material(gonio_context *context,
                                                 const gonio_material *original,
                                                 gonio_material **material);

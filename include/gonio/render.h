@@ -159,10 +159,10 @@ GONIO_API void gonio_render_options_default(gonio_render_options *options);
  * has data that of the nearest that has, along theta_d, then theta_h, then phi_d. The environment
  * is sampled by its radiance and the BRDF by its highlight and the cosine, combined by the balance
  * heuristic (Veach and Guibas 1995). The error falls as 1/sqrt(samples). The same seed gives the
- * same image on any number of threads.
- * Memory: 60 MB, and 16 bytes a pixel.
- * Errors: _ARGUMENT (sizes, samples < 1, a view or a lamp that is none); _DATA for a material
- * without data; _MEMORY; _CANCELLED; those of the material. */
+ * same image on any number of threads. options may be NULL. *image is the caller's, and needs
+ * neither the material nor what options points to. Memory: 60 MB, and 16 bytes a pixel. Errors:
+ * _ARGUMENT (sizes, samples < 1, a view or a lamp that is none); _DATA for a material without data;
+ * _MEMORY; _CANCELLED; those of the material. */
 GONIO_API gonio_status gonio_render(gonio_context *context, const gonio_material *material,
                                     const gonio_render_options *options, gonio_image **image);
 

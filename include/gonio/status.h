@@ -7,10 +7,18 @@
  *   - Objects made by gonio_X_create, _open, _read, _learn ... are owned by the caller and released
  *     by gonio_X_free(&x), which accepts NULL and nulls the pointer.
  *   - A struct of options begins with its size. Call its gonio_X_options_default, then change
- *     fields. NULL in place of options means the defaults. Structs of input without such a call are
- *     zeros but for the fields that are set, .size = sizeof(gonio_X) among them. A size that was not
- *     set is GONIO_ERROR_ARGUMENT. Options are copied: they need not outlive the call, but for what
- *     their pointers point to where a comment says so.
+ *     fields. NULL in place of options means the defaults. A struct of input without such a call is
+ *     zeros but for the fields that are set, .size = sizeof(gonio_X) among them. A size that was
+ *     not set is GONIO_ERROR_ARGUMENT.
+ *   - Threads: functions that take an object as const do not write to it, so several threads may
+ *     call them with the same object at a time. A function that changes an object needs it alone.
+ *     A context may always be shared (context.h). Functions without objects are pure.
+ *   - What is passed to a function is the caller's. It is not needed after the call, unless the
+ *     comment says that it must outlive the result.
+ *   - A name or description from a list is static. Pointers that come out of an object belong to
+ *     it: they last until it is freed or a function changes it.
+ *   - Indices (cells, rows, components, channels, materials, places in lists) are checked. One that
+ *     there is not is GONIO_ERROR_ARGUMENT, or what the comment says if there is no status.
  *   - The library prints nothing, never exits, and keeps no global state of its own.
  *   - Angles are radians, reflectances 1/sr; arrays are contiguous, the last index fastest. */
 #ifndef GONIO_STATUS_H

@@ -384,6 +384,26 @@ static void test_no_options_are_the_defaults_of_readings(void **state)
     }
 }
 
+/* From rows of the basis too it is posterior for a basis with mixtures, least squares without. */
+static void test_the_default_method_depends_on_the_basis(void **state)
+{
+    const fixture *f = *state;
+    static const size_t row[] = {5, 500};
+    static const double b[2 * GONIO_CHANNELS] = {1.0, 2.0, 1.0, 2.0, 1.0, 2.0};
+    const gonio_basis_options none = {.size = sizeof none, .components = 2, .mixtures = 0};
+    gonio_basis *plain = NULL;
+    assert_int_equal(gonio_basis_learn(f->context, f->database, &none, &plain), GONIO_OK);
+    for (int k = 0; k < 2; k++) {
+        gonio_reconstruction *made = NULL;
+        assert_int_equal(gonio_reconstruct_rows_with(f->context, k == 0 ? plain : f->basis, NULL,
+                                                     row, 2, b, &made),
+                         GONIO_OK);
+        assert_int_equal(made->field != NULL, k == 1);
+        gonio_reconstruction_free(&made);
+    }
+    gonio_basis_free(&plain);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -398,6 +418,7 @@ int main(void)
         cmocka_unit_test(test_no_options_are_the_defaults_of_the_next_readings),
         cmocka_unit_test(test_no_options_choose_rows_too),
         cmocka_unit_test(test_no_options_are_the_defaults_of_a_reconstruction),
+        cmocka_unit_test(test_the_default_method_depends_on_the_basis),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
