@@ -31,20 +31,20 @@ static int report(const tool *t, const options *o, size_t materials)
 }
 
 static int reproduce(const tool *t, const options *o, const material_list *list,
-                     const process_group *team)
+                     const process_group *group)
 {
     const gonio_reproduce_options how = {.splits = o->splits,
                                          .seed = (uint64_t)o->seed,
                                          .quick = o->quick != 0,
                                          .only = o->only,
                                          .skip_bad = o->skip_bad != 0,
-                                         .team = team};
+                                         .group = group};
     const gonio_status status =
         gonio_reproduce(t->context, (const char *const *)list->path, list->count, o->output, &how);
     if (status != GONIO_OK) {
         return tool_exit_code(status);
     }
-    return team->rank == 0 ? report(t, o, list->count) : 0;
+    return group->rank == 0 ? report(t, o, list->count) : 0;
 }
 
 static bool check(const tool *t, const options *o)
@@ -56,7 +56,7 @@ static bool check(const tool *t, const options *o)
 }
 
 /* Of what was asked for, the built-in materials by default. */
-static int run(const tool *t, const options *o, const process_group *team)
+static int run(const tool *t, const options *o, const process_group *group)
 {
     static const char *const built_in[] = {"atlas:"};
     size_t count = 0;
@@ -68,7 +68,7 @@ static int run(const tool *t, const options *o, const process_group *team)
     int code = count > 0 ? material_list_add_all(t, &list, arguments, count)
                          : material_list_add_all(t, &list, built_in, 1);
     if (code == 0) {
-        code = reproduce(t, o, &list, team);
+        code = reproduce(t, o, &list, group);
     }
     material_list_free(&list);
     return code;
@@ -78,12 +78,12 @@ static int run(const tool *t, const options *o, const process_group *team)
 static int run_in_team(tool *t, void *given)
 {
     const options *o = given;
-    process_group team;
-    if (!process_group_join(&team, t->name)) {
+    process_group group;
+    if (!process_group_join(&group, t->name)) {
         return EXIT_DATA;
     }
-    tool_quiet = tool_quiet || team.rank != 0;
-    return process_group_leave(run(t, o, &team));
+    tool_quiet = tool_quiet || group.rank != 0;
+    return process_group_leave(run(t, o, &group));
 }
 
 int cmd_reproduce(int argc, const char **argv)

@@ -60,23 +60,23 @@ static gonio_status write_all(gonio_context *context, const gonio_i_study *study
 }
 
 static gonio_status run(gonio_context *context, const gonio_i_study *study, const char *folder,
-                        const process_group *team)
+                        const process_group *group)
 {
-    gonio_i_pieces *pieces = NULL;
+    gonio_i_checkpoint *checkpoint = NULL;
     gonio_i_results results = {0};
     json_t *identity = gonio_i_study_identity(study);
-    gonio_status status = identity != NULL
-                              ? gonio_i_pieces_open(context, folder, identity, team, &pieces)
-                              : gonio_i_fail(context, GONIO_ERROR_MEMORY,
-                                             "a material's name is not UTF-8, or out of memory");
+    gonio_status status =
+        identity != NULL ? gonio_i_checkpoint_open(context, folder, identity, group, &checkpoint)
+                         : gonio_i_fail(context, GONIO_ERROR_MEMORY,
+                                        "a material's name is not UTF-8, or out of memory");
     if (status == GONIO_OK) {
-        status = gonio_i_run_experiments(context, study, pieces, &results);
+        status = gonio_i_run_experiments(context, study, checkpoint, &results);
     }
-    if (status == GONIO_OK && (team == NULL || team->rank == 0)) {
+    if (status == GONIO_OK && (group == NULL || group->rank == 0)) {
         status = write_all(context, study, &results, folder);
     }
     gonio_i_results_free(&results);
-    gonio_i_pieces_free(&pieces);
+    gonio_i_checkpoint_free(&checkpoint);
     json_decref(identity);
     return status;
 }
@@ -90,7 +90,7 @@ gonio_status gonio_reproduce(gonio_context *context, const char *const *paths, s
     gonio_i_study study;
     gonio_status status = gonio_i_study_create(context, paths, count, options, &study);
     if (status == GONIO_OK) {
-        status = run(context, &study, folder, options->team);
+        status = run(context, &study, folder, options->group);
     }
     gonio_i_study_free(&study);
     return status;

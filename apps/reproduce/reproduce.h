@@ -19,7 +19,7 @@ typedef struct gonio_reproduce_options {
     bool quick;       /* fewer splits and plans: about a minute for 100 materials */
     const char *only; /* "fig3a,fig5": these experiments (gonio_experiment_name); NULL for all */
     bool skip_bad;    /* leave out materials that cannot be used, instead of refusing to start */
-    const process_group *team; /* NULL for a process on its own */
+    const process_group *group; /* NULL for a process on its own */
 } gonio_reproduce_options;
 
 /* Random splits from seed 0, all experiments in full, bad materials refused. */
@@ -34,7 +34,7 @@ const char *gonio_experiment_name(int index);
  *   figures/        data, gnuplot script and pictures
  *   tables/         all raw numbers as CSV: per split, material, and cell of the grid
  *   run.json, pieces/  what is finished: a run that was stopped goes on there, to the same bytes
- * The results do not depend on the number of threads or processes. All processes of a team call
+ * The results do not depend on the number of threads or processes. All processes of a group call
  * this with the same arguments and a folder that all see.
  *
  * Memory: about 4 MB a material, and 10 MB a thread; while a method of the full grid is compared

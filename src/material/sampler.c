@@ -46,11 +46,11 @@ static gonio_status look_up(gonio_context *context, const gonio_i_sampler *s,
 }
 
 /* Adds a turn's values to sums, and counts those that there are. */
-static void add_turn(const double *turned, size_t count, double *sum, double *counts)
+static void add_turn(const double *rotated, size_t count, double *sum, double *counts)
 {
     for (size_t k = 0; k < count; k++) {
-        sum[k] += isnan(turned[k]) ? 0.0 : turned[k];
-        counts[k] += isnan(turned[k]) ? 0.0 : 1.0;
+        sum[k] += isnan(rotated[k]) ? 0.0 : rotated[k];
+        counts[k] += isnan(rotated[k]) ? 0.0 : 1.0;
     }
 }
 
@@ -58,22 +58,22 @@ static gonio_status average_turns(gonio_context *context, const gonio_i_sampler 
                                   const gonio_pair *pairs, size_t count, double *values)
 {
     const size_t numbers = count * s->view->channels;
-    gonio_pair *turned = gonio_i_allocate(context, count, sizeof *turned);
+    gonio_pair *rotated = gonio_i_allocate(context, count, sizeof *rotated);
     double *one = gonio_i_allocate(context, numbers, sizeof *one);
     double *counts = gonio_i_allocate(context, numbers, sizeof *counts);
     gonio_status status =
-        turned != NULL && one != NULL && counts != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
+        rotated != NULL && one != NULL && counts != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
     for (size_t k = 0; k < numbers; k++) {
         values[k] = 0.0;
     }
     for (size_t t = 0; t < s->turns && status == GONIO_OK; t++) {
         for (size_t k = 0; k < count; k++) {
             const double angle = 2.0 * M_PI * (double)t / (double)s->turns;
-            turned[k] = pairs[k];
-            turned[k].incident.phi += angle;
-            turned[k].outgoing.phi += angle;
+            rotated[k] = pairs[k];
+            rotated[k].incident.phi += angle;
+            rotated[k].outgoing.phi += angle;
         }
-        status = look_up(context, s, turned, count, one);
+        status = look_up(context, s, rotated, count, one);
         if (status == GONIO_OK) {
             add_turn(one, numbers, values, counts);
         }
@@ -81,7 +81,7 @@ static gonio_status average_turns(gonio_context *context, const gonio_i_sampler 
     for (size_t k = 0; k < numbers && status == GONIO_OK; k++) {
         values[k] = counts[k] > 0.0 ? values[k] / counts[k] : NAN;
     }
-    free(turned);
+    free(rotated);
     free(one);
     free(counts);
     return status;

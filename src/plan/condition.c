@@ -51,7 +51,7 @@ static gonio_status start(gonio_i_swap_search *s, int restart)
 /* All starts, with what they share. */
 typedef struct starts {
     const gonio_i_selection_problem *problem;
-    const gonio_i_packed_rows *panels;
+    const gonio_i_packed_rows *packed;
     double progress;              /* the sum of the starts' shares */
     gonio_i_selection *histories; /* [restarts]: only the history of each */
     int threads;                  /* within a start */
@@ -95,7 +95,7 @@ static void run(starts *all, int restart)
 {
     gonio_i_swap_search s;
     gonio_status status =
-        gonio_i_swap_search_allocate(all->problem, all->panels, &all->progress, all->threads, &s)
+        gonio_i_swap_search_allocate(all->problem, all->packed, &all->progress, all->threads, &s)
             ? GONIO_OK
             : GONIO_ERROR_MEMORY;
     if (status == GONIO_OK) {
@@ -160,14 +160,14 @@ static gonio_status select_by_condition(const gonio_i_selection_problem *problem
 {
     gonio_context *context = problem->context;
     const size_t restarts = (size_t)problem->restarts;
-    gonio_i_packed_rows panels = {0};
+    gonio_i_packed_rows packed = {0};
     starts all = {.problem = problem,
-                  .panels = &panels,
+                  .packed = &packed,
                   .histories = gonio_i_allocate(context, restarts, sizeof *all.histories),
                   .best = -1,
                   .selection = selection};
     gonio_status status = GONIO_ERROR_MEMORY;
-    if (all.histories != NULL && gonio_i_packed_rows_make(problem, &panels)) {
+    if (all.histories != NULL && gonio_i_packed_rows_make(problem, &packed)) {
         run_all(&all);
         status = all.status;
     }
@@ -182,7 +182,7 @@ static gonio_status select_by_condition(const gonio_i_selection_problem *problem
         free(all.histories[k].history);
     }
     free(all.histories);
-    gonio_i_packed_rows_free(&panels);
+    gonio_i_packed_rows_free(&packed);
     return status;
 }
 

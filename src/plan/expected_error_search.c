@@ -99,14 +99,14 @@ static gonio_status find_loss(design *d)
 {
     const size_t size = d->k * d->k;
     gonio_status result = GONIO_OK;
-    double *parts = gonio_i_allocate(d->problem->context, LOSS_PARTS * size, sizeof *parts);
-    if (parts == NULL) {
+    double *partial = gonio_i_allocate(d->problem->context, LOSS_PARTS * size, sizeof *partial);
+    if (partial == NULL) {
         return GONIO_ERROR_MEMORY;
     }
 #pragma omp parallel for schedule(dynamic, 1)                                                      \
     num_threads(gonio_context_threads(d->problem->context))
     for (size_t part = 0; part < LOSS_PARTS; part++) {
-        const gonio_status mine = add_loss(d, part, parts + part * size);
+        const gonio_status mine = add_loss(d, part, partial + part * size);
         if (mine != GONIO_OK) {
 #pragma omp atomic write
             result = mine;
@@ -114,10 +114,10 @@ static gonio_status find_loss(design *d)
     }
     for (size_t part = 0; part < LOSS_PARTS; part++) {
         for (size_t i = 0; i < size; i++) {
-            d->w[i] += parts[part * size + i];
+            d->w[i] += partial[part * size + i];
         }
     }
-    free(parts);
+    free(partial);
     gonio_i_mirror(d->w, d->k);
     memcpy(d->half, d->w, d->k * d->k * sizeof *d->w);
     for (size_t i = 0; i < d->k; i++) {

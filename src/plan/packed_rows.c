@@ -24,9 +24,9 @@ static size_t round_up(size_t n, size_t multiple)
 }
 
 /* Values in the panels of `rows` rows. */
-static size_t size_of(const gonio_i_packed_rows *panels, size_t rows)
+static size_t size_of(const gonio_i_packed_rows *packed, size_t rows)
 {
-    return rows * panels->components;
+    return rows * packed->components;
 }
 
 /* ---- layout ---- */
@@ -43,13 +43,13 @@ GONIO_I_VECTORISED static void transpose(const double *restrict rows, size_t str
 }
 
 /* A panel from row `first` on, of which there may be fewer than fill it. */
-static void lay_out(const gonio_i_packed_rows *panels, size_t first, float *panel)
+static void lay_out(const gonio_i_packed_rows *packed, size_t first, float *panel)
 {
-    const gonio_i_selection_problem *p = panels->problem;
+    const gonio_i_selection_problem *p = packed->problem;
     const size_t rows = first < p->rows ? p->rows - first : 0;
     const size_t count = rows < WIDTH ? rows : WIDTH;
-    if (count < WIDTH || panels->components > p->components) {
-        memset(panel, 0, size_of(panels, WIDTH) * sizeof *panel);
+    if (count < WIDTH || packed->components > p->components) {
+        memset(panel, 0, size_of(packed, WIDTH) * sizeof *panel);
     }
     transpose(gonio_i_row(p, first), p->stride, count, p->components, panel);
 }
@@ -68,66 +68,66 @@ static float *aligned_floats(size_t count)
     return aligned_alloc(sizeof(lanes), count * sizeof(float));
 }
 
-bool gonio_i_packed_rows_make(const gonio_i_selection_problem *problem, gonio_i_packed_rows *panels)
+bool gonio_i_packed_rows_make(const gonio_i_selection_problem *problem, gonio_i_packed_rows *packed)
 {
     gonio_context *context = problem->context;
-    *panels = (gonio_i_packed_rows){.problem = problem,
+    *packed = (gonio_i_packed_rows){.problem = problem,
                                     .components = round_up(problem->components, BLOCK),
                                     .rows = round_up(problem->rows, WIDTH)};
-    const size_t size = size_of(panels, panels->rows);
+    const size_t size = size_of(packed, packed->rows);
     const bool keep = size <= most_kept / sizeof(float);
-    panels->values = keep ? aligned_floats(size) : NULL;
-    panels->length = aligned_floats(panels->rows);
-    if ((keep && panels->values == NULL) || panels->length == NULL) {
+    packed->values = keep ? aligned_floats(size) : NULL;
+    packed->length = aligned_floats(packed->rows);
+    if ((keep && packed->values == NULL) || packed->length == NULL) {
         gonio_i_fail(context, GONIO_ERROR_MEMORY, "out of memory");
         return false;
     }
 #pragma omp parallel for schedule(static) num_threads(gonio_context_threads(context))
-    for (size_t first = 0; first < panels->rows; first += WIDTH) {
+    for (size_t first = 0; first < packed->rows; first += WIDTH) {
         if (keep) {
-            lay_out(panels, first, panels->values + size_of(panels, first));
+            lay_out(packed, first, packed->values + size_of(packed, first));
         }
         for (size_t u = first; u < first + WIDTH; u++) {
-            panels->length[u] =
+            packed->length[u] =
                 u < problem->rows ? length_of(gonio_i_row(problem, u), problem->components) : 0.0F;
         }
     }
     return true;
 }
 
-void gonio_i_packed_rows_free(gonio_i_packed_rows *panels)
+void gonio_i_packed_rows_free(gonio_i_packed_rows *packed)
 {
-    free(panels->values);
-    free(panels->length);
+    free(packed->values);
+    free(packed->length);
 }
 
-size_t gonio_i_packed_rows_chunks(const gonio_i_packed_rows *panels)
+size_t gonio_i_packed_rows_chunks(const gonio_i_packed_rows *packed)
 {
-    return (panels->rows + GONIO_I_CHUNK - 1) / GONIO_I_CHUNK;
+    return (packed->rows + GONIO_I_CHUNK - 1) / GONIO_I_CHUNK;
 }
 
-float *gonio_i_packed_rows_scratch(const gonio_i_packed_rows *panels, bool *failed)
+float *gonio_i_packed_rows_scratch(const gonio_i_packed_rows *packed, bool *failed)
 {
-    float *scratch = panels->values == NULL ? aligned_floats(size_of(panels, GONIO_I_CHUNK)) : NULL;
-    *failed = panels->values == NULL && scratch == NULL;
+    float *scratch = packed->values == NULL ? aligned_floats(size_of(packed, GONIO_I_CHUNK)) : NULL;
+    *failed = packed->values == NULL && scratch == NULL;
     return scratch;
 }
 
-gonio_i_chunk gonio_i_packed_rows_chunk(const gonio_i_packed_rows *panels, size_t chunk,
+gonio_i_chunk gonio_i_packed_rows_chunk(const gonio_i_packed_rows *packed, size_t chunk,
                                         float *scratch)
 {
     const size_t first = chunk * GONIO_I_CHUNK;
-    const size_t rest = panels->rows - first;
+    const size_t rest = packed->rows - first;
     const size_t count = rest < GONIO_I_CHUNK ? rest : GONIO_I_CHUNK;
-    for (size_t row = 0; panels->values == NULL && row < count; row += WIDTH) {
-        lay_out(panels, first + row, scratch + size_of(panels, row));
+    for (size_t row = 0; packed->values == NULL && row < count; row += WIDTH) {
+        lay_out(packed, first + row, scratch + size_of(packed, row));
     }
     return (gonio_i_chunk){
         .first = first,
         .count = count,
-        .components = panels->components,
-        .values = panels->values == NULL ? scratch : panels->values + size_of(panels, first),
-        .length = panels->length + first};
+        .components = packed->components,
+        .values = packed->values == NULL ? scratch : packed->values + size_of(packed, first),
+        .length = packed->length + first};
 }
 
 /* ---- loops ---- */

@@ -28,14 +28,14 @@ typedef struct gonio_i_packed_rows {
 
 /* Lays out the rows of a problem; false after a message when out of memory. */
 bool gonio_i_packed_rows_make(const gonio_i_selection_problem *problem,
-                              gonio_i_packed_rows *panels);
-void gonio_i_packed_rows_free(gonio_i_packed_rows *panels);
+                              gonio_i_packed_rows *packed);
+void gonio_i_packed_rows_free(gonio_i_packed_rows *packed);
 
-size_t gonio_i_packed_rows_chunks(const gonio_i_packed_rows *panels);
+size_t gonio_i_packed_rows_chunks(const gonio_i_packed_rows *packed);
 
 /* Room for the panels of a chunk, aligned for the loops below, or NULL if panels are kept or (then
  * *failed) memory ran out. */
-float *gonio_i_packed_rows_scratch(const gonio_i_packed_rows *panels, bool *failed);
+float *gonio_i_packed_rows_scratch(const gonio_i_packed_rows *packed, bool *failed);
 
 /* One chunk: its rows first .. first + count - 1 (padded) and their panels, laid out in the scratch
  * unless they are kept. */
@@ -47,7 +47,7 @@ typedef struct gonio_i_chunk {
     const float *length; /* of its rows */
 } gonio_i_chunk;
 
-gonio_i_chunk gonio_i_packed_rows_chunk(const gonio_i_packed_rows *panels, size_t chunk,
+gonio_i_chunk gonio_i_packed_rows_chunk(const gonio_i_packed_rows *packed, size_t chunk,
                                         float *scratch);
 
 /* gain[row] <= 1 + |T u|^2, a lower bound as close as rounding allows, for a lower triangular T,

@@ -15,26 +15,26 @@ static bool allocate_scratch(gonio_i_swap_filter *f)
     f->scratch = gonio_i_allocate(f->problem->context, (size_t)f->threads, sizeof *f->scratch);
     bool failed = f->scratch == NULL;
     for (int t = 0; t < f->threads && !failed; t++) {
-        f->scratch[t] = gonio_i_packed_rows_scratch(f->panels, &failed);
+        f->scratch[t] = gonio_i_packed_rows_scratch(f->packed, &failed);
     }
     return !failed;
 }
 
 bool gonio_i_swap_filter_allocate(const gonio_i_selection_problem *problem,
-                                  const gonio_i_packed_rows *panels, int threads,
+                                  const gonio_i_packed_rows *packed, int threads,
                                   gonio_i_swap_filter *f)
 {
     gonio_context *context = problem->context;
     const size_t k = problem->components;
-    const size_t padded = panels->components;
-    const size_t chunks = gonio_i_packed_rows_chunks(panels);
-    *f = (gonio_i_swap_filter){.problem = problem, .panels = panels, .threads = threads};
+    const size_t padded = packed->components;
+    const size_t chunks = gonio_i_packed_rows_chunks(packed);
+    *f = (gonio_i_swap_filter){.problem = problem, .packed = packed, .threads = threads};
     f->root = gonio_i_allocate(context, k * k, sizeof *f->root);
     f->t = gonio_i_allocate(context, padded * padded, sizeof *f->t);
     f->image = gonio_i_allocate(context, 2 * k, sizeof *f->image);
     f->columns = gonio_i_allocate(context, padded * GONIO_I_BATCH, sizeof *f->columns);
-    f->gain = gonio_i_allocate(context, panels->rows, sizeof *f->gain);
-    f->pass = gonio_i_allocate(context, GONIO_I_BATCH * panels->rows, 1);
+    f->gain = gonio_i_allocate(context, packed->rows, sizeof *f->gain);
+    f->pass = gonio_i_allocate(context, GONIO_I_BATCH * packed->rows, 1);
     f->gain_is_set = gonio_i_allocate(context, chunks, sizeof *f->gain_is_set);
     f->batch_is_set = gonio_i_allocate(context, chunks, sizeof *f->batch_is_set);
     return allocate_scratch(f) && f->root != NULL && f->t != NULL && f->image != NULL &&
@@ -61,7 +61,7 @@ void gonio_i_swap_filter_free(gonio_i_swap_filter *f)
 /* Of a product u'c for |u| = |c| = 1: that of the sum, and of rounding u and c. */
 static double product_error(const gonio_i_swap_filter *f)
 {
-    return ((double)f->panels->components + 4.0) * unit * 1.001;
+    return ((double)f->packed->components + 4.0) * unit * 1.001;
 }
 
 /* T = L^-1 of G - mu = L L', and what the gains need of it. */
@@ -69,7 +69,7 @@ void gonio_i_swap_filter_set(gonio_i_swap_filter *f, const double *gram, double 
                              double condition)
 {
     const size_t k = f->problem->components;
-    const size_t padded = f->panels->components;
+    const size_t padded = f->packed->components;
     memcpy(f->root, gram, k * k * sizeof *f->root);
     for (size_t a = 0; a < k; a++) {
         f->root[a * k + a] -= mu;
@@ -84,7 +84,7 @@ void gonio_i_swap_filter_set(gonio_i_swap_filter *f, const double *gram, double 
         }
     }
     f->gain_margin = (float)(product_error(f) * sqrt(squares));
-    memset(f->gain_is_set, 0, gonio_i_packed_rows_chunks(f->panels) * sizeof *f->gain_is_set);
+    memset(f->gain_is_set, 0, gonio_i_packed_rows_chunks(f->packed) * sizeof *f->gain_is_set);
     f->batch = 0;
     f->next = 1;
 }
@@ -117,7 +117,7 @@ static void fill_column(gonio_i_swap_filter *f, const double *v, size_t j)
     const size_t k = f->problem->components;
     gonio_i_test *test = &f->tests[j / GONIO_I_COLUMNS];
     const size_t column = j % GONIO_I_COLUMNS;
-    float *c = f->columns + j / GONIO_I_COLUMNS * GONIO_I_COLUMNS * f->panels->components;
+    float *c = f->columns + j / GONIO_I_COLUMNS * GONIO_I_COLUMNS * f->packed->components;
     double *bv = f->image + k;
     const double loss = apply(k, f->root, v, f->image, bv) - 1.0;
     double squares = 0.0;
@@ -144,16 +144,16 @@ void gonio_i_swap_filter_turn_to(gonio_i_swap_filter *f, const double *x, size_t
     f->first = position;
     f->batch = rest < f->next ? rest : f->next;
     /* Where chunks are many, fetching them costs more than tests that a swap makes useless. */
-    const bool many = gonio_i_packed_rows_chunks(f->panels) >= 64;
+    const bool many = gonio_i_packed_rows_chunks(f->packed) >= 64;
     f->next = many && f->next > 1 ? GONIO_I_BATCH : GONIO_I_COLUMNS;
-    memset(f->columns, 0, f->panels->components * GONIO_I_BATCH * sizeof *f->columns);
+    memset(f->columns, 0, f->packed->components * GONIO_I_BATCH * sizeof *f->columns);
     for (size_t j = 0; j < f->batch; j += columns) {
         f->tests[j / GONIO_I_COLUMNS] = (gonio_i_test){.columns = columns};
     }
     for (size_t j = 0; j < f->batch; j++) {
         fill_column(f, x + (position + j) * k, j);
     }
-    memset(f->batch_is_set, 0, gonio_i_packed_rows_chunks(f->panels) * sizeof *f->batch_is_set);
+    memset(f->batch_is_set, 0, gonio_i_packed_rows_chunks(f->packed) * sizeof *f->batch_is_set);
 }
 
 static void set_gain(gonio_i_swap_filter *f, const gonio_i_chunk *chunk, size_t index)
@@ -166,7 +166,7 @@ static void set_gain(gonio_i_swap_filter *f, const gonio_i_chunk *chunk, size_t 
 
 void gonio_i_swap_filter_prepare(gonio_i_swap_filter *f, size_t index, int thread)
 {
-    const gonio_i_chunk chunk = gonio_i_packed_rows_chunk(f->panels, index, f->scratch[thread]);
+    const gonio_i_chunk chunk = gonio_i_packed_rows_chunk(f->packed, index, f->scratch[thread]);
     set_gain(f, &chunk, index);
 }
 
@@ -176,13 +176,13 @@ static void look_at(gonio_i_swap_filter *f, size_t index, int thread)
     if (f->blind || f->batch_is_set[index]) {
         return;
     }
-    const gonio_i_chunk chunk = gonio_i_packed_rows_chunk(f->panels, index, f->scratch[thread]);
+    const gonio_i_chunk chunk = gonio_i_packed_rows_chunk(f->packed, index, f->scratch[thread]);
     set_gain(f, &chunk, index);
     for (size_t j = 0; j < f->batch; j += GONIO_I_COLUMNS) {
         gonio_i_test test = f->tests[j / GONIO_I_COLUMNS];
         test.gain = f->gain + chunk.first;
-        gonio_i_chunk_mark(&chunk, &test, f->pass + j * f->panels->rows + chunk.first,
-                           f->panels->rows);
+        gonio_i_chunk_mark(&chunk, &test, f->pass + j * f->packed->rows + chunk.first,
+                           f->packed->rows);
     }
     f->batch_is_set[index] = true;
 }
@@ -191,7 +191,7 @@ size_t gonio_i_swap_filter_survivors(gonio_i_swap_filter *f, size_t position, si
                                      size_t last, int thread, size_t *survivors)
 {
     const size_t j = position - f->first;
-    const unsigned char *pass = f->pass + j * f->panels->rows;
+    const unsigned char *pass = f->pass + j * f->packed->rows;
     size_t count = 0;
     look_at(f, first / GONIO_I_CHUNK, thread);
     for (size_t u = first; u < last; u++) {

@@ -29,7 +29,7 @@ enum { GONIO_I_TESTS = 4, GONIO_I_BATCH = GONIO_I_TESTS * GONIO_I_COLUMNS };
 
 typedef struct gonio_i_swap_filter {
     const gonio_i_selection_problem *problem;
-    const gonio_i_packed_rows *panels;
+    const gonio_i_packed_rows *packed;
     int threads;
     float **scratch;                   /* [threads]: a chunk's panels, where these are not kept */
     double *root;                      /* T, [K][K] */
@@ -53,7 +53,7 @@ typedef struct gonio_i_swap_filter {
 /* The panels hold the problem's rows and must outlive the filter. Up to `threads` threads, which
  * call themselves 0 .. threads - 1, may then use it at a time, on different chunks. */
 bool gonio_i_swap_filter_allocate(const gonio_i_selection_problem *problem,
-                                  const gonio_i_packed_rows *panels, int threads,
+                                  const gonio_i_packed_rows *packed, int threads,
                                   gonio_i_swap_filter *filter);
 void gonio_i_swap_filter_free(gonio_i_swap_filter *filter);
 

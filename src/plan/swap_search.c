@@ -76,7 +76,7 @@ static double longest_square(const gonio_i_swap_search *s)
 {
     double longest = 0.0;
     for (size_t j = 0; j < s->problem->count; j++) {
-        longest = fmax(longest, (double)s->filter.panels->length[s->chosen[j]]);
+        longest = fmax(longest, (double)s->filter.packed->length[s->chosen[j]]);
     }
     return longest * longest;
 }
@@ -169,7 +169,7 @@ static size_t first_winner_among(gonio_i_swap_search *s, size_t position, size_t
 static size_t first_winner_at(gonio_i_swap_search *s, size_t position, size_t from, size_t step,
                               int thread)
 {
-    const size_t chunks = gonio_i_packed_rows_chunks(s->filter.panels);
+    const size_t chunks = gonio_i_packed_rows_chunks(s->filter.packed);
     const size_t begin = (from / GONIO_I_CHUNK + step) % chunks * GONIO_I_CHUNK;
     const size_t full = begin + GONIO_I_CHUNK;
     const size_t end = full < s->problem->rows ? full : s->problem->rows;
@@ -207,7 +207,7 @@ size_t gonio_i_swap_search_winners(gonio_i_swap_search *s, size_t position, size
                                    size_t most, size_t *found)
 {
     const size_t rows = s->problem->rows;
-    const size_t chunks = gonio_i_packed_rows_chunks(s->filter.panels);
+    const size_t chunks = gonio_i_packed_rows_chunks(s->filter.packed);
     gonio_i_swap_filter_turn_to(&s->filter, s->x, position);
     size_t count = 0;
     size_t ahead = 1;
@@ -250,7 +250,7 @@ static void put(gonio_i_swap_search *s, size_t position, size_t row)
 static void prepare_ahead(gonio_i_swap_search *s, size_t first, size_t apart,
                           const _Atomic bool *decomposed)
 {
-    const size_t chunks = gonio_i_packed_rows_chunks(s->filter.panels);
+    const size_t chunks = gonio_i_packed_rows_chunks(s->filter.packed);
     for (size_t step = first; step < chunks && !*decomposed; step += apart) {
         gonio_i_swap_filter_prepare(&s->filter, (s->from / GONIO_I_CHUNK + step) % chunks,
                                     omp_get_thread_num());
@@ -400,7 +400,7 @@ static bool allocate_workers(gonio_i_swap_search *s)
 }
 
 bool gonio_i_swap_search_allocate(const gonio_i_selection_problem *problem,
-                                  const gonio_i_packed_rows *panels, double *progress, int threads,
+                                  const gonio_i_packed_rows *packed, double *progress, int threads,
                                   gonio_i_swap_search *s)
 {
     gonio_context *context = problem->context;
@@ -420,9 +420,9 @@ bool gonio_i_swap_search_allocate(const gonio_i_selection_problem *problem,
         .old_d = gonio_i_allocate(context, k, sizeof *s->old_d),
         .old_y = gonio_i_allocate(context, k, sizeof *s->old_y),
         .winners =
-            gonio_i_allocate(context, gonio_i_packed_rows_chunks(panels) + 1, sizeof *s->winners),
+            gonio_i_allocate(context, gonio_i_packed_rows_chunks(packed) + 1, sizeof *s->winners),
     };
-    return gonio_i_swap_filter_allocate(problem, panels, threads, &s->filter) &&
+    return gonio_i_swap_filter_allocate(problem, packed, threads, &s->filter) &&
            allocate_workers(s) && gonio_i_rotated_rows_allocate(problem, &s->rotated) &&
            s->chosen != NULL && s->taken != NULL && s->x != NULL && s->y != NULL &&
            s->gram != NULL && s->q != NULL && s->d != NULL && s->old_d != NULL &&

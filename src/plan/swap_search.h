@@ -59,7 +59,7 @@ typedef struct gonio_i_swap_search {
 /* The panels hold the problem's rows and must outlive the search; *progress is the sum of the
  * shares of all searches of the problem. False when out of memory, after a message. */
 bool gonio_i_swap_search_allocate(const gonio_i_selection_problem *problem,
-                                  const gonio_i_packed_rows *panels, double *progress, int threads,
+                                  const gonio_i_packed_rows *packed, double *progress, int threads,
                                   gonio_i_swap_search *search);
 void gonio_i_swap_search_free(gonio_i_swap_search *search);
 

@@ -155,7 +155,7 @@ static gonio_status score_group(search *s, size_t number, gonio_i_steps *steps)
     gonio_status status =
         gonio_i_sites_create(s->context, s->prior, &s->thinned[s->member[0]], &s->sites);
     if (status == GONIO_OK) {
-        status = gonio_i_crew_work(s->context, steps, count, score_column, s);
+        status = gonio_i_parallel_for(s->context, steps, count, score_column, s);
     }
     gonio_i_sites_free(&s->sites);
     return status;

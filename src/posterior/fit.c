@@ -343,7 +343,7 @@ static bool judge_readings(gonio_i_fit *e, const judgement *j)
     return found > 0;
 }
 
-gonio_status gonio_i_fit_settle(gonio_i_fit *e, bool doubt, size_t *outlying)
+gonio_status gonio_i_fit_settle(gonio_i_fit *e, bool judge_outliers, size_t *outlying)
 {
     judgement j = {gonio_i_allocate(e->context, e->n, sizeof *j.difference),
                    gonio_i_allocate(e->context, e->n, sizeof *j.variance),
@@ -358,7 +358,7 @@ gonio_status gonio_i_fit_settle(gonio_i_fit *e, bool doubt, size_t *outlying)
         status = gonio_i_fit_leave_one_out(e, j.difference, j.variance);
         if (status == GONIO_OK) {
             const bool bounds = judge_bounds(e, &j);
-            changed = (doubt && judge_readings(e, &j)) || bounds;
+            changed = (judge_outliers && judge_readings(e, &j)) || bounds;
             status = changed ? gonio_i_fit_solve(e, &e->model) : GONIO_OK;
         }
     }

@@ -62,9 +62,9 @@ double gonio_i_fit_noise(const gonio_i_fit *fit, size_t reading);
 gonio_status gonio_i_fit_leave_one_out(const gonio_i_fit *fit, double *difference,
                                        double *variance);
 
-/* Takes out bounds that hold anyway and, if there is doubt, gives readings that the others
+/* Takes out bounds that hold anyway and, if there is judge_outliers, gives readings that the others
  * contradict a variance to match, until nothing changes. outlying: how many of the latter. */
-gonio_status gonio_i_fit_settle(gonio_i_fit *fit, bool doubt, size_t *outlying);
+gonio_status gonio_i_fit_settle(gonio_i_fit *fit, bool judge_outliers, size_t *outlying);
 
 /* Sum over the readings of (reading - what the others say)^2 / its variance; and sets misfit to its
  * mean, held towards 1 by `PRIOR_READINGS` readings that are as expected: a material that surprises

@@ -141,7 +141,8 @@ static gonio_status weigh_columns(const trial *t, gonio_i_sites *const *sites,
 {
     weighing w = {.t = t, .sites = sites, .alpha = alpha};
     gonio_i_steps steps = {.task = NULL};
-    const gonio_status status = gonio_i_crew_work(t->context, &steps, t->count, weigh_column, &w);
+    const gonio_status status =
+        gonio_i_parallel_for(t->context, &steps, t->count, weigh_column, &w);
     *evidence = 0.0;
     for (size_t k = 0; k < t->count && status == GONIO_OK; k++) {
         *evidence +=

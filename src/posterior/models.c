@@ -53,11 +53,11 @@ static double log_prior(int k)
  * direction (40 readings), wrong ones 24 and more. */
 static const double FOR_WRONG_DIRECTION = 14.0;
 
-/* What the readings say of every model, with doubt or without. */
-typedef struct opinion {
+/* Scores of every model given the readings, with outliers judged or not. */
+typedef struct subset_scores {
     double score[CHOICES];
     size_t outlying;
-} opinion;
+} subset_scores;
 
 /* The densities of one column's readings under every model. */
 typedef struct scores {
@@ -67,15 +67,15 @@ typedef struct scores {
 
 typedef struct scoring {
     const gonio_i_subset *subset;
-    bool doubt;
+    bool judge_outliers;
     scores column[GONIO_I_SUBSET_COLUMNS];
 } scoring;
 
-static gonio_status score_models(gonio_i_fit *e, size_t readings, bool doubt, scores *s)
+static gonio_status score_models(gonio_i_fit *e, size_t readings, bool judge_outliers, scores *s)
 {
     gonio_status status = gonio_i_fit_solve(e, &GONIO_I_SETTLING);
     if (status == GONIO_OK) {
-        status = gonio_i_fit_settle(e, doubt, &s->outlying);
+        status = gonio_i_fit_settle(e, judge_outliers, &s->outlying);
     }
     for (int k = 0; k < CHOICES && status == GONIO_OK; k++) {
         const gonio_i_model model = choice(k, readings);
@@ -99,14 +99,14 @@ static gonio_status score_column(void *data, gonio_context *context, size_t k)
         status = gonio_i_fit_begin(context, subset->sites[k], false, &subset->column[k], &e);
     }
     if (status == GONIO_OK) {
-        status = score_models(&e, subset->readings[k], all->doubt, s);
+        status = score_models(&e, subset->readings[k], all->judge_outliers, s);
     }
     gonio_i_fit_end(&e);
     return status;
 }
 
 /* Reading by reading, in order. */
-static void add_up(const scoring *all, opinion *o)
+static void add_up(const scoring *all, subset_scores *o)
 {
     for (size_t c = 0; c < all->subset->count; c++) {
         const scores *s = &all->column[c];
@@ -118,13 +118,13 @@ static void add_up(const scoring *all, opinion *o)
     }
 }
 
-static gonio_status score_columns(gonio_context *context, const gonio_i_subset *subset, bool doubt,
-                                  opinion *o)
+static gonio_status score_columns(gonio_context *context, const gonio_i_subset *subset,
+                                  bool judge_outliers, subset_scores *o)
 {
-    scoring all = {.subset = subset, .doubt = doubt};
+    scoring all = {.subset = subset, .judge_outliers = judge_outliers};
     gonio_i_steps steps = {.task = NULL};
     const gonio_status status =
-        gonio_i_crew_work(context, &steps, subset->count, score_column, &all);
+        gonio_i_parallel_for(context, &steps, subset->count, score_column, &all);
     if (status == GONIO_OK) {
         add_up(&all, o);
     }
@@ -135,7 +135,7 @@ static gonio_status score_columns(gonio_context *context, const gonio_i_subset *
 }
 
 /* The likeliest model's score, with what models are less likely for beforehand. */
-static double best_score(const opinion *o)
+static double best_score(const subset_scores *o)
 {
     double best = -INFINITY;
     for (int k = 0; k < CHOICES; k++) {
@@ -173,13 +173,13 @@ static gonio_i_models normalise(const double log_weight[CHOICES], size_t reading
     return models;
 }
 
-/* Whether readings are wrong rather than of an unknown kind of material. */
-static bool is_doubtful(const gonio_i_prior *prior, size_t columns, const opinion *doubting,
-                        const opinion *believing)
+/* Whether outliers are wrong readings rather than readings of an unknown kind of material. */
+static bool outliers_are_wrong(const gonio_i_prior *prior, size_t columns,
+                               const subset_scores *judged, const subset_scores *unjudged)
 {
     const double values = (double)(gonio_i_rows_per_cell(prior->view->channels) * columns);
-    const double directions = (double)doubting->outlying / values;
-    return best_score(doubting) - best_score(believing) > FOR_WRONG_DIRECTION * directions;
+    const double directions = (double)judged->outlying / values;
+    return best_score(judged) - best_score(unjudged) > FOR_WRONG_DIRECTION * directions;
 }
 
 gonio_status gonio_i_models_weigh(gonio_context *context, const gonio_i_prior *prior,
@@ -187,17 +187,17 @@ gonio_status gonio_i_models_weigh(gonio_context *context, const gonio_i_prior *p
 {
     static_assert((int)CHOICES <= (int)GONIO_I_MOST_MODELS, "room for all choices");
     double log_weight[CHOICES];
-    opinion doubting = {0};
-    opinion believing = {0};
-    gonio_status status = score_columns(context, subset, true, &doubting);
-    if (status == GONIO_OK && doubting.outlying > 0) {
-        status = score_columns(context, subset, false, &believing);
+    subset_scores judged = {0};
+    subset_scores unjudged = {0};
+    gonio_status status = score_columns(context, subset, true, &judged);
+    if (status == GONIO_OK && judged.outlying > 0) {
+        status = score_columns(context, subset, false, &unjudged);
     }
-    const bool doubt =
-        doubting.outlying == 0 || is_doubtful(prior, subset->count, &doubting, &believing);
-    const opinion *says = doubt ? &doubting : &believing;
+    const bool wrong =
+        judged.outlying == 0 || outliers_are_wrong(prior, subset->count, &judged, &unjudged);
+    const subset_scores *chosen = wrong ? &judged : &unjudged;
     for (int k = 0; k < CHOICES; k++) {
-        log_weight[k] = SHARE * says->score[k] + log_prior(k);
+        log_weight[k] = SHARE * chosen->score[k] + log_prior(k);
     }
     *models = normalise(log_weight, subset->readings[0]);
     return status;

@@ -14,8 +14,8 @@ static gonio_status step_on(gonio_context *context, gonio_i_steps *steps)
     return gonio_i_progress(context, steps->task, (double)done / (double)steps->all);
 }
 
-gonio_status gonio_i_crew_work(gonio_context *context, gonio_i_steps *steps, size_t count,
-                               gonio_i_work work, void *data)
+gonio_status gonio_i_parallel_for(gonio_context *context, gonio_i_steps *steps, size_t count,
+                                  gonio_i_parallel_body work, void *data)
 {
     const size_t threads = (size_t)gonio_context_threads(context);
     gonio_context *team = gonio_i_team_begin(context);
@@ -32,7 +32,7 @@ gonio_status gonio_i_crew_work(gonio_context *context, gonio_i_steps *steps, siz
         }
         gonio_status status = work(data, team, k);
         status = status == GONIO_OK ? step_on(team, steps) : status;
-#pragma omp critical(gonio_crew)
+#pragma omp critical(gonio_parallel_for)
         if (status != GONIO_OK && k < failed) {
 #pragma omp atomic write
             failed = k;

@@ -15,8 +15,8 @@ typedef struct gonio_i_steps {
  * context that work gets is a team's (core.h). After a failure no more is begun; the status is that
  * of the first piece that failed. steps: counts each piece and tells the progress. Errors: those of
  * the work; _CANCELLED. */
-typedef gonio_status (*gonio_i_work)(void *data, gonio_context *context, size_t k);
-gonio_status gonio_i_crew_work(gonio_context *context, gonio_i_steps *steps, size_t count,
-                               gonio_i_work work, void *data);
+typedef gonio_status (*gonio_i_parallel_body)(void *data, gonio_context *context, size_t k);
+gonio_status gonio_i_parallel_for(gonio_context *context, gonio_i_steps *steps, size_t count,
+                                  gonio_i_parallel_body work, void *data);
 
 #endif

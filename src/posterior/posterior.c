@@ -189,7 +189,7 @@ static gonio_status solve_columns(group *g)
     for (g->first = 0; g->first < g->count && status == GONIO_OK; g->first += most) {
         const size_t left = g->count - g->first;
         const size_t columns = left < most ? left : most;
-        status = gonio_i_crew_work(all->context, &all->steps, columns, solve_column, g);
+        status = gonio_i_parallel_for(all->context, &all->steps, columns, solve_column, g);
         if (status == GONIO_OK) {
             add_covariances(g, columns);
         }
@@ -320,7 +320,7 @@ static gonio_status expect_group(group *g)
         status = gonio_i_folds_create(all->context, all->learned, g->sites, &g->folds);
     }
     if (status == GONIO_OK) {
-        status = gonio_i_crew_work(all->context, &steps, g->count, expect_column, g);
+        status = gonio_i_parallel_for(all->context, &steps, g->count, expect_column, g);
     }
     end_group(g);
     return status;

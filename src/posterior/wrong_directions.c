@@ -47,7 +47,7 @@ typedef struct direction {
     double gap; /* the same in log units */
 } direction;
 
-typedef struct doubter {
+typedef struct direction_search {
     gonio_context *context;
     const gonio_i_subset *subset;
     gonio_i_fit column[GONIO_I_SUBSET_COLUMNS];
@@ -55,7 +55,7 @@ typedef struct doubter {
     size_t *number[GONIO_I_SUBSET_COLUMNS]; /* of each reading's direction */
     size_t directions;
     direction *direction; /* [directions] */
-} doubter;
+} direction_search;
 
 static bool same(const gonio_half_difference *a, const gonio_half_difference *b)
 {
@@ -63,7 +63,7 @@ static bool same(const gonio_half_difference *a, const gonio_half_difference *b)
 }
 
 /* The number of a reading's direction; a new one if it was not met before. */
-static size_t number_of(doubter *d, const gonio_half_difference *at)
+static size_t number_of(direction_search *d, const gonio_half_difference *at)
 {
     size_t k = 0;
     while (k < d->directions && !same(&d->direction[k].at, at)) {
@@ -76,7 +76,7 @@ static size_t number_of(doubter *d, const gonio_half_difference *at)
     return k;
 }
 
-static gonio_status number_directions(doubter *d)
+static gonio_status number_directions(direction_search *d)
 {
     size_t readings = 0;
     for (size_t c = 0; c < d->subset->count; c++) {
@@ -97,7 +97,7 @@ static gonio_status number_directions(doubter *d)
 
 static gonio_status begin_column(void *data, gonio_context *context, size_t c)
 {
-    doubter *d = data;
+    direction_search *d = data;
     gonio_i_fit *e = &d->column[c];
     size_t outlying = 0;
     gonio_status status =
@@ -113,16 +113,16 @@ static gonio_status begin_column(void *data, gonio_context *context, size_t c)
     return status == GONIO_OK ? gonio_i_fit_settle(e, false, &outlying) : status;
 }
 
-static gonio_status begin(doubter *d)
+static gonio_status begin(direction_search *d)
 {
     gonio_i_steps steps = {.task = NULL};
     const gonio_status status = number_directions(d);
     return status == GONIO_OK
-               ? gonio_i_crew_work(d->context, &steps, d->subset->count, begin_column, d)
+               ? gonio_i_parallel_for(d->context, &steps, d->subset->count, begin_column, d)
                : status;
 }
 
-static void end(doubter *d)
+static void end(direction_search *d)
 {
     for (size_t c = 0; c < d->subset->count; c++) {
         gonio_i_fit_end(&d->column[c]);
@@ -133,7 +133,7 @@ static void end(doubter *d)
 }
 
 /* Takes a direction out, or back in. */
-static void leave_out(doubter *d, size_t number, bool out)
+static void leave_out(direction_search *d, size_t number, bool out)
 {
     d->direction[number].wrong = out;
     for (size_t c = 0; c < d->subset->count; c++) {
@@ -146,7 +146,7 @@ static void leave_out(doubter *d, size_t number, bool out)
     }
 }
 
-static gonio_i_model model_of(const doubter *d, size_t column, size_t k)
+static gonio_i_model model_of(const direction_search *d, size_t column, size_t k)
 {
     return (gonio_i_model){gonio_i_kernel_width(d->subset->readings[column]), REMAINDERS[k].alpha,
                            REMAINDERS[k].peak};
@@ -155,7 +155,7 @@ static gonio_i_model model_of(const doubter *d, size_t column, size_t k)
 static gonio_status score_column(void *data, gonio_context *context, size_t c)
 {
     (void)context;
-    doubter *d = data;
+    direction_search *d = data;
     gonio_i_fit *e = &d->column[c];
     gonio_status status = GONIO_OK;
     for (size_t k = 0; k < MODELS && status == GONIO_OK; k++) {
@@ -166,7 +166,7 @@ static gonio_status score_column(void *data, gonio_context *context, size_t c)
 }
 
 /* How well the readings explain each other by model k: reading by reading, in order. */
-static double score_of(const doubter *d, size_t k)
+static double score_of(const direction_search *d, size_t k)
 {
     double sum = -GONIO_I_FOR_REMAINDERS * log(REMAINDERS[k].alpha / REMAINDERS[0].alpha);
     for (size_t c = 0; c < d->subset->count; c++) {
@@ -180,11 +180,11 @@ static double score_of(const doubter *d, size_t k)
 
 /* How well the readings explain each other, with the remainder that they like best: that of model
  * `best`. */
-static gonio_status score(doubter *d, double *value, size_t *best)
+static gonio_status score(direction_search *d, double *value, size_t *best)
 {
     gonio_i_steps steps = {.task = NULL};
     const gonio_status status =
-        gonio_i_crew_work(d->context, &steps, d->subset->count, score_column, d);
+        gonio_i_parallel_for(d->context, &steps, d->subset->count, score_column, d);
     *value = -INFINITY;
     for (size_t k = 0; k < MODELS && status == GONIO_OK; k++) {
         const double sum = score_of(d, k);
@@ -194,7 +194,7 @@ static gonio_status score(doubter *d, double *value, size_t *best)
     return status;
 }
 
-static gonio_status add_off(doubter *d, size_t c, const gonio_i_model *model)
+static gonio_status add_off(direction_search *d, size_t c, const gonio_i_model *model)
 {
     gonio_i_fit *e = &d->column[c];
     double *difference = NULL;
@@ -210,7 +210,7 @@ static gonio_status add_off(doubter *d, size_t c, const gonio_i_model *model)
 }
 
 /* How far each direction is off by a model. */
-static gonio_status find_off(doubter *d, size_t k)
+static gonio_status find_off(direction_search *d, size_t k)
 {
     gonio_status status = GONIO_OK;
     for (size_t j = 0; j < d->directions; j++) {
@@ -225,7 +225,7 @@ static gonio_status find_off(doubter *d, size_t k)
 }
 
 /* The direction that is off most, and taken off the list; or as many as there are, for none. */
-static size_t next_suspect(doubter *d)
+static size_t next_suspect(direction_search *d)
 {
     size_t worst = d->directions;
     double most = SUSPECT * SUSPECT;
@@ -243,7 +243,7 @@ static size_t next_suspect(doubter *d)
 }
 
 /* Of the suspects the one without which the others explain each other best. */
-static gonio_status try_suspects(doubter *d, size_t *suspect, double *value, size_t *model)
+static gonio_status try_suspects(direction_search *d, size_t *suspect, double *value, size_t *model)
 {
     gonio_status status = GONIO_OK;
     *suspect = d->directions;
@@ -271,14 +271,14 @@ static gonio_status try_suspects(doubter *d, size_t *suspect, double *value, siz
 }
 
 /* More columns than three say the same again. */
-static double due(const doubter *d, const direction *at)
+static double due(const direction_search *d, const direction *at)
 {
     const double fewer = fmax(ENOUGH / (double)d->directions, 1.0);
     return DUE * sqrt(fewer) * (double)at->readings / GONIO_CHANNELS;
 }
 
 /* One after the other, until none is worth it. found: how many. */
-static gonio_status find_wrong(doubter *d, size_t *found)
+static gonio_status find_wrong(direction_search *d, size_t *found)
 {
     const size_t most = 1 + (size_t)(MOST_WRONG * (double)d->directions);
     double value = 0.0;
@@ -307,7 +307,7 @@ static gonio_status find_wrong(doubter *d, size_t *found)
 }
 
 /* Leaves a column's readings of wrong directions hardly a say; how many there are. */
-static size_t widen(const doubter *d, gonio_i_column *column)
+static size_t widen(const direction_search *d, gonio_i_column *column)
 {
     size_t count = 0;
     for (size_t i = 0; i < column->count; i++) {
@@ -325,7 +325,7 @@ static size_t widen(const doubter *d, gonio_i_column *column)
 gonio_status gonio_i_wrong_directions_find(gonio_context *context, const gonio_i_subset *subset,
                                            gonio_i_column *columns, size_t count, size_t *wrong)
 {
-    doubter d = {.context = context, .subset = subset};
+    direction_search d = {.context = context, .subset = subset};
     size_t found = 0;
     gonio_status status = begin(&d);
     if (status == GONIO_OK && d.directions >= FEW) {

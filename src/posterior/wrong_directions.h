@@ -4,7 +4,7 @@
  * none of the database's, so that it cannot be told by how far off it is. So the directions that
  * are off most, by a factor of more than three, are left out in turn, in all columns together:
  * greedily that one without which the others explain each other best, as long as that is worth more
- * than a larger remainder is. Of columns of more than 128 readings only those are doubted that
+ * than a larger remainder is. Of columns of more than 128 readings only those are tested that
  * models are tried on (leave_one_out.h); single readings of the others are judged later
  * (posterior.h). */
 #ifndef GONIO_WRONG_DIRECTIONS_H

@@ -103,7 +103,7 @@ static gonio_status check_basis(gonio_context *context, const gonio_i_reconstruc
     if (method->wants.noise && !is_noise(options)) {
         return gonio_i_fail(
             context, GONIO_ERROR_ARGUMENT,
-            "noise and floor must be finite and not negative, saturation not negative");
+            "noise, floor and saturation must not be negative, and noise and floor must be finite");
     }
     return GONIO_OK;
 }

@@ -4,7 +4,7 @@
 #include "../core/core.h"
 #include "../material/formats/merl.h"
 
-typedef struct tables {
+typedef struct batch {
     gonio_context *context;
     const gonio_basis *basis;
     const char *const *paths;
@@ -12,11 +12,11 @@ typedef struct tables {
     int threads; /* for each */
     gonio_i_tables_progress progress;
     gonio_status status; /* of the first that failed */
-} tables;
+} batch;
 
 /* In order, so that of several that cannot be solved the first is told. Returns how many come
  * before it. */
-static size_t solve(tables *all, const gonio_readings *const *readings, size_t count,
+static size_t solve(batch *all, const gonio_readings *const *readings, size_t count,
                     const gonio_reconstruct_options *options)
 {
     for (size_t k = 0; k < count; k++) {
@@ -30,7 +30,7 @@ static size_t solve(tables *all, const gonio_readings *const *readings, size_t c
 }
 
 /* Writes table k all but the last step. */
-static gonio_status write_table(tables *all, gonio_context *team, size_t k, gonio_i_output *output)
+static gonio_status write_table(batch *all, gonio_context *team, size_t k, gonio_i_output *output)
 {
     gonio_material *material = NULL;
     gonio_status status =
@@ -44,7 +44,7 @@ static gonio_status write_table(tables *all, gonio_context *team, size_t k, goni
 }
 
 /* Puts table k in place, unless one before it failed. */
-static void finish_table(tables *all, gonio_context *team, size_t k, gonio_status written,
+static void finish_table(batch *all, gonio_context *team, size_t k, gonio_status written,
                          gonio_i_output *output)
 {
     gonio_status before;
@@ -61,7 +61,7 @@ static void finish_table(tables *all, gonio_context *team, size_t k, gonio_statu
 
 /* Several at a time, for one waits for the disk while another computes; each is put in place after
  * those before it. */
-static void write_tables(tables *all, size_t count)
+static void write_tables(batch *all, size_t count)
 {
     const size_t threads = (size_t)gonio_context_threads(all->context);
     const size_t teams = count < threads ? count : threads;
@@ -88,7 +88,7 @@ gonio_status gonio_reconstruct_tables(gonio_context *context, const gonio_basis 
                                       const gonio_reconstruct_options *options,
                                       gonio_reconstruction **made)
 {
-    tables all = {.context = context, .basis = basis, .paths = paths, .made = made};
+    batch all = {.context = context, .basis = basis, .paths = paths, .made = made};
     for (size_t k = 0; k < count; k++) {
         made[k] = NULL;
     }

@@ -72,9 +72,9 @@ typedef struct view {
 static void turn(const view *v, double sign, const double from[3], double to[3])
 {
     const double sine = sign * v->turn_sine;
-    const double turned[3] = {v->turn_cosine * from[0] - sine * from[2], from[1],
-                              sine * from[0] + v->turn_cosine * from[2]};
-    memcpy(to, turned, sizeof turned);
+    const double rotated[3] = {v->turn_cosine * from[0] - sine * from[2], from[1],
+                               sine * from[0] + v->turn_cosine * from[2]};
+    memcpy(to, rotated, sizeof rotated);
 }
 
 /* A place on the object that is being shaded. */

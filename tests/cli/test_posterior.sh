@@ -225,7 +225,7 @@ made='reconstruct b.gonio r.csv -o x.binary'
         expect_fail 2 'cannot be negative' $made $option nan
         expect_fail 2 'invalid numeric value' $made $option much
     done
-    expect_fail 2 'must be finite and not negative' $made --noise inf
+    expect_fail 2 'noise, floor and saturation must not be negative' $made --noise inf
     expect_fail 1 'missing.csv: cannot read' $made --predict-at missing.csv
     expect_fail 2 'posterior uses all 64 components' $made --components 10
     expect_fail 1 'nowhere/d.binary' $made --deviation nowhere/d.binary

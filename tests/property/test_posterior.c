@@ -698,8 +698,8 @@ static size_t find_wrong(gonio_i_column *columns, size_t count)
     return wrong;
 }
 
-/* Directions that are doubted; of all columns alike. */
-static size_t doubted(drawn_columns *d, bool *is)
+/* directions that are found wrong; of all columns alike. */
+static size_t found_wrong(drawn_columns *d, bool *is)
 {
     const size_t wrong = find_wrong(d->column, COLUMNS);
     size_t directions = 0;
@@ -729,15 +729,15 @@ static void test_directions_that_were_read_wrongly(void **state)
     for (uint64_t seed = 40; seed < 48; seed++) {
         drawn_columns d;
         draw_columns(seed, &d);
-        assert_int_equal(doubted(&d, is), 0);
+        assert_int_equal(found_wrong(&d, is), 0);
         mistake(&d, seed % WRONG, TENFOLD);
-        assert_int_equal(doubted(&d, is), 1);
+        assert_int_equal(found_wrong(&d, is), 1);
         assert_true(is[seed % WRONG]);
         /* Two, of which the second is too low: one can hide the other. */
         draw_columns(seed, &d);
         mistake(&d, seed % WRONG, TENFOLD);
         mistake(&d, (seed + 7) % WRONG, -TENFOLD);
-        const size_t of_two = doubted(&d, is);
+        const size_t of_two = found_wrong(&d, is);
         assert_int_equal(of_two, is[seed % WRONG] + is[(seed + 7) % WRONG]);
         twos += of_two;
         /* So many that the material may as well be unusual: a tenth and one at most. */
@@ -745,7 +745,7 @@ static void test_directions_that_were_read_wrongly(void **state)
         for (size_t i = 0; i < WRONG; i += 2) {
             mistake(&d, i, i % 4 == 0 ? TENFOLD : -TENFOLD);
         }
-        assert_true(doubted(&d, is) <= 1 + WRONG / 10);
+        assert_true(found_wrong(&d, is) <= 1 + WRONG / 10);
     }
     /* Nobody else to say so. */
     for (size_t n = 1; n < 5; n++) {

@@ -1,4 +1,4 @@
-/* Work in pieces by a team: team-pieces FOLDER [FAILING_RANK]. Started by mpirun or alone. Rank 0
+/* Work in pieces by a group: team-pieces FOLDER [FAILING_RANK]. Started by mpirun or alone. Rank 0
  * prints the sum of all results. */
 #include <stdio.h>
 #include <stdlib.h>
@@ -42,41 +42,42 @@ static void on_message(void *user, gonio_message_level level, const char *text)
     fprintf(stderr, "%s\n", text);
 }
 
-static gonio_status run(gonio_context *context, const char *folder, const process_group *team,
+static gonio_status run(gonio_context *context, const char *folder, const process_group *group,
                         task *t)
 {
     json_t *results[PIECES] = {0};
-    gonio_i_pieces *pieces = NULL;
-    json_t *identity = json_pack("{s:s}", "test", "team");
+    gonio_i_checkpoint *checkpoint = NULL;
+    json_t *identity = json_pack("{s:s}", "test", "group");
     const gonio_i_work work = {"thirds", PIECES, t, name_of, cost_of, compute, NULL};
-    gonio_status status = gonio_i_pieces_open(context, folder, identity, team, &pieces);
+    gonio_status status = gonio_i_checkpoint_open(context, folder, identity, group, &checkpoint);
     if (status == GONIO_OK) {
-        status = gonio_i_pieces_run(context, pieces, &work, team->rank == 0 ? results : NULL);
+        status =
+            gonio_i_checkpoint_run(context, checkpoint, &work, group->rank == 0 ? results : NULL);
     }
-    if (status == GONIO_OK && team->rank == 0) {
+    if (status == GONIO_OK && group->rank == 0) {
         double sum = 0.0;
         for (int k = 0; k < PIECES; k++) {
             sum += json_real_value(json_object_get(results[k], "third"));
             json_decref(results[k]);
         }
-        printf("sum %.3f by %d\n", sum, team->size);
+        printf("sum %.3f by %d\n", sum, group->size);
     }
-    gonio_i_pieces_free(&pieces);
+    gonio_i_checkpoint_free(&checkpoint);
     json_decref(identity);
     return status;
 }
 
 int main(int argc, char **argv)
 {
-    process_group team;
+    process_group group;
     int code = 1;
     gonio_context *context = NULL;
     const gonio_context_options options = {
         .size = sizeof options, .message = on_message, .threads = 1};
-    if (argc > 1 && process_group_join(&team, "team-pieces") &&
+    if (argc > 1 && process_group_join(&group, "team-pieces") &&
         gonio_context_create(&context, &options) == GONIO_OK) {
-        task t = {team.rank, argc > 2 ? atoi(argv[2]) : -1};
-        code = run(context, argv[1], &team, &t) == GONIO_OK ? 0 : 1;
+        task t = {group.rank, argc > 2 ? atoi(argv[2]) : -1};
+        code = run(context, argv[1], &group, &t) == GONIO_OK ? 0 : 1;
     }
     gonio_context_free(&context);
     return process_group_leave(code);

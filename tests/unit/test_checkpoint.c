@@ -142,17 +142,17 @@ static json_t *identity(int seed)
 }
 
 static gonio_status run(gonio_context *context, const char *folder, squares *s,
-                        const process_group *team, json_t **results)
+                        const process_group *group, json_t **results)
 {
-    gonio_i_pieces *pieces = NULL;
+    gonio_i_checkpoint *checkpoint = NULL;
     json_t *who = identity(1);
     const gonio_i_work work = {"squares", PIECES, s, name_of, cost_of, compute, is_large};
-    gonio_status status = gonio_i_pieces_open(context, folder, who, team, &pieces);
+    gonio_status status = gonio_i_checkpoint_open(context, folder, who, group, &checkpoint);
     json_decref(who);
     if (status == GONIO_OK) {
-        status = gonio_i_pieces_run(context, pieces, &work, results);
+        status = gonio_i_checkpoint_run(context, checkpoint, &work, results);
     }
-    gonio_i_pieces_free(&pieces);
+    gonio_i_checkpoint_free(&checkpoint);
     return status;
 }
 
@@ -381,10 +381,10 @@ static void test_damaged_pieces_are_not_believed(void **state)
 
 static gonio_status open_as(fixture *f, const char *folder, json_t *who)
 {
-    gonio_i_pieces *pieces = NULL;
+    gonio_i_checkpoint *checkpoint = NULL;
     f->heard.error[0] = '\0';
-    const gonio_status status = gonio_i_pieces_open(f->context, folder, who, NULL, &pieces);
-    gonio_i_pieces_free(&pieces);
+    const gonio_status status = gonio_i_checkpoint_open(f->context, folder, who, NULL, &checkpoint);
+    gonio_i_checkpoint_free(&checkpoint);
     json_decref(who);
     return status;
 }
@@ -448,13 +448,13 @@ static void test_other_folders_are_refused(void **state)
 static void test_two_runs_at_once_are_refused(void **state)
 {
     fixture *f = *state;
-    gonio_i_pieces *pieces = NULL;
+    gonio_i_checkpoint *checkpoint = NULL;
     json_t *who = identity(1);
-    assert_int_equal(gonio_i_pieces_open(f->context, f->out, who, NULL, &pieces), GONIO_OK);
+    assert_int_equal(gonio_i_checkpoint_open(f->context, f->out, who, NULL, &checkpoint), GONIO_OK);
     assert_int_equal(open_as(f, f->out, json_incref(who)), GONIO_ERROR_ARGUMENT);
     assert_tells(f, "another run is using");
-    gonio_i_pieces_free(&pieces);
-    assert_null(pieces);
+    gonio_i_checkpoint_free(&checkpoint);
+    assert_null(checkpoint);
     assert_int_equal(open_as(f, f->out, who), GONIO_OK);
 }
 
@@ -472,11 +472,11 @@ static void test_ranks_share_the_work(void **state)
             squares s = {.failing = -1};
             listener heard;
             gonio_context *context = listen(&heard, 2);
-            const process_group team = {rank, size, no_barrier, &barriers};
+            const process_group group = {rank, size, no_barrier, &barriers};
             if (rank > 0) { /* tells no progress */
                 context = (gonio_context_free(&context), support_context());
             }
-            assert_int_equal(run(context, f->out, &s, &team, rank == 0 ? results : NULL), GONIO_OK);
+            assert_int_equal(run(context, f->out, &s, &group, rank == 0 ? results : NULL), GONIO_OK);
             for (int k = 0; k < PIECES; k++) {
                 cost[rank] += s.computed[k] * cost_of(NULL, (size_t)k);
             }

@@ -135,7 +135,7 @@ static void test_compared_methods(void **state)
     free(errors);
 }
 
-/* One after the other on what is left on the shelf, or each on an empty one; and a basis of other
+/* One after the other on what is left in the cache, or each on an empty one; and a basis of other
  * materials is another one. */
 static void test_what_is_shared_changes_nothing(void **state)
 {
@@ -149,7 +149,7 @@ static void test_what_is_shared_changes_nothing(void **state)
             const size_t s = alone ? 0 : last - m; /* at last split 0 in both cases */
             double condition = NAN;
             if (alone) {
-                gonio_i_shelf_clear(collection.shelf);
+                gonio_i_basis_cache_clear(collection.cache);
             }
             assert_int_equal(gonio_i_trial_method(context, &collection, method,
                                                   gonio_i_method_size(&full, method),
@@ -160,11 +160,11 @@ static void test_what_is_shared_changes_nothing(void **state)
     assert_memory_equal(errors[0], errors[1], splits.split[0].test_count * sizeof(gonio_error));
 }
 
-/* The shelf learns only what it does not have. */
-static void test_shelf(void **state)
+/* The cache learns only what it does not have. */
+static void test_basis_cache(void **state)
 {
     (void)state;
-    gonio_i_shelf shelf = {0};
+    gonio_i_basis_cache cache = {0};
     const size_t subsets[2][3] = {{0, 1, 2}, {0, 1, 3}};
     const gonio_database_options how = {.size = sizeof how};
     gonio_basis_options options = {
@@ -175,7 +175,7 @@ static void test_shelf(void **state)
         options.subset = subsets[k / 2 % 2];
         options.without_mean = k == 3;
         assert_int_equal(
-            gonio_i_shelf_learn(context, &shelf, paths, PATHS, &how, &options, &basis[k]),
+            gonio_i_basis_cache_learn(context, &cache, paths, PATHS, &how, &options, &basis[k]),
             GONIO_OK);
         fingerprint[k] = gonio_basis_describe(basis[k])->checksum;
         assert_int_equal(gonio_basis_describe(basis[k])->without_mean, k == 3);
@@ -186,8 +186,8 @@ static void test_shelf(void **state)
     assert_true(fingerprint[0] == fingerprint[1]);
     assert_true(fingerprint[1] != fingerprint[2]);
     assert_true(fingerprint[2] != fingerprint[3]);
-    gonio_i_shelf_clear(&shelf);
-    assert_null(shelf.basis);
+    gonio_i_basis_cache_clear(&cache);
+    assert_null(cache.basis);
 }
 
 /* Least squares from all rows is V'(b - m). */
@@ -254,7 +254,7 @@ int main(void)
         cmocka_unit_test(test_compared_methods),
         cmocka_unit_test(test_all_rows),
         cmocka_unit_test(test_what_is_shared_changes_nothing),
-        cmocka_unit_test(test_shelf),
+        cmocka_unit_test(test_basis_cache),
         cmocka_unit_test(test_splits_are_splits),
     };
     return cmocka_run_group_tests_name("trial", tests, set_up, tear_down);

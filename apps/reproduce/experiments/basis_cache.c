@@ -1,10 +1,10 @@
 /* Bases that trials share: see basis_cache.h. */
 #include "basis_cache.h"
 
-void gonio_i_shelf_clear(gonio_i_shelf *shelf)
+void gonio_i_basis_cache_clear(gonio_i_basis_cache *cache)
 {
-    gonio_basis_free(&shelf->basis);
-    gonio_database_free(&shelf->database);
+    gonio_basis_free(&cache->basis);
+    gonio_database_free(&cache->database);
 }
 
 static bool is_matrix(const gonio_database *database, const gonio_database_options *how)
@@ -17,14 +17,14 @@ static bool is_matrix(const gonio_database *database, const gonio_database_optio
            view->mapping == how->mapping;
 }
 
-/* Whether the basis on the shelf, which is of its matrix, was learned in that way. */
-static bool is_basis(const gonio_i_shelf *shelf, const gonio_basis_options *options)
+/* Whether the basis in the cache, which is of its matrix, was learned in that way. */
+static bool is_basis(const gonio_i_basis_cache *cache, const gonio_basis_options *options)
 {
-    if (shelf->basis == NULL) {
+    if (cache->basis == NULL) {
         return false;
     }
-    const gonio_basis_view *view = gonio_basis_describe(shelf->basis);
-    const uint64_t *fingerprints = gonio_database_describe(shelf->database)->fingerprints;
+    const gonio_basis_view *view = gonio_basis_describe(cache->basis);
+    const uint64_t *fingerprints = gonio_database_describe(cache->database)->fingerprints;
     bool same = view->components == options->components &&
                 view->without_mean == options->without_mean &&
                 view->materials == options->subset_count;
@@ -34,22 +34,23 @@ static bool is_basis(const gonio_i_shelf *shelf, const gonio_basis_options *opti
     return same;
 }
 
-gonio_status gonio_i_shelf_learn(gonio_context *context, gonio_i_shelf *shelf,
-                                 const char *const *paths, size_t count,
-                                 const gonio_database_options *how,
-                                 const gonio_basis_options *options, const gonio_basis **basis)
+gonio_status gonio_i_basis_cache_learn(gonio_context *context, gonio_i_basis_cache *cache,
+                                       const char *const *paths, size_t count,
+                                       const gonio_database_options *how,
+                                       const gonio_basis_options *options,
+                                       const gonio_basis **basis)
 {
     gonio_status status = GONIO_OK;
-    if (!is_matrix(shelf->database, how)) {
-        gonio_i_shelf_clear(shelf);
-        status = gonio_database_create(context, paths, count, how, &shelf->database);
+    if (!is_matrix(cache->database, how)) {
+        gonio_i_basis_cache_clear(cache);
+        status = gonio_database_create(context, paths, count, how, &cache->database);
     }
-    if (status == GONIO_OK && !is_basis(shelf, options)) {
-        gonio_basis_free(&shelf->basis);
-        status = gonio_basis_learn(context, shelf->database, options, &shelf->basis);
+    if (status == GONIO_OK && !is_basis(cache, options)) {
+        gonio_basis_free(&cache->basis);
+        status = gonio_basis_learn(context, cache->database, options, &cache->basis);
     }
     if (status == GONIO_OK) {
-        *basis = shelf->basis;
+        *basis = cache->basis;
     }
     return status;
 }

@@ -6,19 +6,20 @@
 #include <gonio/basis.h>
 
 /* The matrix of all materials that was asked for last, and the basis that was. */
-typedef struct gonio_i_shelf {
+typedef struct gonio_i_basis_cache {
     gonio_database *database;
     gonio_basis *basis;
-} gonio_i_shelf;
+} gonio_i_basis_cache;
 
 /* A basis of the materials options->subset of those at `paths`, which are always the same for a
- * shelf: learned if it is not the last one again, from the cells with data in all of them. It
- * belongs to the shelf and lasts until the next call. For one thread at a time. Errors: those of
+ * cache: learned if it is not the last one again, from the cells with data in all of them. It
+ * belongs to the cache and lasts until the next call. For one thread at a time. Errors: those of
  * gonio_database_create and gonio_basis_learn. */
-gonio_status gonio_i_shelf_learn(gonio_context *context, gonio_i_shelf *shelf,
-                                 const char *const *paths, size_t count,
-                                 const gonio_database_options *how,
-                                 const gonio_basis_options *options, const gonio_basis **basis);
-void gonio_i_shelf_clear(gonio_i_shelf *shelf);
+gonio_status gonio_i_basis_cache_learn(gonio_context *context, gonio_i_basis_cache *cache,
+                                       const char *const *paths, size_t count,
+                                       const gonio_database_options *how,
+                                       const gonio_basis_options *options,
+                                       const gonio_basis **basis);
+void gonio_i_basis_cache_clear(gonio_i_basis_cache *cache);
 
 #endif

@@ -152,8 +152,8 @@ static gonio_status take(gonio_context *context, const char *const *paths, size_
     c->path = gonio_i_allocate(context, count, sizeof(char *));
     c->digest = gonio_i_allocate(context, count, sizeof(gonio_i_digest *));
     c->mean = gonio_i_allocate(context, count, sizeof(double *));
-    c->shelf = gonio_i_allocate(context, 1, sizeof *c->shelf);
-    if (c->path == NULL || c->digest == NULL || c->mean == NULL || c->shelf == NULL) {
+    c->cache = gonio_i_allocate(context, 1, sizeof *c->cache);
+    if (c->path == NULL || c->digest == NULL || c->mean == NULL || c->cache == NULL) {
         return GONIO_ERROR_MEMORY;
     }
     for (size_t k = 0; k < count; k++) {
@@ -210,10 +210,10 @@ void gonio_i_collection_free(gonio_i_collection *collection)
         free(collection->mean[k]);
         free(collection->path[k]);
     }
-    if (collection->shelf != NULL) {
-        gonio_i_shelf_clear(collection->shelf);
+    if (collection->cache != NULL) {
+        gonio_i_basis_cache_clear(collection->cache);
     }
-    free(collection->shelf);
+    free(collection->cache);
     gonio_database_free(&collection->database);
     free(collection->digest);
     free(collection->mean);

@@ -10,9 +10,9 @@ typedef struct gonio_i_collection {
     size_t count;
     char **path;
     gonio_i_digest **digest;
-    double **mean;            /* gonio_i_digest_mean of each: what a bivariate reading sees */
-    gonio_database *database; /* bivariate, joint; in the same order */
-    gonio_i_shelf *shelf;     /* other matrices and bases of them, as they are needed */
+    double **mean;              /* gonio_i_digest_mean of each: what a bivariate reading sees */
+    gonio_database *database;   /* bivariate, joint; in the same order */
+    gonio_i_basis_cache *cache; /* other matrices and bases of them, as they are needed */
 } gonio_i_collection;
 
 /* Reads materials, several at a time. Those that cannot be read, have no data, or have the name or

@@ -50,7 +50,7 @@ static double grid_cost(const gonio_i_study *study, const gonio_i_part *p)
 }
 
 /* Methods of the full grid. Those that learn the same cost the same, so that for each split they
- * follow each other and the second finds the basis that the first has left on the shelf. */
+ * follow each other and the second finds the basis that the first has left in the cache. */
 static const double JOINT_COST = 40.0;
 static const double SEPARATE_COST = 15.0;
 
@@ -342,7 +342,7 @@ static void sort_results(const gonio_i_study *study, json_t **flat, gonio_i_resu
 }
 
 gonio_status gonio_i_run_experiments(gonio_context *context, const gonio_i_study *study,
-                                     const gonio_i_pieces *pieces, gonio_i_results *results)
+                                     const gonio_i_checkpoint *checkpoint, gonio_i_results *results)
 {
     plan_of_work work = {.study = study};
     *results = (gonio_i_results){0};
@@ -359,7 +359,7 @@ gonio_status gonio_i_run_experiments(gonio_context *context, const gonio_i_study
                                         .cost = cost_of,
                                         .compute = compute,
                                         .one_at_a_time = is_one_at_a_time};
-        status = gonio_i_pieces_run(context, pieces, &described, flat);
+        status = gonio_i_checkpoint_run(context, checkpoint, &described, flat);
     }
     if (status == GONIO_OK) {
         sort_results(study, flat, results);

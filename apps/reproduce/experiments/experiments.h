@@ -36,9 +36,10 @@ typedef struct gonio_i_results {
 } gonio_i_results;
 
 /* Runs the pieces that are missing, all experiments in one go. The results are to be freed in any
- * case. Errors: those of gonio_i_pieces_run. */
+ * case. Errors: those of gonio_i_checkpoint_run. */
 gonio_status gonio_i_run_experiments(gonio_context *context, const gonio_i_study *study,
-                                     const gonio_i_pieces *pieces, gonio_i_results *results);
+                                     const gonio_i_checkpoint *checkpoint,
+                                     gonio_i_results *results);
 void gonio_i_results_free(gonio_i_results *results);
 
 /* A number; NaN for null. */

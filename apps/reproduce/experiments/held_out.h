@@ -54,7 +54,7 @@ gonio_status gonio_i_trial_seen(gonio_context *context, const gonio_i_collection
                                 gonio_error *errors);
 
 /* The same for any basis, by way of whole tables: what the others do for the paper's basis, slower.
- * Bases of the full grid are large, and the collection's shelf has room for one: for one thread at
+ * Bases of the full grid are large, and the collection's cache has room for one: for one thread at
  * a time. */
 gonio_status gonio_i_trial_tables(gonio_context *context, const gonio_i_collection *collection,
                                   const gonio_i_method_entry *method, gonio_i_size size,

@@ -124,8 +124,9 @@ static gonio_status learn(gonio_context *context, const gonio_i_collection *coll
                                          .subset = split->basis,
                                          .subset_count = split->basis_count,
                                          .without_mean = method->without_mean};
-    return gonio_i_shelf_learn(context, collection->shelf, (const char *const *)collection->path,
-                               collection->count, &how, &options, basis);
+    return gonio_i_basis_cache_learn(context, collection->cache,
+                                     (const char *const *)collection->path, collection->count, &how,
+                                     &options, basis);
 }
 
 static gonio_status make_plan(trial *t, gonio_i_size size, uint64_t seed, gonio_plan **plan)

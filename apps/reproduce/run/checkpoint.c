@@ -12,8 +12,8 @@
 
 #include "run_folder.h"
 
-struct gonio_i_pieces {
-    process_group team;
+struct gonio_i_checkpoint {
+    process_group group;
     char *folder; /* of the pieces */
     char run[17]; /* the identity's hash */
     int lock;     /* of rank 0; -1 for none */
@@ -38,10 +38,10 @@ static bool is_plain(const char *name)
     return length > 0 && length <= 100 && name[0] != '.' && strspn(name, plain) == length;
 }
 
-static char *path_of(const gonio_i_pieces *pieces, const char *name)
+static char *path_of(const gonio_i_checkpoint *checkpoint, const char *name)
 {
     if (is_plain(name)) {
-        return gonio_i_format("%s/%s.json", pieces->folder, name);
+        return gonio_i_format("%s/%s.json", checkpoint->folder, name);
     }
     char hash[17];
     char readable[61];
@@ -50,11 +50,11 @@ static char *path_of(const gonio_i_pieces *pieces, const char *name)
         *c = *c == '.' || strchr(plain, *c) == NULL ? '_' : *c;
     }
     put_hash(hash, name);
-    return gonio_i_format("%s/%s-%s.json", pieces->folder, readable, hash);
+    return gonio_i_format("%s/%s-%s.json", checkpoint->folder, readable, hash);
 }
 
 /* What a piece's file must hold; NULL when out of memory or for text that is not UTF-8. */
-static char *text_of(const gonio_i_pieces *pieces, const char *name, const json_t *result)
+static char *text_of(const gonio_i_checkpoint *checkpoint, const char *name, const json_t *result)
 {
     char checksum[17];
     char *dump = json_dumps(result, EXACT);
@@ -62,8 +62,8 @@ static char *text_of(const gonio_i_pieces *pieces, const char *name, const json_
         return NULL;
     }
     put_hash(checksum, dump);
-    json_t *whole = json_pack("{s:s, s:s, s:s, s:O}", "piece", name, "run", pieces->run, "checksum",
-                              checksum, "result", result);
+    json_t *whole = json_pack("{s:s, s:s, s:s, s:O}", "piece", name, "run", checkpoint->run,
+                              "checksum", checksum, "result", result);
     free(dump);
     dump = json_dumps(whole, EXACT);
     json_decref(whole);
@@ -72,11 +72,11 @@ static char *text_of(const gonio_i_pieces *pieces, const char *name, const json_
     return line;
 }
 
-static gonio_status write_piece(gonio_context *context, const gonio_i_pieces *pieces,
+static gonio_status write_piece(gonio_context *context, const gonio_i_checkpoint *checkpoint,
                                 const char *name, const json_t *result)
 {
-    char *path = path_of(pieces, name);
-    char *text = path != NULL ? text_of(pieces, name, result) : NULL;
+    char *path = path_of(checkpoint, name);
+    char *text = path != NULL ? text_of(checkpoint, name, result) : NULL;
     const gonio_status status =
         text != NULL ? gonio_i_write_text(context, path, text)
                      : gonio_i_fail(context, GONIO_ERROR_MEMORY,
@@ -89,12 +89,12 @@ static gonio_status write_piece(gonio_context *context, const gonio_i_pieces *pi
 }
 
 /* The result in a file of `length` bytes if it is, to the byte, what would be written for it. */
-static json_t *believe(const gonio_i_pieces *pieces, const char *name, const char *text,
+static json_t *believe(const gonio_i_checkpoint *checkpoint, const char *name, const char *text,
                        size_t length)
 {
     json_t *whole = json_loadb(text, length, JSON_REJECT_DUPLICATES, NULL);
     json_t *result = json_incref(json_object_get(whole, "result"));
-    char *expected = result != NULL ? text_of(pieces, name, result) : NULL;
+    char *expected = result != NULL ? text_of(checkpoint, name, result) : NULL;
     if (expected == NULL || strlen(expected) != length || memcmp(expected, text, length) != 0) {
         json_decref(result);
         result = NULL;
@@ -106,16 +106,17 @@ static json_t *believe(const gonio_i_pieces *pieces, const char *name, const cha
 
 /* A finished piece's result; NULL, with a warning if need be, where there is none to be believed.
  */
-static json_t *read_piece(gonio_context *context, const gonio_i_pieces *pieces, const char *name)
+static json_t *read_piece(gonio_context *context, const gonio_i_checkpoint *checkpoint,
+                          const char *name)
 {
-    char *path = path_of(pieces, name);
+    char *path = path_of(checkpoint, name);
     FILE *file = path != NULL ? fopen(path, "rbe") : NULL;
     json_t *result = NULL;
     if (file != NULL) {
         char *text = NULL;
         size_t room = 0;
         const ssize_t length = getdelim(&text, &room, '\0', file); /* all of it */
-        result = length > 0 ? believe(pieces, name, text, (size_t)length) : NULL;
+        result = length > 0 ? believe(checkpoint, name, text, (size_t)length) : NULL;
         free(text);
         fclose(file);
         if (result == NULL) {
@@ -138,7 +139,7 @@ typedef struct job {
 
 typedef struct run {
     gonio_context *context;
-    const gonio_i_pieces *pieces;
+    const gonio_i_checkpoint *checkpoint;
     const gonio_i_work *work;
     job *job; /* [work->count], the expensive ones first */
     job **todo;
@@ -190,18 +191,18 @@ static gonio_status list_jobs(run *r)
  * that every rank knows all shares; adds those of this rank that are not finished. */
 static gonio_status share_out(run *r)
 {
-    const process_group *team = &r->pieces->team;
-    double *load = gonio_i_allocate(r->context, (size_t)team->size, sizeof *load);
+    const process_group *group = &r->checkpoint->group;
+    double *load = gonio_i_allocate(r->context, (size_t)group->size, sizeof *load);
     if (load == NULL) {
         return GONIO_ERROR_MEMORY;
     }
     for (size_t k = 0; k < r->work->count; k++) {
         int least = 0;
-        for (int rank = 1; rank < team->size; rank++) {
+        for (int rank = 1; rank < group->size; rank++) {
             least = load[rank] < load[least] ? rank : least;
         }
         load[least] += r->job[k].cost;
-        if (least == team->rank) {
+        if (least == group->rank) {
             r->todo[r->count++] = &r->job[k];
         }
     }
@@ -214,14 +215,14 @@ static void drop_finished(run *r)
 {
     size_t left = 0;
     for (size_t k = 0; k < r->count; k++) {
-        json_t *result = read_piece(r->context, r->pieces, r->todo[k]->name);
+        json_t *result = read_piece(r->context, r->checkpoint, r->todo[k]->name);
         if (result == NULL) {
             r->cost += r->todo[k]->cost;
             r->todo[left++] = r->todo[k];
         }
         json_decref(result);
     }
-    if (left < r->count && left > 0 && r->pieces->team.rank == 0) {
+    if (left < r->count && left > 0 && r->checkpoint->group.rank == 0) {
         gonio_i_note(r->context, "%s: resuming, %zu of %zu computations are finished",
                      r->work->title, r->count - left, r->count);
     }
@@ -240,7 +241,7 @@ static gonio_status do_job(const run *r, gonio_context *team, const job *j)
     }
     status = r->work->compute(r->work->user, context, j->piece, &result);
     if (status == GONIO_OK) {
-        status = write_piece(context, r->pieces, j->name, result);
+        status = write_piece(context, r->checkpoint, j->name, result);
     }
     json_decref(result);
     gonio_i_piece_end(context);
@@ -301,9 +302,9 @@ static gonio_status do_jobs(run *r, int threads)
 
 /* ---- together ---- */
 
-static gonio_status wait_for_all(gonio_context *context, const process_group *team)
+static gonio_status wait_for_all(gonio_context *context, const process_group *group)
 {
-    if (team->size > 1 && !team->barrier(team->user)) {
+    if (group->size > 1 && !group->barrier(group->user)) {
         return gonio_i_fail(context, GONIO_ERROR_IO, "the other MPI processes have ended");
     }
     return GONIO_OK;
@@ -314,7 +315,7 @@ static gonio_status gather(const run *r, json_t **results)
     memset(results, 0, r->work->count * sizeof *results);
     for (size_t k = 0; k < r->work->count; k++) {
         const job *j = &r->job[k];
-        results[j->piece] = read_piece(r->context, r->pieces, j->name);
+        results[j->piece] = read_piece(r->context, r->checkpoint, j->name);
         if (results[j->piece] == NULL) {
             for (size_t i = 0; i < r->work->count; i++) {
                 json_decref(results[i]);
@@ -322,7 +323,7 @@ static gonio_status gather(const run *r, json_t **results)
             }
             return gonio_i_fail(r->context, GONIO_ERROR_IO,
                                 "%s: the finished computation '%s' cannot be read back",
-                                r->pieces->folder, j->name);
+                                r->checkpoint->folder, j->name);
         }
     }
     return GONIO_OK;
@@ -339,7 +340,7 @@ static gonio_status do_all(run *r, int threads, json_t **results)
         status = do_jobs(r, threads);
     }
     if (status == GONIO_OK) {
-        status = wait_for_all(r->context, &r->pieces->team);
+        status = wait_for_all(r->context, &r->checkpoint->group);
     }
     if (status == GONIO_OK && r->count > 0) {
         status = gonio_i_progress(r->context, r->work->title, 1.0);
@@ -347,10 +348,10 @@ static gonio_status do_all(run *r, int threads, json_t **results)
     return status == GONIO_OK && results != NULL ? gather(r, results) : status;
 }
 
-static gonio_status run_pieces(gonio_context *context, const gonio_i_pieces *pieces,
+static gonio_status run_pieces(gonio_context *context, const gonio_i_checkpoint *checkpoint,
                                const gonio_i_work *work, int threads, json_t **results)
 {
-    run r = {.context = context, .pieces = pieces, .work = work};
+    run r = {.context = context, .checkpoint = checkpoint, .work = work};
     r.job = gonio_i_allocate(context, work->count, sizeof *r.job);
     r.todo = gonio_i_allocate(context, work->count, sizeof(job *));
     const gonio_status status =
@@ -363,20 +364,20 @@ static gonio_status run_pieces(gonio_context *context, const gonio_i_pieces *pie
     return status;
 }
 
-gonio_status gonio_i_pieces_run(gonio_context *context, const gonio_i_pieces *pieces,
-                                const gonio_i_work *work, json_t **results)
+gonio_status gonio_i_checkpoint_run(gonio_context *context, const gonio_i_checkpoint *checkpoint,
+                                    const gonio_i_work *work, json_t **results)
 {
     const int threads = gonio_context_threads(context);
-    if (pieces->team.rank == 0) {
-        return run_pieces(context, pieces, work, threads, results);
+    if (checkpoint->group.rank == 0) {
+        return run_pieces(context, checkpoint, work, threads, results);
     }
     /* Of several, rank 0 alone tells its progress. */
     char name[32];
     gonio_context *silent = NULL;
-    snprintf(name, sizeof name, "rank %d", pieces->team.rank);
+    snprintf(name, sizeof name, "rank %d", checkpoint->group.rank);
     gonio_status status = gonio_i_piece_begin(context, name, &silent);
     if (status == GONIO_OK) {
-        status = run_pieces(silent, pieces, work, threads, results);
+        status = run_pieces(silent, checkpoint, work, threads, results);
         gonio_i_piece_end(silent);
     }
     return status;
@@ -401,7 +402,7 @@ static void remove_parts(const char *folder)
 }
 
 static gonio_status take_folder(gonio_context *context, const char *folder, json_t *identity,
-                                gonio_i_pieces *pieces)
+                                gonio_i_checkpoint *checkpoint)
 {
     json_t *whole = json_pack("{s:s, s:O}", "gonio", gonio_version(), "identity", identity);
     char *text = json_dumps(whole, EXACT | JSON_SORT_KEYS);
@@ -409,19 +410,19 @@ static gonio_status take_folder(gonio_context *context, const char *folder, json
     if (text == NULL) {
         status = gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", folder);
     } else {
-        put_hash(pieces->run, text);
-        if (pieces->team.rank == 0) {
-            status = gonio_i_run_folder_take(context, folder, whole, &pieces->lock);
+        put_hash(checkpoint->run, text);
+        if (checkpoint->group.rank == 0) {
+            status = gonio_i_run_folder_take(context, folder, whole, &checkpoint->lock);
         }
     }
-    if (status == GONIO_OK && pieces->team.rank == 0) {
-        status = gonio_i_make_folder(context, pieces->folder);
-        remove_parts(pieces->folder);
+    if (status == GONIO_OK && checkpoint->group.rank == 0) {
+        status = gonio_i_make_folder(context, checkpoint->folder);
+        remove_parts(checkpoint->folder);
     }
     if (status == GONIO_OK) {
-        status = wait_for_all(context, &pieces->team);
+        status = wait_for_all(context, &checkpoint->group);
     }
-    if (status == GONIO_OK && pieces->team.rank != 0) {
+    if (status == GONIO_OK && checkpoint->group.rank != 0) {
         status = gonio_i_run_folder_check(context, folder, whole);
     }
     free(text);
@@ -429,36 +430,36 @@ static gonio_status take_folder(gonio_context *context, const char *folder, json
     return status;
 }
 
-gonio_status gonio_i_pieces_open(gonio_context *context, const char *folder, json_t *identity,
-                                 const process_group *team, gonio_i_pieces **pieces)
+gonio_status gonio_i_checkpoint_open(gonio_context *context, const char *folder, json_t *identity,
+                                     const process_group *group, gonio_i_checkpoint **checkpoint)
 {
-    gonio_i_pieces *made = gonio_i_allocate(context, 1, sizeof *made);
+    gonio_i_checkpoint *made = gonio_i_allocate(context, 1, sizeof *made);
     if (made == NULL) {
         return GONIO_ERROR_MEMORY;
     }
     made->lock = -1;
-    made->team = team != NULL ? *team : (process_group){.size = 1};
+    made->group = group != NULL ? *group : (process_group){.size = 1};
     made->folder = gonio_i_format("%s/pieces", folder);
     const gonio_status status = made->folder != NULL
                                     ? take_folder(context, folder, identity, made)
                                     : gonio_i_fail(context, GONIO_ERROR_MEMORY, "out of memory");
     if (status != GONIO_OK) {
-        gonio_i_pieces_free(&made);
+        gonio_i_checkpoint_free(&made);
         return status;
     }
-    *pieces = made;
+    *checkpoint = made;
     return GONIO_OK;
 }
 
-void gonio_i_pieces_free(gonio_i_pieces **pieces)
+void gonio_i_checkpoint_free(gonio_i_checkpoint **checkpoint)
 {
-    if (pieces == NULL || *pieces == NULL) {
+    if (checkpoint == NULL || *checkpoint == NULL) {
         return;
     }
-    if ((*pieces)->lock >= 0) {
-        close((*pieces)->lock);
+    if ((*checkpoint)->lock >= 0) {
+        close((*checkpoint)->lock);
     }
-    free((*pieces)->folder);
-    free(*pieces);
-    *pieces = NULL;
+    free((*checkpoint)->folder);
+    free(*checkpoint);
+    *checkpoint = NULL;
 }

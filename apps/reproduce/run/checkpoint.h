@@ -6,7 +6,7 @@
  *                      with fingerprints ...); a folder with another identity is refused
  *   pieces/NAME.json   a finished piece: its name, the run, a checksum, the result
  * Pieces run side by side on the context's threads, one thread each, the expensive ones first; a
- * team's ranks share them out by cost. The results do not depend on any of that. */
+ * group's ranks share them out by cost. The results do not depend on any of that. */
 #ifndef GONIO_REPRODUCE_CHECKPOINT_H
 #define GONIO_REPRODUCE_CHECKPOINT_H
 
@@ -15,7 +15,7 @@
 #include "core/core.h"
 #include "process_group.h"
 
-typedef struct gonio_i_pieces gonio_i_pieces;
+typedef struct gonio_i_checkpoint gonio_i_checkpoint;
 
 typedef struct gonio_i_work {
     const char *title; /* for the progress; must last as long as the context */
@@ -35,20 +35,21 @@ typedef struct gonio_i_work {
 } gonio_i_work;
 
 /* Makes a run's folder, or takes up an existing one of the same identity (a JSON object; borrowed).
- * `team` is NULL for a process on its own. Every rank calls this; rank 0 makes the folder, and the
+ * `group` is NULL for a process on its own. Every rank calls this; rank 0 makes the folder, and the
  * others must see it.
  * Errors: _MISMATCH if it is another run's; _ARGUMENT if it holds other things or a run is going on
  * in it; _IO, _FORMAT, _MEMORY. */
-gonio_status gonio_i_pieces_open(gonio_context *context, const char *folder, json_t *identity,
-                                 const process_group *team, gonio_i_pieces **pieces);
-void gonio_i_pieces_free(gonio_i_pieces **pieces);
+gonio_status gonio_i_checkpoint_open(gonio_context *context, const char *folder, json_t *identity,
+                                     const process_group *group, gonio_i_checkpoint **checkpoint);
+void gonio_i_checkpoint_free(gonio_i_checkpoint **checkpoint);
 
 /* Computes the pieces that are missing. A file that is damaged, or not this run's, counts as
  * missing and is warned of. After the first failure, or when cancelled, no further piece is begun;
- * those that were finished stay. Every rank of a team calls this with the same work. Then `results`
- * [count], where not NULL, is filled with all ranks' results, which the caller owns (json_decref).
- * Errors: those of the pieces; _ARGUMENT for two pieces of one name; _IO; _CANCELLED. */
-gonio_status gonio_i_pieces_run(gonio_context *context, const gonio_i_pieces *pieces,
-                                const gonio_i_work *work, json_t **results);
+ * those that were finished stay. Every rank of a group calls this with the same work. Then
+ * `results` [count], where not NULL, is filled with all ranks' results, which the caller owns
+ * (json_decref). Errors: those of the pieces; _ARGUMENT for two pieces of one name; _IO;
+ * _CANCELLED. */
+gonio_status gonio_i_checkpoint_run(gonio_context *context, const gonio_i_checkpoint *checkpoint,
+                                    const gonio_i_work *work, json_t **results);
 
 #endif

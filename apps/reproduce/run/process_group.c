@@ -45,16 +45,16 @@ static bool wait_for_all(void *user)
     }
 }
 
-static bool join(process_group *team, const char *command)
+static bool join(process_group *group, const char *command)
 {
     int provided = 0;
     if (MPI_Init_thread(NULL, NULL, MPI_THREAD_FUNNELED, &provided) != MPI_SUCCESS) {
         fprintf(stderr, "gonio %s: MPI does not start\n", command);
         return false;
     }
-    MPI_Comm_rank(MPI_COMM_WORLD, &team->rank);
-    MPI_Comm_size(MPI_COMM_WORLD, &team->size);
-    team->barrier = wait_for_all;
+    MPI_Comm_rank(MPI_COMM_WORLD, &group->rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &group->size);
+    group->barrier = wait_for_all;
     return true;
 }
 
@@ -72,9 +72,9 @@ static void leave(int code)
 
 #else
 
-static bool join(process_group *team, const char *command)
+static bool join(process_group *group, const char *command)
 {
-    (void)team;
+    (void)group;
     fprintf(stderr,
             "gonio %s: started by mpirun, but built without MPI: install libopenmpi-dev and build "
             "gonio again, or start it without mpirun\n",
@@ -89,10 +89,10 @@ static void leave(int code)
 
 #endif
 
-bool process_group_join(process_group *team, const char *command)
+bool process_group_join(process_group *group, const char *command)
 {
-    *team = (process_group){.rank = 0, .size = 1};
-    return !is_launched() || join(team, command);
+    *group = (process_group){.rank = 0, .size = 1};
+    return !is_launched() || join(group, command);
 }
 
 int process_group_leave(int code)

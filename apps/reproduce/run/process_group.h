@@ -14,13 +14,13 @@ typedef struct process_group {
     void *user; /* handed to the barrier */
 } process_group;
 
-/* Joins the team that mpirun (Open MPI, or another MPI with PMI or PMIx) has started, or makes a
- * team of one. False, after a message, if that cannot be. Must be called once, from main's thread;
- * only that may use the team. A rank other than 0 should print nothing but errors. */
-bool process_group_join(process_group *team, const char *command);
+/* Joins the group that mpirun (Open MPI, or another MPI with PMI or PMIx) has started, or makes a
+ * group of one. False, after a message, if that cannot be. Must be called once, from main's thread;
+ * only that may use the group. A rank other than 0 should print nothing but errors. */
+bool process_group_join(process_group *group, const char *command);
 
-/* Leaves the team with this process's exit code, which it returns. A code other than 0 ends the
- * whole team with exit code 1, lest the others wait for this one forever. */
+/* Leaves the group with this process's exit code, which it returns. A code other than 0 ends the
+ * whole group with exit code 1, lest the others wait for this one forever. */
 int process_group_leave(int code);
 
 #endif

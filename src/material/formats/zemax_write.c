@@ -27,7 +27,7 @@ typedef struct writer {
     double *value; /* [incidences][azimuths][RADIALS][X, Y, Z] */
 } writer;
 
-static size_t spread(double first, double last, double step, double *angle)
+static size_t equal_steps(double first, double last, double step, double *angle)
 {
     size_t count = 0;
     while (count < MOST_ANGLES && first + step * (double)count <= last + 1e-9) {
@@ -207,10 +207,10 @@ gonio_status gonio_i_zemax_write(gonio_context *context, const gonio_material *m
     const double steep =
         sampler.view->theta_limit > 0.0 ? sampler.view->theta_limit : 85.0 * degree;
     w.incidences =
-        spread(0.0, steep, options->theta_i_step > 0.0 ? options->theta_i_step : 5.0 * degree,
-               w.incidence);
-    w.azimuths =
-        spread(0.0, M_PI, options->phi_step > 0.0 ? options->phi_step : 7.5 * degree, w.azimuth);
+        equal_steps(0.0, steep, options->theta_i_step > 0.0 ? options->theta_i_step : 5.0 * degree,
+                    w.incidence);
+    w.azimuths = equal_steps(0.0, M_PI, options->phi_step > 0.0 ? options->phi_step : 7.5 * degree,
+                             w.azimuth);
     for (size_t k = 0; k < RADIALS; k++) { /* denser towards the mirror direction */
         const double t = (double)k / (RADIALS - 1);
         w.radial[k] = M_PI * t * t;
