@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "../support.h"
+#include "made_material.h"
 
 static const double degree = M_PI / 180.0;
 
@@ -152,6 +153,31 @@ static void test_rgl_spectra(void **state)
     for (size_t c = 0; c < 3; c++) {
         assert_true(view->wavelength[c] == wavelength[sorted[c]]);
         assert_true(find_difference(material, sorted[c], again, c, 1.2) < 5e-3);
+    }
+    gonio_material_free(&again);
+    gonio_material_free(&material);
+    support_remove(folder);
+}
+
+static bool is_steep(gonio_bin bin)
+{
+    const gonio_pair pair = gonio_pair_from_half_difference(gonio_bin_centre(bin));
+    return fmax(pair.incident.theta, pair.outgoing.theta) > 60.0 * degree;
+}
+
+/* Of a table that ends at 60 degrees, its own values are kept up to there, and the steepest go on:
+ * nothing is black. */
+static void test_a_table_that_ends(void **state)
+{
+    (void)state;
+    char *folder = support_folder();
+    gonio_material *material = made_material((made_constant){{0.1, 0.2, 0.3}, is_steep});
+    gonio_material *again = rewrite(material, folder, "x.bsdf", NULL);
+    for (int k = 0; k < 79; k++) {
+        const gonio_pair pair = {{k * degree, 0.0}, {(78 - k) * degree, 2.0}};
+        double values[3];
+        assert_int_equal(gonio_material_evaluate(NULL, again, &pair, 1, values), GONIO_OK);
+        assert_true(fabs(values[1] - 0.2) < 0.005);
     }
     gonio_material_free(&again);
     gonio_material_free(&material);
@@ -360,10 +386,15 @@ static void test_names(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_table),       cmocka_unit_test(test_table_of_colours),
-        cmocka_unit_test(test_rgl_spectra), cmocka_unit_test(test_an_anisotropic_material),
-        cmocka_unit_test(test_klems),       cmocka_unit_test(test_csv),
-        cmocka_unit_test(test_zemax),       cmocka_unit_test(test_names),
+        cmocka_unit_test(test_table),
+        cmocka_unit_test(test_table_of_colours),
+        cmocka_unit_test(test_rgl_spectra),
+        cmocka_unit_test(test_a_table_that_ends),
+        cmocka_unit_test(test_an_anisotropic_material),
+        cmocka_unit_test(test_klems),
+        cmocka_unit_test(test_csv),
+        cmocka_unit_test(test_zemax),
+        cmocka_unit_test(test_names),
     };
     return cmocka_run_group_tests_name("material_writers", tests, NULL, NULL);
 }

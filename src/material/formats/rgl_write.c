@@ -239,15 +239,15 @@ static void fill_empty(double *value, size_t side, size_t channels, bool *known)
     }
 }
 
-/* rho of an incidence at all places: [node][view.channels], holes filled. Of channels without data
- * 0 if others have some. */
+/* rho of an incidence at all places: [node][view->channels], holes filled. Of channels without data
+ * 0 if others have some. *any: whether there are data at all; without, rho is 0. */
 static gonio_status read_incidence(const writer *w, const gonio_pair *pairs, double *rho,
-                                   bool *known)
+                                   bool *known, bool *any)
 {
     const size_t nodes = w->side * w->side;
     const size_t channels = w->view->channels;
     const gonio_status status = gonio_i_sampler_values(w->context, &w->sampler, pairs, nodes, rho);
-    bool any = false;
+    *any = false;
     for (size_t k = 0; k < nodes && status == GONIO_OK; k++) {
         known[k] = false;
         for (size_t c = 0; c < channels; c++) {
@@ -256,9 +256,9 @@ static gonio_status read_incidence(const writer *w, const gonio_pair *pairs, dou
         for (size_t c = 0; c < channels; c++) {
             rho[k * channels + c] = isnan(rho[k * channels + c]) ? 0.0 : rho[k * channels + c];
         }
-        any = any || known[k];
+        *any = *any || known[k];
     }
-    if (status == GONIO_OK && any) {
+    if (status == GONIO_OK && *any) {
         fill_empty(rho, w->side, channels, known);
     }
     return status;
@@ -283,30 +283,76 @@ static void store_incidence(writer *w, size_t t, const place *places, const doub
     }
 }
 
-static gonio_status find_values(writer *w)
+static void aim_all(const writer *w, size_t t, gonio_pair *pairs, place *places)
+{
+    for (size_t k = 0; k < w->side * w->side; k++) {
+        places[k] = aim(w, t, k, &pairs[k]);
+    }
+}
+
+/* What find_values works in. */
+typedef struct workplace {
+    gonio_pair *pairs;
+    place *places;
+    double *rho;    /* of an incidence */
+    double *latest; /* of the last one with data */
+    bool *known;
+} workplace;
+
+static gonio_status allocate(const writer *w, workplace *p)
 {
     const size_t nodes = w->side * w->side;
-    gonio_pair *pairs = gonio_i_allocate(w->context, nodes, sizeof *pairs);
-    place *places = gonio_i_allocate(w->context, nodes, sizeof *places);
-    double *rho = gonio_i_allocate(w->context, nodes * w->view->channels, sizeof *rho);
-    bool *known = gonio_i_allocate(w->context, nodes, sizeof *known);
-    gonio_status status = pairs != NULL && places != NULL && rho != NULL && known != NULL
-                              ? GONIO_OK
-                              : GONIO_ERROR_MEMORY;
+    p->pairs = gonio_i_allocate(w->context, nodes, sizeof *p->pairs);
+    p->places = gonio_i_allocate(w->context, nodes, sizeof *p->places);
+    p->rho = gonio_i_allocate(w->context, nodes * w->view->channels, sizeof *p->rho);
+    p->latest = gonio_i_allocate(w->context, nodes * w->view->channels, sizeof *p->latest);
+    p->known = gonio_i_allocate(w->context, nodes, sizeof *p->known);
+    return p->pairs != NULL && p->places != NULL && p->rho != NULL && p->latest != NULL &&
+                   p->known != NULL
+               ? GONIO_OK
+               : GONIO_ERROR_MEMORY;
+}
+
+/* An incidence without any data, as beyond the steepest that a table was measured at, gets those of
+ * the last one before it that has some, or of the first. */
+static gonio_status read_all(writer *w, workplace *p)
+{
+    size_t missing = 0; /* before the first incidence with data */
+    gonio_status status = GONIO_OK;
     for (size_t t = 0; t < THETAS && status == GONIO_OK; t++) {
-        for (size_t k = 0; k < nodes; k++) {
-            places[k] = aim(w, t, k, &pairs[k]);
+        bool any = false;
+        aim_all(w, t, p->pairs, p->places);
+        status = read_incidence(w, p->pairs, p->rho, p->known, &any);
+        if (status == GONIO_OK && any) {
+            double *kept = p->latest;
+            p->latest = p->rho;
+            p->rho = kept;
+        } else if (missing == t) {
+            missing++;
         }
-        status = read_incidence(w, pairs, rho, known);
+        for (size_t first = 0; any && first < missing; first++) {
+            aim_all(w, first, p->pairs, p->places);
+            store_incidence(w, first, p->places, p->latest);
+        }
+        missing = any ? 0 : missing;
         if (status == GONIO_OK) {
-            store_incidence(w, t, places, rho);
+            aim_all(w, t, p->pairs, p->places);
+            store_incidence(w, t, p->places, p->latest);
             status = gonio_i_progress(w->context, "writing", 0.99 * (double)(t + 1) / THETAS);
         }
     }
-    free(pairs);
-    free(places);
-    free(rho);
-    free(known);
+    return status;
+}
+
+static gonio_status find_values(writer *w)
+{
+    workplace p = {0};
+    const gonio_status status = allocate(w, &p) == GONIO_OK ? read_all(w, &p) : GONIO_ERROR_MEMORY;
+    free(p.pairs);
+    free(p.places);
+    free(p.rho);
+    free(p.latest);
+    free(p.known);
     return status;
 }
 
