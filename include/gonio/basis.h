@@ -18,19 +18,19 @@ extern "C" {
 
 typedef struct gonio_basis gonio_basis;
 
-/* Mixtures. A hundred materials do not show all that is possible: coatings, blends, rougher and
- * smoother finishes. A mixture is a column made of two columns drawn at random,
+/* Mixtures. A hundred materials do not cover all coatings, blends and finishes. A mixture is a
+ * made-up column, from two measured columns drawn at random:
  *
  *     g = ln(1 + u (e^a - 1) + (1 - u) (e^b - 1)),   u uniform in (0, 1),
  *
- * a weighted sum of reflectances, where a and b are the two with their lobes wider or narrower and
- * with what changes towards grazing light (Fresnel's reflection, shadowing) earlier or later:
+ * a weighted sum of reflectances. a and b are the two columns with lobes wider or narrower, and
+ * with grazing effects (Fresnel reflection, shadowing) earlier or later:
  *
  *     a(theta_h, theta_d) = column(theta_h / f, 90 degrees (theta_d / 90 degrees)^t),
  *
- * ln f and ln t normal with deviations 0.3 and 0.25. Mixtures count as much as the measured columns
- * together: m is the mean of the two groups' means, and H - m has every column
- * times the square root of its weight (on average 1). */
+ * where ln f and ln t are normal with standard deviations 0.3 and 0.25. All mixtures together have
+ * the weight of all measured columns: m is the mean of the two groups' means, and every column of
+ * H - m is multiplied by the square root of its weight (on average 1). */
 enum { GONIO_DEFAULT_MIXTURES = 1000, GONIO_MIXTURE_COMPONENTS = 300 };
 
 enum { GONIO_DEFAULT_COMPONENTS = 45 };
@@ -151,10 +151,10 @@ GONIO_API double gonio_basis_singular_value(const gonio_basis *basis, size_t k);
  * the last. */
 GONIO_API double gonio_basis_cumulative_variance(const gonio_basis *basis, size_t k);
 
-/* The cell in the basis that stands for any cell of the grid: itself, or if the database had no
- * data there the nearest in index space (lowest index on ties). cell is theta_d + 90 theta_h, or a
- * bin's index for a full basis. Returns its position in view.cell, or the number of cells for one
- * outside the grid. */
+/* Finds the cell of the basis that represents a cell of the grid: itself, or if the database had no
+ * data there, the nearest in index space (lowest index on ties). cell is theta_d + 90 theta_h, or a
+ * bin's index for a full basis. Returns the position in view.cell, or the number of cells if `cell`
+ * is outside the grid. */
 GONIO_API size_t gonio_basis_position(const gonio_basis *basis, int32_t cell);
 
 /* The row that a reading in one channel at any directions sees, interpolated between cell centres

@@ -1,9 +1,9 @@
 /* A material: a BRDF at any directions, in any channels: colours, one channel, or wavelengths.
  *
- * Where it comes from - a file, an analytic model, a callback - may know it at any directions, or
- * on the grid of direction.h only, or both; each is made from the other where it is asked for.
+ * Its source (a file, an analytic model, a callback) gives values at any directions, on the grid of
+ * direction.h, or both. Each is computed from the other if needed.
  *
- * On the grid a material is never held whole: it is asked for one theta_h index (a slab) at a time.
+ * On the grid a material is read one theta_h index (a slab) at a time, and never held whole.
  * A slab is an array rho[channel][theta_d][phi_d] of 3 x 90 x 180 doubles (GONIO_SLAB_VALUES) in
  * 1/sr, linear R, G, B, of an isotropic and reciprocal surface. A bin with data has three finite
  * values >= 0; a bin without has -1 in all three channels. */
@@ -136,9 +136,9 @@ GONIO_API gonio_status gonio_material_write_merl(gonio_context *context,
 
 /* Writes an isotropic material as an RGL .bsdf, which Mitsuba 3 and pbrt-v4 render as `measured`:
  * RGB, or spectra where the material has wavelengths (ascending, at most 512). Evaluated at 26
- * incidences and 84 x 84 places, 32 x 32 or more of spectra. Where the material has no data the
- * nearest places stand in. One that was read from an RGL .bsdf, anisotropic or not, is written as
- * it is. The file appears whole or not at all.
+ * incidences and 84 x 84 places, 32 x 32 or more for spectra. Where the material has no data, the
+ * nearest places with data are used. A material that was read from an RGL .bsdf, anisotropic or
+ * not, is written unchanged. The file appears whole or not at all.
  * Errors: _ARGUMENT (another anisotropic material, too many wavelengths), _IO, _MEMORY, _CANCELLED,
  * and those of the source. */
 GONIO_API gonio_status gonio_material_write_rgl(gonio_context *context,
@@ -147,8 +147,8 @@ GONIO_API gonio_status gonio_material_write_rgl(gonio_context *context,
 /* How a material is written. */
 typedef struct gonio_write_options {
     size_t size;         /* of this struct, which gonio_write_options_default sets */
-    const char *format;  /* by name; NULL: that of the path's extension, a MERL table where it is
-                          * none  that gonio knows */
+    const char *format;  /* by name; NULL: that of the path's extension, or a MERL table if gonio
+                          * does not know it */
     double theta_i_step; /* of directions on a grid (csv; zemax but for theta_o), radians; 0: the */
     double theta_o_step; /* format's usual */
     double phi_step;
@@ -169,8 +169,8 @@ GONIO_API const char *gonio_material_writer_name(int index);
 GONIO_API const char *gonio_material_writer_extension(int index);
 GONIO_API const char *gonio_material_writer_summary(int index);
 
-/* The index of the format that a file is written in, as gonio_write_options.format has it; -1 for a
- * name that there is not. */
+/* The index of the format that a file is written in, as of gonio_write_options.format; -1 for an
+ * unknown name. */
 GONIO_API int gonio_material_writer_find(const char *path, const char *format);
 
 /* A material read whole (35 MB), for look-ups in any order. Errors of loading: _CANCELLED, _MEMORY,

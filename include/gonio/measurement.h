@@ -81,7 +81,7 @@ typedef struct gonio_readings_view {
     uint64_t basis;          /* fingerprint of the basis the plan was made for; 0: not stated */
     size_t components;       /* K of the plan; 0: not stated */
     const char *method;      /* of the plan; "": not stated */
-    size_t notes;            /* what the file's reader has to say of it: */
+    size_t notes;            /* messages of the file's reader: */
     const char *const *note; /* [notes] */
 } gonio_readings_view;
 
@@ -119,7 +119,7 @@ GONIO_API gonio_status gonio_readings_set_deviations(gonio_context *context,
 
 /* ---- files ---- */
 
-/* Reads a file of any format that gonio knows, which its content tells:
+/* Reads a file of any format that gonio knows. The format is recognised by content:
  *
  * CSV (docs/plan-and-readings.md): `#` comment lines, a line of column names in any order, then a
  * line a reading. theta_i_deg, phi_i_deg, theta_o_deg, phi_o_deg and at least one of R_per_sr,
@@ -171,19 +171,19 @@ typedef struct gonio_instrument_options {
 /* No noise. */
 GONIO_API void gonio_instrument_options_default(gonio_instrument_options *options);
 
-/* The simulated instrument: puts a known material at the directions of `readings` (a plan) and
- * fills in R, G, B with rho (1 + noise z) + floor z', z and z' standard normal and
- * independent, clamped at 0. A direction that occurs several times is read once. options may be
+/* The simulated instrument: reads a known material at the directions of `readings` (a plan). R, G,
+ * B become rho (1 + noise z) + floor z', clamped at 0, where z and z' are standard normal and
+ * independent. A direction that occurs several times is read once. options may be
  * NULL. Errors: _DATA if the material has no data around a direction; _ARGUMENT for negative noise.
  */
 GONIO_API gonio_status gonio_measure(gonio_context *context, gonio_readings *readings,
                                      const gonio_table *table,
                                      const gonio_instrument_options *options);
 
-/* The same of any material: where it can be evaluated at any directions, in its own channels, which
- * become those of the readings, a channel without data at a direction not read; otherwise, and
- * where the plan names colours that it has not, by way of its table. Errors: as above, those of the
- * material. */
+/* The same for any material. A material that can be evaluated at any directions is read in its own
+ * channels, which become those of the readings; a channel without data at a direction is not read.
+ * Otherwise, and if the plan names colours that the material lacks, its table is read. Errors: as
+ * above, those of the material. */
 GONIO_API gonio_status gonio_measure_material(gonio_context *context, gonio_readings *readings,
                                               const gonio_material *material,
                                               const gonio_instrument_options *options);

@@ -1,11 +1,12 @@
 /* A plan: where to measure.
  *
- * By default the readings that leave the least expected error of the reconstruction by posterior
- * (reconstruct.h): each the best next one, with exchanges (docs/accuracy.md).
+ * By default a plan minimises the expected error of the reconstruction by posterior
+ * (reconstruct.h): greedy selection of the best next reading, improved by exchanges
+ * (docs/method.md).
  *
  * Selection of Ali et al., section 3.8: of the rows of V_K choose n, X, that minimise the condition
  * number kappa = lambda_max(X'X)/lambda_min(X'X), by swaps until no single one lowers it. The other
- * methods are those that both are compared with: docs/method.md. */
+ * methods are for comparison (docs/method.md). */
 #ifndef GONIO_PLAN_H
 #define GONIO_PLAN_H
 
@@ -45,8 +46,8 @@ typedef struct gonio_plan {
         tests; /* rows tried at a position, all starts: one eigenvalue solve each in the paper */
     size_t steps;
     gonio_plan_step *history; /* all restarts, in order; not kept in files */
-    double *expected;         /* [count] by expected-error: the E6 to expect of a material after
-                               * each reading, per cent; NULL by other methods */
+    double *expected;         /* [count] by expected-error: the expected E6 after each reading, per
+                               * cent; NULL by other methods */
 } gonio_plan;
 
 /* Number of readings: 80; with a target error 300 at most; of gonio_plan_next 5. */
@@ -64,12 +65,12 @@ typedef struct gonio_plan_options {
     bool keep_history;  /* true by default; a search of very many starts may do without */
     double phi_d;       /* where on the free angle to measure a bivariate cell; pi/2 by default */
     /* Of expected-error only: */
-    gonio_metric metric;          /* whose expected value is to be small */
+    gonio_metric metric;          /* whose expected value is minimised */
     const gonio_pair *candidates; /* choose among these directions, for the least error at all of
                                    * them; NULL: any, for the least error over the grid */
     size_t candidate_count;       /* at most 100,000 */
-    double target;                /* per cent: as few readings as reach this E6, `count` at most; 0:
-                                   * `count` */
+    double target;                /* per cent: the fewest readings with at most this expected E6,
+                                   * and at most `count`; 0: exactly `count` */
 } gonio_plan_options;
 
 GONIO_API void gonio_plan_options_default(gonio_plan_options *options);
@@ -135,8 +136,8 @@ GONIO_API gonio_status gonio_plan_select(gonio_context *context, const double *v
                                          gonio_selection_report *report);
 
 /* kappa of X'X for the rows chosen[count] of V[rows][leading]: the first `components` of each row.
- * Infinity if singular to working precision. Errors: _ARGUMENT for a row that there is not, or more
- * components than `leading`; _MEMORY. */
+ * Infinity if singular to working precision. Errors: _ARGUMENT for a row that does not exist, or
+ * more components than `leading`; _MEMORY. */
 GONIO_API gonio_status gonio_condition_number(gonio_context *context, const double *vectors,
                                               size_t rows, size_t leading, size_t components,
                                               const size_t *chosen, size_t count,
