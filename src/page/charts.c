@@ -9,24 +9,50 @@
 
 enum { MOST_ROWS = 50000 };
 
+enum { MOST_COLUMNS = 8 + GONIO_MOST_METRICS };
+
 /* What the charts need of each table; other columns stay out of the page. */
-static const struct {
+typedef struct chart_table {
     const char *name;
     const char *columns[8]; /* ends with NULL */
-} tables[] = {
-    {"fig2a", {"basis_of", "component", "cumulative"}},
-    {"fig2b", {"start", "swap", "condition_number"}},
-    {"fig3a-means",
-     {"components", "samples", "condition_number", "e6_percent", "cube_root_percent",
-      "log_relative"}},
-    {"fig3b",
-     {"method", "components", "samples", "e6_percent", "cube_root_percent", "log_relative"}},
+    bool errors;            /* and those of errors, by whichever metrics there are */
+} chart_table;
+
+static const chart_table tables[] = {
+    {"fig2a", {"basis_of", "component", "cumulative"}, false},
+    {"fig2b", {"start", "swap", "condition_number"}, false},
+    {"fig3a-means", {"components", "samples", "condition_number"}, true},
+    {"fig3b", {"method", "components", "samples"}, true},
     {"fig4",
-     {"components", "samples", "channel", "theta_i_deg", "phi_i_deg", "theta_o_deg", "phi_o_deg"}},
-    {"fig5", {"material", "reconstructed_from", "e6_percent", "cube_root_percent", "log_relative"}},
+     {"components", "samples", "channel", "theta_i_deg", "phi_i_deg", "theta_o_deg", "phi_o_deg"},
+     false},
+    {"fig5", {"material", "reconstructed_from"}, true},
 };
 
 enum { TABLES = sizeof tables / sizeof *tables };
+
+/* The columns to take, up to a NULL, and the metrics among them. A table that should have errors
+ * and has none is asked for the first metric's, so that it is told what it lacks. */
+static void list_columns(const chart_table *table, const gonio_i_csv *csv,
+                         const char *columns[MOST_COLUMNS], json_t *metrics)
+{
+    size_t count = 0;
+    while (table->columns[count] != NULL) {
+        columns[count] = table->columns[count];
+        count++;
+    }
+    const gonio_metric_view *metric = NULL;
+    for (int m = 0; table->errors && (metric = gonio_metric_describe(m)) != NULL; m++) {
+        if (gonio_i_csv_column(csv, metric->key) >= 0) {
+            columns[count++] = metric->key;
+            json_array_append_new(metrics, gonio_i_web_metric(metric));
+        }
+    }
+    if (table->errors && json_array_size(metrics) == 0) {
+        columns[count++] = gonio_metric_describe(0)->key;
+    }
+    columns[count] = NULL;
+}
 
 static json_t *cell(const gonio_i_csv *csv, size_t row, size_t column)
 {
@@ -39,8 +65,11 @@ static json_t *cell(const gonio_i_csv *csv, size_t row, size_t column)
 }
 
 static gonio_status convert(gonio_context *context, const gonio_i_csv *csv, const char *path,
-                            const char *const *columns, json_t **table)
+                            const chart_table *chart, json_t **table)
 {
+    const char *columns[MOST_COLUMNS];
+    json_t *metrics = json_array();
+    list_columns(chart, csv, columns, metrics);
     json_t *names = json_array();
     json_t *rows = json_array();
     gonio_status status = GONIO_OK;
@@ -61,11 +90,11 @@ static gonio_status convert(gonio_context *context, const gonio_i_csv *csv, cons
             }
         }
     }
-    *table = json_pack("{s:o, s:o}", "columns", names, "rows", rows);
+    *table = json_pack("{s:o, s:o, s:o}", "columns", names, "rows", rows, "metrics", metrics);
     return status;
 }
 
-static gonio_status read_table(gonio_context *context, const char *path, const char *const *columns,
+static gonio_status read_table(gonio_context *context, const char *path, const chart_table *chart,
                                json_t **table)
 {
     gonio_i_csv *csv = NULL;
@@ -76,7 +105,7 @@ static gonio_status read_table(gonio_context *context, const char *path, const c
                               csv->rows, MOST_ROWS);
     }
     if (status == GONIO_OK) {
-        status = convert(context, csv, path, columns, table);
+        status = convert(context, csv, path, chart, table);
     }
     gonio_i_csv_free(&csv);
     return status;
@@ -90,7 +119,7 @@ gonio_status gonio_i_web_figures(gonio_context *context, const char *folder, jso
         char *path = gonio_i_format("%s/tables/%s.csv", folder, tables[k].name);
         json_t *table = NULL;
         if (path != NULL && access(path, F_OK) == 0) {
-            status = read_table(context, path, tables[k].columns, &table);
+            status = read_table(context, path, &tables[k], &table);
             json_object_set_new(found, tables[k].name, table);
         }
         free(path);

@@ -36,6 +36,9 @@ gonio_status gonio_i_web_pack(gonio_context *context, const double *values, goni
  * look-ups: rows of [theta_h, theta_d, phi_d, R, G, B]. NULL when out of memory. */
 json_t *gonio_i_web_material(const gonio_material *material, const gonio_table *table, double step);
 
+/* What a number of an error is: key, title, unit, digits, summary. */
+json_t *gonio_i_web_metric(const gonio_metric_view *metric);
+
 /* Errors of all channels and of each. */
 json_t *gonio_i_web_comparison(const gonio_comparison *comparison);
 
@@ -44,7 +47,8 @@ json_t *gonio_i_web_readings(const gonio_readings *readings, const gonio_table *
                              const gonio_table *reconstruction);
 
 /* The tables of a folder that `gonio reproduce` left: {"fig2a": {"columns": [...], "rows":
- * [[...]]}, ...}. Errors: _IO, _FORMAT, _DATA (none of them, or columns missing), _MEMORY. */
+ * [[...]], "metrics": [...]}, ...}, metrics being those whose keys are columns. Errors: _IO,
+ * _FORMAT, _DATA (none of them, or columns missing), _MEMORY. */
 gonio_status gonio_i_web_figures(gonio_context *context, const char *folder, json_t **figures);
 
 #endif

@@ -72,15 +72,19 @@ json_t *gonio_i_web_material(const gonio_material *material, const gonio_table *
 
 /* ---- errors ---- */
 
+json_t *gonio_i_web_metric(const gonio_metric_view *metric)
+{
+    return json_pack("{s:s, s:s, s:s, s:i, s:s}", "key", metric->key, "title", metric->title,
+                     "unit", metric->unit, "digits", metric->digits, "summary", metric->summary);
+}
+
 /* What the numbers of an error are, in their order. */
 static json_t *metrics(void)
 {
     json_t *list = json_array();
     const gonio_metric_view *metric = NULL;
     for (int m = 0; (metric = gonio_metric_describe(m)) != NULL; m++) {
-        json_array_append_new(list, json_pack("{s:s, s:s, s:i, s:s}", "title", metric->title,
-                                              "unit", metric->unit, "digits", metric->digits,
-                                              "summary", metric->summary));
+        json_array_append_new(list, gonio_i_web_metric(metric));
     }
     return list;
 }

@@ -14,8 +14,9 @@ export interface Material {
     checks: [number, number, number, number, number, number][];
 }
 
-/** An error metric: digits are those worth showing after the decimal point. */
+/** An error metric: its column in tables; digits are those worth showing after the decimal point. */
 export interface Metric {
+    key: string;
     title: string;
     unit: string;
     digits: number;
@@ -59,6 +60,8 @@ export interface Readings {
 
 export interface FigureTable {
     columns: string[];
+    /** Those whose keys are columns. */
+    metrics: Metric[];
     rows: (number | string | null)[][];
 }
 

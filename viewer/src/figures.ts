@@ -1,22 +1,15 @@
 // The paper's figures from a `gonio reproduce` folder, as charts.
 import { Chart, type Series } from './charts';
 import { byId, choice, element } from './controls';
-import type { FigureTable } from './data';
+import type { FigureTable, Metric } from './data';
 import { valueColours } from './colour';
 
 type Figures = Record<string, FigureTable>;
-type Metric = 'e6_percent' | 'cube_root_percent' | 'log_relative';
+/** "E6 error, %", "log-relative error" */
+function labelOf({ title, unit }: Metric): string {
+    return unit === '' ? `${title} error` : `${title} error, ${unit}`;
+}
 
-const METRICS: [Metric, string][] = [
-    ['e6_percent', 'E6'],
-    ['cube_root_percent', 'cube root'],
-    ['log_relative', 'log-relative'],
-];
-const METRIC_LABELS: Record<Metric, string> = {
-    e6_percent: 'mean E6, %',
-    cube_root_percent: 'mean cube-root error, %',
-    log_relative: 'mean log-relative error',
-};
 const COLOURS = ['series-1', 'series-2', 'series-3', 'series-4', 'series-5'];
 
 /** Rows as objects by column. */
@@ -122,10 +115,19 @@ function showConvergence(table: FigureTable) {
 
 // ---- Fig. 3 ----
 
-function withMetrics(box: HTMLElement, name: string, draw: (metric: Metric) => void) {
+/** A choice of the table's metrics. */
+function withMetrics(
+    box: HTMLElement,
+    name: string,
+    table: FigureTable,
+    draw: (metric: Metric) => void,
+) {
     const bar = element('div', { class: 'controls' });
     box.append(bar);
-    choice(bar, `${name}-metric`, 'Error', METRICS, 'e6_percent', draw);
+    const options = table.metrics.map(({ key, title }) => [key, title] as const);
+    choice(bar, `${name}-metric`, 'Error', options, table.metrics[0].key, (key) =>
+        draw(table.metrics.find((metric) => metric.key === key) ?? table.metrics[0]),
+    );
 }
 
 function showGrid(table: FigureTable) {
@@ -136,7 +138,7 @@ function showGrid(table: FigureTable) {
     );
     const components = [...new Set(rowsOf(table).map((row) => String(row.components)))];
     const draw = (metric: Metric) => {
-        const { at, of } = aligned(gather(table, 'components', 'samples', metric));
+        const { at, of } = aligned(gather(table, 'components', 'samples', metric.key));
         const series = components.map(
             (name, k): Series => ({
                 label: `${name} components`,
@@ -147,21 +149,21 @@ function showGrid(table: FigureTable) {
         );
         chart.show({
             x: { label: 'samples' },
-            y: { label: METRIC_LABELS[metric] },
+            y: { label: `mean ${labelOf(metric)}` },
             at,
             series,
         });
     };
-    withMetrics(box, 'fig3a', draw);
+    withMetrics(box, 'fig3a', table, draw);
     const chart = new Chart(box, 'Error against samples', 400);
-    draw('e6_percent');
+    draw(table.metrics[0]);
 }
 
 /** Mean and quartiles of each method, in the table's order. */
 function summaries(table: FigureTable, metric: Metric) {
     const groups = new Map<string, number[]>();
     for (const row of rowsOf(table)) {
-        const value = number(row[metric]);
+        const value = number(row[metric.key]);
         const key = `${row.method}, ${row.samples}`;
         groups.set(key, [...(groups.get(key) ?? []), ...(value === null ? [] : [value])]);
     }
@@ -186,7 +188,7 @@ function showMethods(table: FigureTable) {
                 label: 'method, samples',
                 names: rows.map((r) => r.name),
             },
-            y: { label: METRIC_LABELS[metric] },
+            y: { label: `mean ${labelOf(metric)}` },
             at: rows.map((_, k) => k),
             series: [
                 {
@@ -211,9 +213,9 @@ function showMethods(table: FigureTable) {
             whiskers: { lower: 1, upper: 2, colour: 'series-1' },
         });
     };
-    withMetrics(box, 'fig3b', draw);
+    withMetrics(box, 'fig3b', table, draw);
     const chart = new Chart(box, 'Error of the methods');
-    draw('e6_percent');
+    draw(table.metrics[0]);
 }
 
 // ---- Fig. 5 ----
@@ -229,14 +231,14 @@ function showLeftOut(table: FigureTable) {
         for (const row of rowsOf(table)) {
             const key = String(row.reconstructed_from);
             const values = bySeries.get(key) ?? new Map<string, number | null>();
-            values.set(String(row.material), number(row[metric]));
+            values.set(String(row.material), number(row[metric.key]));
             bySeries.set(key, values);
         }
         const first = bySeries.values().next().value ?? new Map<string, number | null>();
         const names = [...first.keys()].sort((a, b) => (first.get(a) ?? 0) - (first.get(b) ?? 0));
         chart.show({
             x: { label: 'material', names },
-            y: { label: METRIC_LABELS[metric].replace('mean ', '') },
+            y: { label: labelOf(metric) },
             at: names.map((_, k) => k),
             series: [...bySeries].map(
                 ([label, values], k): Series => ({
@@ -249,9 +251,9 @@ function showLeftOut(table: FigureTable) {
             ),
         });
     };
-    withMetrics(box, 'fig5', draw);
+    withMetrics(box, 'fig5', table, draw);
     const chart = new Chart(box, 'Error of every material', 400);
-    draw('e6_percent');
+    draw(table.metrics[0]);
 }
 
 export function showFigures(figures: Figures) {
