@@ -144,7 +144,8 @@ GONIO_API gonio_status gonio_condition_number(gonio_context *context, const doub
                                               double *condition_number);
 
 /* A plan as CSV (docs/plan-and-readings.md): `#` lines, then columns theta_i_deg, phi_i_deg,
- * theta_o_deg, phi_o_deg, channel. Whole or not at all. command may be NULL. Errors: _IO, _MEMORY.
+ * theta_o_deg, phi_o_deg, channel. Whole or not at all. command may be NULL. Errors: _ARGUMENT (a
+ * channel that there is not), _IO, _MEMORY.
  */
 GONIO_API gonio_status gonio_plan_write(gonio_context *context, const gonio_plan *plan,
                                         const char *command, const char *path);

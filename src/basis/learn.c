@@ -155,7 +155,7 @@ static void find_origin(const learner *l, gonio_i_row_range rows, const workspac
 static gonio_status read_centred(const learner *l, size_t tile, gonio_i_row_range rows,
                                  const workspace *w, bool first_pass)
 {
-    const gonio_status status = gonio_i_database_read_tile(l->database, l->context, tile, l->subset,
+    const gonio_status status = gonio_i_database_read_tile(l->context, l->database, tile, l->subset,
                                                            l->materials, w->values);
     if (status != GONIO_OK) {
         return status;

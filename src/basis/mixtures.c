@@ -96,7 +96,7 @@ static gonio_status read_measured(gonio_context *context, const gonio_database *
         if (rows.count == 0) {
             continue;
         }
-        status = gonio_i_database_read_tile(database, context, t, options->subset,
+        status = gonio_i_database_read_tile(context, database, t, options->subset,
                                             m->basis->materials, block);
         for (size_t j = 0; j < columns && status == GONIO_OK; j++) {
             for (size_t i = 0; i < rows.count; i++) {

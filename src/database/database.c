@@ -683,7 +683,7 @@ static void drop_rows(const gonio_database *database, size_t tile, size_t column
     }
 }
 
-gonio_status gonio_i_database_read_tile(const gonio_database *database, gonio_context *context,
+gonio_status gonio_i_database_read_tile(gonio_context *context, const gonio_database *database,
                                         size_t tile, const size_t *subset, size_t subset_count,
                                         float *block)
 {
@@ -755,7 +755,7 @@ gonio_status gonio_database_read_rows(gonio_context *context, const gonio_databa
         const gonio_i_row_range rows = gonio_i_database_tile_rows(database, tile);
         if (rows.first < first + count && rows.first + rows.count > first) {
             status =
-                gonio_i_database_read_tile(database, context, tile, subset, subset_count, values);
+                gonio_i_database_read_tile(context, database, tile, subset, subset_count, values);
             if (status == GONIO_OK) {
                 copy_rows(rows, values, columns, first, count, block);
             }

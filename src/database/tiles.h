@@ -21,7 +21,7 @@ size_t gonio_i_database_tile_room(const gonio_database *database);
 
 /* Reads the rows of a tile into block[column][count] for the given materials, as
  * gonio_database_read_rows does; block has room for tile_room values a column. Errors: _IO. */
-gonio_status gonio_i_database_read_tile(const gonio_database *database, gonio_context *context,
+gonio_status gonio_i_database_read_tile(gonio_context *context, const gonio_database *database,
                                         size_t tile, const size_t *subset, size_t subset_count,
                                         float *block);
 

@@ -32,7 +32,8 @@ gonio_status gonio_i_readings_new(gonio_context *context, const char *path,
     made->path = strdup(path);
     if (made->path == NULL) {
         gonio_readings_free(&made);
-        return gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", path);
+        gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", path);
+        return GONIO_ERROR_MEMORY;
     }
     *readings = made;
     return GONIO_OK;

@@ -102,6 +102,13 @@ static gonio_status write_table(gonio_context *context, const gonio_plan *plan, 
 gonio_status gonio_plan_write(gonio_context *context, const gonio_plan *plan, const char *command,
                               const char *path)
 {
+    for (size_t k = 0; k < plan->count; k++) {
+        const int channel = plan->entries[k].channel;
+        if (channel < GONIO_ALL_CHANNELS || channel >= GONIO_CHANNELS) {
+            return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                                "%s: entry %zu of the plan reads channel %d", path, k + 1, channel);
+        }
+    }
     return write_table(context, plan, command, path, fill_plan);
 }
 

@@ -236,7 +236,7 @@ static void test_deviations_as_a_material(void **state)
             k == 1 ? GONIO_OK : GONIO_ERROR_ARGUMENT);
         for (int theta_d = 0; theta_d < 60 && k == 1; theta_d += 7) {
             const gonio_bin bin = {25, theta_d, 90};
-            const size_t at = (size_t)(theta_d * GONIO_PHI_D_BINS + bin.phi_d);
+            const size_t at = (size_t)theta_d * GONIO_PHI_D_BINS + (size_t)bin.phi_d;
             double value[GONIO_CHANNELS], deviation[GONIO_CHANNELS];
             assert_int_equal(gonio_material_read_slab(f->context, material, 25, slab), GONIO_OK);
             assert_true(gonio_reconstruction_predict(f->separate, made, gonio_bin_centre(bin),

@@ -121,6 +121,9 @@ static void test_files_that_cannot_be_written(void **state)
     assert_int_equal(gonio_plan_write(f->context, plan, NULL, nowhere), GONIO_ERROR_IO);
     assert_int_equal(gonio_plan_write_history(f->context, plan, NULL, nowhere), GONIO_ERROR_IO);
     assert_non_null(strstr(support_message(), nowhere));
+    plan->entries[1].channel = GONIO_CHANNELS;
+    assert_int_equal(gonio_plan_write(f->context, plan, NULL, f->path), GONIO_ERROR_ARGUMENT);
+    assert_non_null(strstr(support_message(), "entry 2 of the plan reads channel 3"));
     gonio_plan_free(&plan);
 }
 
