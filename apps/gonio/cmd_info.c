@@ -22,6 +22,8 @@ typedef struct material_facts {
     double albedo[TOOL_INCIDENCES][GONIO_CHANNELS];
     double largest_albedo;
     uint64_t fingerprint;
+    bool evaluated;     /* at any directions; the table is made of it */
+    double reciprocity; /* E6 of rho(o, i) against rho(i, o), per cent; of a table it is exact */
 } material_facts;
 
 static gonio_status fingerprint_of(const gonio_table *table, uint64_t *value)
@@ -74,6 +76,90 @@ static gonio_status find_facts(const gonio_table *table, material_facts *facts)
     return fingerprint_of(table, &facts->fingerprint);
 }
 
+/* Adds what a pair and its reverse differ by, in log space. */
+static void add_reverse(const double *forth, const double *back, size_t channels, double sums[2])
+{
+    for (size_t c = 0; c < channels; c++) {
+        if (!isnan(forth[c]) && !isnan(back[c])) {
+            const int scale = channels == GONIO_CHANNELS ? (int)c : GONIO_CHANNELS;
+            const double g = gonio_log_from_brdf(forth[c], scale);
+            const double difference = g - gonio_log_from_brdf(back[c], scale);
+            sums[0] += difference * difference;
+            sums[1] += g * g;
+        }
+    }
+}
+
+/* Of a material that is evaluated, at some thousands of the grid's directions. */
+static gonio_status find_reciprocity(gonio_context *context, const gonio_material *material,
+                                     material_facts *facts)
+{
+    enum { STRIDE = 373, PAIRS = GONIO_BINS / STRIDE + 1 };
+    const size_t channels = gonio_material_describe(material)->channels;
+    gonio_pair *pair = calloc((size_t)2 * PAIRS, sizeof *pair);
+    double *value = calloc(2 * PAIRS * channels, sizeof *value);
+    double sums[2] = {0.0};
+    gonio_status status = pair != NULL && value != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
+    for (int k = 0; k < PAIRS && status == GONIO_OK; k++) {
+        const gonio_bin bin = gonio_bin_from_index(k * STRIDE);
+        pair[2 * k] = gonio_pair_from_half_difference(gonio_bin_centre(bin));
+        pair[2 * k + 1] = (gonio_pair){pair[2 * k].outgoing, pair[2 * k].incident};
+    }
+    if (status == GONIO_OK) {
+        status = gonio_material_evaluate(context, material, pair, (size_t)2 * PAIRS, value);
+    }
+    for (size_t k = 0; k < PAIRS && status == GONIO_OK; k++) {
+        add_reverse(value + 2 * k * channels, value + (2 * k + 1) * channels, channels, sums);
+    }
+    facts->reciprocity = sums[1] > 0.0 ? 100.0 * sqrt(sums[0] / sums[1]) : 0.0;
+    free(pair);
+    free(value);
+    return status;
+}
+
+static json_t *wavelengths_json(const gonio_material_view *view)
+{
+    json_t *list = view->wavelength != NULL ? json_array() : json_null();
+    for (size_t k = 0; view->wavelength != NULL && k < view->channels; k++) {
+        json_array_append_new(list, tool_json_number(view->wavelength[k]));
+    }
+    return list;
+}
+
+/* What the material is beyond its table. */
+static void add_view(json_t *object, const gonio_material_view *view, const material_facts *facts)
+{
+    json_object_set_new(object, "channels", json_integer((json_int_t)view->channels));
+    json_object_set_new(object, "wavelengths_nm", wavelengths_json(view));
+    json_object_set_new(object, "anisotropic", json_boolean(view->anisotropic));
+    json_object_set_new(object, "theta_limit_deg",
+                        view->theta_limit > 0.0 ? json_real(view->theta_limit * 180.0 / M_PI)
+                                                : json_null());
+    json_object_set_new(object, "reciprocity_e6_percent", tool_json_number(facts->reciprocity));
+}
+
+static void print_view(const gonio_material_view *view)
+{
+    if (view->wavelength != NULL) {
+        double least = INFINITY;
+        double most = 0.0;
+        for (size_t k = 0; k < view->channels; k++) {
+            least = fmin(least, view->wavelength[k]);
+            most = fmax(most, view->wavelength[k]);
+        }
+        printf("  channels     %zu wavelength%s, %g to %g nm; below, their colours\n",
+               view->channels, tool_plural(view->channels), least, most);
+    } else if (view->channels == 1) {
+        printf("  channels     one, without a wavelength\n");
+    }
+    if (view->theta_limit > 0.0) {
+        printf("  measured to  %.4g degrees from the normal\n", view->theta_limit * 180.0 / M_PI);
+    }
+    if (view->anisotropic) {
+        printf("  anisotropic  below, the mean over 8 azimuths\n");
+    }
+}
+
 static json_t *material_json(const char *path, const gonio_material *material,
                              const material_facts *facts)
 {
@@ -87,13 +173,15 @@ static json_t *material_json(const char *path, const gonio_material *material,
                                         "albedo_rgb", tool_json_number(rgb[0]),
                                         tool_json_number(rgb[1]), tool_json_number(rgb[2])));
     }
-    return json_pack("{s:s, s:s, s:s, s:s, s:I, s:f, s:o, s:o, s:o, s:b, s:s}", "file", path,
-                     "kind", "material", "name", gonio_material_name(material), "format",
-                     gonio_material_format(material), "valid_bins", (json_int_t)facts->bins,
-                     "valid_share", (double)facts->bins / VALID_BINS, "peak_per_sr",
-                     tool_json_number(facts->peak), "mirror_asymmetry_percent",
-                     tool_json_number(facts->asymmetry), "albedo", albedo, "conserves_energy",
-                     facts->largest_albedo <= 1.0, "fingerprint", fingerprint);
+    json_t *object = json_pack(
+        "{s:s, s:s, s:s, s:s, s:I, s:f, s:o, s:o, s:o, s:b, s:s}", "file", path, "kind", "material",
+        "name", gonio_material_name(material), "format", gonio_material_format(material),
+        "valid_bins", (json_int_t)facts->bins, "valid_share", (double)facts->bins / VALID_BINS,
+        "peak_per_sr", tool_json_number(facts->peak), "mirror_asymmetry_percent",
+        tool_json_number(facts->asymmetry), "albedo", albedo, "conserves_energy",
+        facts->largest_albedo <= 1.0, "fingerprint", fingerprint);
+    add_view(object, gonio_material_describe(material), facts);
+    return object;
 }
 
 static void print_material(const char *path, const gonio_material *material,
@@ -101,6 +189,7 @@ static void print_material(const char *path, const gonio_material *material,
 {
     printf("%s: %s\n", path, gonio_material_format(material));
     printf("  name         %s\n", gonio_material_name(material));
+    print_view(gonio_material_describe(material));
     printf("  valid bins   %" PRId64 " of %d (%.1f %%)\n", facts->bins, (int)VALID_BINS,
            100.0 * (double)facts->bins / VALID_BINS);
     printf("  peak         %.4g 1/sr\n", facts->peak);
@@ -112,7 +201,12 @@ static void print_material(const char *path, const gonio_material *material,
     printf("  energy       %s\n", facts->largest_albedo <= 1.0
                                       ? "conserved at these incidences"
                                       : "NOT conserved: reflects more than it receives");
-    printf("  reciprocity  exact: phi_d and phi_d + 180 degrees are one bin\n");
+    if (facts->evaluated) {
+        printf("  reciprocity  rho(i, o) and rho(o, i) differ by %.2f %% (E6)\n",
+               facts->reciprocity);
+    } else {
+        printf("  reciprocity  exact: phi_d and phi_d + 180 degrees are one bin\n");
+    }
     printf("  mirror       rho(phi_d) and rho(180 - phi_d) differ by %.2f %% (RMS)\n",
            facts->asymmetry);
     printf("  fingerprint  %016" PRIx64 "\n", facts->fingerprint);
@@ -129,6 +223,10 @@ static int info_material(const tool *t, const char *path, json_t *results)
     }
     if (status == GONIO_OK) {
         status = find_facts(table, &facts);
+    }
+    facts.evaluated = status == GONIO_OK && gonio_material_describe(material)->evaluated;
+    if (facts.evaluated) {
+        status = find_reciprocity(t->context, material, &facts);
     }
     if (status == GONIO_OK && results != NULL) {
         json_array_append_new(results, material_json(path, material, &facts));

@@ -10,6 +10,7 @@
 #ifndef GONIO_MATERIAL_H
 #define GONIO_MATERIAL_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include <gonio/context.h>
@@ -54,6 +55,7 @@ typedef struct gonio_material_view {
     const double *wavelength; /* [channels], nm; NULL: R, G, B, or grey */
     bool anisotropic;
     double theta_limit; /* radians; 0 for none */
+    bool evaluated;     /* by its source at any directions, not by way of a table */
 } gonio_material_view;
 
 /* Opens a material: a MERL .binary table (phi_d of 180 bins, or 360 folded by reciprocity), a

@@ -78,7 +78,8 @@ static gonio_material_view view_of(const gonio_material *material)
                                  .channels = grid ? GONIO_CHANNELS : source->channels,
                                  .wavelength = grid ? NULL : source->wavelength,
                                  .anisotropic = source->anisotropic,
-                                 .theta_limit = source->theta_limit};
+                                 .theta_limit = source->theta_limit,
+                                 .evaluated = !grid};
 }
 
 gonio_status gonio_material_create(gonio_context *context, const char *name, const char *format,

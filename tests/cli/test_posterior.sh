@@ -125,6 +125,9 @@ expect_output 'from 6 readings in 3 channels' \
 expect_output '34 readings compared' compare paint.brdf spectral-at.csv --leave-out spectral.csv
 expect_ok reconstruct b.gonio spectral-readings.csv --deviation deviation.binary -o paint.bsdf
 expect_output 'RGL isotropic BSDF, spectral' info paint.bsdf
+expect_output 'channels     3 wavelengths, 450 to 650 nm' info paint.bsdf
+expect_output 'measured to  80 degrees' info paint.bsdf
+expect_output '"anisotropic": false' info --json paint.bsdf
 expect_output 'valid bins   1096216 of 1096216' info deviation.binary
 expect_ok convert paint.bsdf --illuminant A paint.xml
 expect_output 'BSDF-XML Reflection Front, LBNL/Klems Full, 145 x 145 patches, CIE X, Y, Z' info paint.xml
