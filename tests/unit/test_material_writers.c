@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/hdf.h"
+
 #include "../support.h"
 #include "made_material.h"
 
@@ -137,6 +139,39 @@ static void test_table_of_colours(void **state)
         gonio_material_free(&again);
         gonio_material_free(&material);
     }
+    support_remove(folder);
+}
+
+/* A table of many channels of which nothing is stored is refused before room is made for it. */
+static void test_a_table_that_lies(void **state)
+{
+    (void)state;
+    char *folder = support_folder();
+    char path[4096];
+    snprintf(path, sizeof path, "%s/x.h5", folder);
+    const hsize_t extents[4] = {4000, 90, 90, 180};
+    const hsize_t chunk[4] = {1, 1, 90, 180};
+    gonio_i_hdf_session session;
+    gonio_i_hdf_enter(&session);
+    const hid_t file = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+    assert_true(gonio_i_hdf_write_string(file, "format", "gonio BRDF table"));
+    assert_true(gonio_i_hdf_write_number(file, "version", 1));
+    const hid_t space = H5Screate_simple(4, extents, NULL);
+    const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_chunk(properties, 4, chunk);
+    const hid_t rho =
+        H5Dcreate2(file, "rho", H5T_IEEE_F32LE, space, H5P_DEFAULT, properties, H5P_DEFAULT);
+    assert_true(rho >= 0);
+    H5Dclose(rho);
+    H5Pclose(properties);
+    H5Sclose(space);
+    H5Fclose(file);
+    gonio_i_hdf_leave(&session);
+    gonio_context *context = support_context();
+    gonio_material *material = NULL;
+    assert_int_equal(gonio_material_open(context, path, &material), GONIO_ERROR_FORMAT);
+    assert_non_null(strstr(support_message(), "not in the file"));
+    gonio_context_free(&context);
     support_remove(folder);
 }
 
@@ -388,6 +423,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_table),
         cmocka_unit_test(test_table_of_colours),
+        cmocka_unit_test(test_a_table_that_lies),
         cmocka_unit_test(test_rgl_spectra),
         cmocka_unit_test(test_a_table_that_ends),
         cmocka_unit_test(test_an_anisotropic_material),

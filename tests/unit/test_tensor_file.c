@@ -14,6 +14,7 @@
 #include "material/warp.h"
 
 #include "../support.h"
+#include "mutations.h"
 
 /* A file under construction, little-endian. */
 typedef struct bytes {
@@ -415,6 +416,7 @@ static void test_a_file_is_copied(void **state)
     }
     gonio_material_free(&first);
     gonio_material_free(&second);
+    check_mutations(path, folder);
     support_remove(folder);
 }
 

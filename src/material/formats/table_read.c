@@ -73,6 +73,20 @@ static bool find_shape(hid_t rho, table *t)
            extents[3] == GONIO_PHI_D_BINS;
 }
 
+/* Whether rho is in this file, not in others that it names, and may be as large as it says:
+ * deflation makes numbers a thousand times smaller at most. */
+static bool is_stored(hid_t rho, const table *t)
+{
+    enum { MOST_DEFLATION = 2000 };
+    const double bytes = (double)t->channels * GONIO_BINS * sizeof(float);
+    const hid_t properties = H5Dget_create_plist(rho);
+    const bool own = H5Pget_external_count(properties) == 0 &&
+                     H5Pget_layout(properties) != H5D_VIRTUAL &&
+                     bytes <= (double)H5Dget_storage_size(rho) * MOST_DEFLATION;
+    H5Pclose(properties);
+    return own;
+}
+
 static bool read_slab(hid_t rho, size_t channel, size_t theta_h, float *slab)
 {
     const hsize_t start[GONIO_I_TABLE_RANK] = {channel, theta_h, 0, 0};
@@ -144,6 +158,9 @@ static gonio_status read_table(gonio_context *context, const char *path, hid_t f
             ? GONIO_OK
             : damaged(context, path,
                       "rho is not channels x 90 x 90 x 180 (theta_h, theta_d, phi_d)");
+    if (status == GONIO_OK && !is_stored(rho, t)) {
+        status = damaged(context, path, "rho is not in the file, or not all of it");
+    }
     if (status == GONIO_OK) {
         status = read_wavelengths(context, path, file, t);
     }
