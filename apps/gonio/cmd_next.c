@@ -126,7 +126,7 @@ int cmd_next(int argc, const char **argv)
         .table = table,
         .usage = "[OPTION...] [BASIS] READINGS -o PLAN",
         .text =
-            "Without BASIS, the basis of the built-in materials serves. The proposed directions "
+            "Without BASIS, the basis of the built-in materials is used. The proposed directions "
             "are those that leave the least expected error, given the readings so far.\n"
             "Example: gonio next merl.gonio readings.csv -n 5 --target-error 3% "
             "-o more.csv",

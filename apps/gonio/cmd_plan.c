@@ -139,7 +139,7 @@ int cmd_plan(int argc, const char **argv)
     const tool_command_line line = {
         .table = table,
         .usage = "[OPTION...] [BASIS] -o PLAN",
-        .text = "Without BASIS, the basis of the built-in materials serves.\n"
+        .text = "Without BASIS, the basis of the built-in materials is used.\n"
                 "Example: gonio plan merl.gonio -n 20 -o plan.csv",
         .work = run,
         .options = &o};

@@ -476,7 +476,7 @@ int cmd_reconstruct(int argc, const char **argv)
         .usage = "[OPTION...] [BASIS] READINGS... -o OUT",
         .text = "READINGS is CSV with the columns theta_i_deg, phi_i_deg, theta_o_deg, phi_o_deg, "
                 "R_per_sr, G_per_sr, B_per_sr in any order, and channel if only one was planned.\n"
-                "Without BASIS, the basis of the built-in materials serves. With BASIS, several "
+                "Without BASIS, the basis of the built-in materials is used. With BASIS, several "
                 "READINGS "
                 "may follow, and "
                 "OUT is a folder.\n"

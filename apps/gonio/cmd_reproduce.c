@@ -75,7 +75,7 @@ static int run(const tool *t, const options *o, const process_group *group)
 }
 
 /* All ranks do the same; rank 0 alone says what is not an error. */
-static int run_in_team(tool *t, void *given)
+static int run_in_group(tool *t, void *given)
 {
     const options *o = given;
     process_group group;
@@ -105,12 +105,12 @@ int cmd_reproduce(int argc, const char **argv)
     const tool_command_line line = {
         .table = table,
         .usage = "[OPTION...] [DIR|FILE...] -o OUT",
-        .text = "Runs the experiments of Ali et al. and sets them beside the paper's: "
-                "OUT/report.md, figures, tables.\nDIR stands for the *.binary and *.h5 "
-                "files in it; without one the built-in materials serve.\nA run that was "
-                "stopped goes on when the command is given again; with mpirun several "
+        .text = "Runs the experiments of Ali et al. and compares the results with the paper's: "
+                "OUT/report.md, figures, tables.\nDIR stands for its *.binary and *.h5 "
+                "files. Without DIR the built-in materials are used.\nA run that was "
+                "stopped resumes when the command is given again. With mpirun several "
                 "machines share\nthe work. Example: gonio reproduce merl -o paper",
-        .work = run_in_team,
+        .work = run_in_group,
         .options = &o};
     return tool_run(argc, argv, &line);
 }

@@ -1,8 +1,8 @@
 /* The dark level: see dark_level.h.
  *
- * Levels are tried, and each is as likely as the readings of its column are when they are left out
- * one at a time: those above zero by their density, per 1/sr, and zeros by the probability of
- * reading nothing. Of usual and of unusual materials, the likelier one; plain Gaussians do. */
+ * Candidate levels are compared by leave-one-out likelihood: the density of readings above zero,
+ * per 1/sr, and the probability of zeros. The likelihood is the largest over models of usual and of
+ * unusual materials; plain Gaussians suffice. */
 #include "dark_level.h"
 
 #include <math.h>

@@ -25,7 +25,7 @@ typedef struct gonio_i_fit {
     double *y;        /* [n]: g - m */
     double *variance; /* [n]: D */
     int *bound;       /* [n] */
-    bool *left_out;   /* [n]: a bound that is kept anyway, which says nothing */
+    bool *left_out;   /* [n]: a bound that the prediction satisfies anyway: without information */
     gonio_i_model model;
     double *lower;   /* [n][n]: L of S */
     double *white;   /* [samples][n]: L^-1 (y - a F z_j); not made where h is 1 */
@@ -54,21 +54,22 @@ void gonio_i_fit_end(gonio_i_fit *fit);
 /* The rest, for a model. Errors: _NUMERICAL, _MEMORY. */
 gonio_status gonio_i_fit_solve(gonio_i_fit *fit, const gonio_i_model *model);
 
-/* The variance that a reading counts with: so large that it has no say if it is left out. */
+/* The variance of a reading in the fit: so large that it has no weight if it is left out. */
 double gonio_i_fit_noise(const gonio_i_fit *fit, size_t reading);
 
-/* What the other readings say of each one: the difference to it, and its variance (noise
- * included), difference[n], variance[n]. Exactly, samples weighted by the other readings only. */
+/* Leave-one-out prediction: the difference of each reading to its prediction from the others,
+ * difference[n], and the variance of that, noise included, variance[n]. Exact: samples are weighted
+ * by the other readings only. */
 gonio_status gonio_i_fit_leave_one_out(const gonio_i_fit *fit, double *difference,
                                        double *variance);
 
-/* Takes out bounds that hold anyway and, if there is judge_outliers, gives readings that the others
- * contradict a variance to match, until nothing changes. outlying: how many of the latter. */
+/* Leaves out bounds that the prediction satisfies anyway. If judge_outliers is set, readings that
+ * the others contradict get a variance to match, until nothing changes. outlying: their number. */
 gonio_status gonio_i_fit_settle(gonio_i_fit *fit, bool judge_outliers, size_t *outlying);
 
-/* Sum over the readings of (reading - what the others say)^2 / its variance; and sets misfit to its
- * mean, held towards 1 by `PRIOR_READINGS` readings that are as expected: a material that surprises
- * where it was read will elsewhere. */
+/* Sum over the readings of the squared leave-one-out error over its variance. Sets misfit to its
+ * mean, shrunk towards 1 by `PRIOR_READINGS` readings as expected: a material that is predicted
+ * badly where it was read is predicted badly elsewhere. */
 gonio_status gonio_i_fit_surprise(gonio_i_fit *fit, double *sum);
 
 /* ln of the density of a column's values under the prior with a remainder of a given alpha and

@@ -1,14 +1,13 @@
-/* The error to expect, learned from the database.
+/* The expected error, learned from the database.
  *
- * How far off a reconstruction is shows in its readings, to a degree: in how much they contradict
- * each other and the prior, how bright they are and how much they differ. How that shows, the
- * database tells. A tenth of its materials at a time is left out, with every mixture made of one;
- * their columns are read at the same directions with noise of the same variance (but of readings
- * that have no say) and reconstructed from the other columns by their Gaussian (posterior.h with h
- * = 1 and alpha = 0). Ridge regression (Hoerl and Kennard 1970) of the logarithm of the error's
- * mean square on four features of the readings says what to expect of the new material; from
- * logarithms of errors back by Duan's smearing (1983), so that it is the error expected on average.
- */
+ * The readings of a material partly predict the error of its reconstruction: by how much they
+ * contradict each other and the prior, how bright they are, and how much they differ. The relation
+ * is learned from the database. A tenth of its materials is left out at a time, with every mixture
+ * made of them. Their columns are read at the same directions, with noise of the same variance
+ * (except at readings without weight), and reconstructed from the other columns by a Gaussian
+ * (posterior.h with h = 1 and alpha = 0). The logarithm of the mean squared error is fitted to four
+ * features of the readings by ridge regression (Hoerl and Kennard 1970). Duan's smearing (1983)
+ * transforms logarithms of errors back, so that the result is the mean error. */
 #ifndef GONIO_LEARNED_ERROR_H
 #define GONIO_LEARNED_ERROR_H
 
@@ -16,8 +15,8 @@
 
 typedef struct gonio_i_learned_error gonio_i_learned_error;
 
-/* *learned is NULL if the database cannot tell: a basis without loadings, of few materials, or of
- * mixtures that nobody knows the parents of. The prior must outlive it. Errors: _MEMORY. */
+/* *learned is NULL if the basis does not allow it: without loadings, of too few materials, or with
+ * mixtures whose parents are unknown. The prior must outlive it. Errors: _MEMORY. */
 gonio_status gonio_i_learned_error_create(gonio_context *context, const gonio_i_prior *prior,
                                           gonio_i_learned_error **learned);
 void gonio_i_learned_error_free(gonio_i_learned_error **learned);

@@ -37,8 +37,7 @@ void gonio_i_subset_read(gonio_i_subset *subset, const gonio_i_column *columns);
  * remainder. */
 static const gonio_i_model GONIO_I_SETTLING = {GONIO_I_KERNEL_WIDTH, 0.12, 0.0};
 
-/* What a model is the less likely for beforehand, for each factor of e in alpha, in the unit of
- * scores. */
+/* The prior's penalty for each factor of e in alpha, in the unit of scores. */
 static const double GONIO_I_FOR_REMAINDERS = 16.0 / 3.0;
 
 /* Solves for the model, and predicts each reading from the others: the difference to it [n], then
@@ -46,8 +45,8 @@ static const double GONIO_I_FOR_REMAINDERS = 16.0 / 3.0;
 gonio_status gonio_i_leave_one_out_differences(gonio_i_fit *fit, const gonio_i_model *model,
                                                double **difference);
 
-/* ln of Student's density of a difference, but for a constant: readings are wrong more often than
- * Gaussians say. */
+/* ln of Student's density of a difference, up to a constant. Readings are wrong more often than a
+ * Gaussian allows. */
 double gonio_i_leave_one_out_density(double difference, double variance);
 
 /* Solves for the model; score[n]: ln of the density of each reading given the others, 0 for those

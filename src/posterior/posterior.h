@@ -1,4 +1,4 @@
-/* The posterior: what readings of a material say of all of it, given a prior (prior/prior.h).
+/* The posterior of a material's BRDF, given its readings and a prior (prior/prior.h).
  *
  * With y = g - m at the readings, F their rows f, k the smoothness between them and D the variances
  * of noise, the covariance of y is
@@ -12,11 +12,11 @@
  *     q_j ~ share_j exp(-|L^-1 (y - a F z_j)|^2 / 2),   S = L L',   z = a sum q_j z_j,
  *     c = z + h^2 F' S^-1 (y - F z),   g(x) = m(x) + f(x) c + alpha^2 k(x, .) S^-1 (y - F z).
  *
- * The field is the mean over models of different h, alpha and peak of k, weighed by leaving
- * readings out one at a time, all columns together (models.h), once directions that were read
- * wrongly are set aside (wrong_directions.h); deviations are the likeliest model's, and the error
- * to expect is in equal shares what its variance and what the database says (learned_error.h). A
- * reading that the others contradict by more than `OUTLYING` deviations counts with a variance to
+ * Wrong directions are set aside first (wrong_directions.h). The field is the mean over models of
+ * different h, alpha and peak of k, weighed by leave-one-out prediction, all columns together
+ * (models.h). Standard deviations are those of the most likely model. The expected error is the
+ * geometric mean of that of its variance and that learned from the database (learned_error.h). A
+ * reading that the others contradict by more than `OUTLYING` standard deviations gets a variance to
  * match. */
 #ifndef GONIO_POSTERIOR_H
 #define GONIO_POSTERIOR_H
@@ -59,7 +59,7 @@ typedef struct gonio_i_posterior {
     double smoothness;            /* alpha of the likeliest model */
     double predicted;             /* of E6, per cent; */
     double predicted_by_variance; /* and by the variance of the likeliest model alone */
-    double surprise;    /* root mean square of (reading - what the others say) / its deviation */
+    double surprise;    /* root mean square of leave-one-out errors, in standard deviations */
     double *covariance; /* [K][K], of z, the mean over the columns; or NULL */
     double norm;        /* root of the mean over the columns of the sum of g^2 over the grid */
     size_t outlying;    /* readings that the others contradict, all columns */
