@@ -51,7 +51,11 @@ typedef struct gonio_basis_options {
     uint64_t seed;     /* of the mixtures */
 } gonio_basis_options;
 
-GONIO_API void gonio_basis_options_default(gonio_basis_options *options);
+GONIO_API void gonio_basis_options_default_of(gonio_basis_options *options, size_t size);
+static inline void gonio_basis_options_default(gonio_basis_options *options)
+{
+    gonio_basis_options_default_of(options, sizeof *options);
+}
 
 /* Learns a basis by the Gram matrix of the columns, accumulated over tiles of rows in double
  * precision. max |V'V - I| is at most 1e-11: where it would be more, V is orthonormalised again
@@ -78,14 +82,27 @@ typedef struct gonio_recipe {
 } gonio_recipe;
 
 /* The default recipe: sectored, separate, 1000 mixtures, 300 components. */
-GONIO_API void gonio_recipe_default(gonio_recipe *recipe);
+GONIO_API void gonio_recipe_default_of(gonio_recipe *recipe, size_t size);
+static inline void gonio_recipe_default(gonio_recipe *recipe)
+{
+    gonio_recipe_default_of(recipe, sizeof *recipe);
+}
 
 /* The paper's: bivariate, joint, no mixtures, 45 components. */
-GONIO_API void gonio_recipe_paper(gonio_recipe *recipe);
+GONIO_API void gonio_recipe_paper_of(gonio_recipe *recipe, size_t size);
+static inline void gonio_recipe_paper(gonio_recipe *recipe)
+{
+    gonio_recipe_paper_of(recipe, sizeof *recipe);
+}
 
 /* What is usual on a grid: separate channels if it is sectored, joint ones otherwise. The two above
  * are those of the sectored and the bivariate grid. */
-GONIO_API void gonio_recipe_for_grid(gonio_recipe *recipe, gonio_representation representation);
+GONIO_API void gonio_recipe_for_grid_of(gonio_recipe *recipe, size_t size,
+                                        gonio_representation representation);
+static inline void gonio_recipe_for_grid(gonio_recipe *recipe, gonio_representation representation)
+{
+    gonio_recipe_for_grid_of(recipe, sizeof *recipe, representation);
+}
 
 /* Learns a basis from the materials at paths[count] (as gonio_material_open takes them), in their
  * order. recipe may be NULL for the default one. *basis is the caller's. The result does not depend

@@ -38,7 +38,11 @@ typedef struct gonio_context_options {
 } gonio_context_options;
 
 /* Silence, no progress, one thread per processor. */
-GONIO_API void gonio_context_options_default(gonio_context_options *options);
+GONIO_API void gonio_context_options_default_of(gonio_context_options *options, size_t size);
+static inline void gonio_context_options_default(gonio_context_options *options)
+{
+    gonio_context_options_default_of(options, sizeof *options);
+}
 
 /* Makes a context; options may be NULL for the defaults. *context is the caller's. Errors, which
  * have no message: GONIO_ERROR_MEMORY; GONIO_ERROR_ARGUMENT for threads < 0 and for options that

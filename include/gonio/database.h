@@ -118,7 +118,11 @@ typedef struct gonio_database_options {
 } gonio_database_options;
 
 /* Sectored, separate, log. */
-GONIO_API void gonio_database_options_default(gonio_database_options *options);
+GONIO_API void gonio_database_options_default_of(gonio_database_options *options, size_t size);
+static inline void gonio_database_options_default(gonio_database_options *options)
+{
+    gonio_database_options_default_of(options, sizeof *options);
+}
 
 /* Reads the materials at the given paths (as gonio_material_open takes them), several at a time.
  * The order of the columns is that of the paths, whatever the number of threads.

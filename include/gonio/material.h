@@ -157,7 +157,11 @@ typedef struct gonio_write_options {
 } gonio_write_options;
 
 /* All 0 but for the size. */
-GONIO_API void gonio_write_options_default(gonio_write_options *options);
+GONIO_API void gonio_write_options_default_of(gonio_write_options *options, size_t size);
+static inline void gonio_write_options_default(gonio_write_options *options)
+{
+    gonio_write_options_default_of(options, sizeof *options);
+}
 
 /* Writes a material in a format; options may be NULL. docs/formats.md says what each keeps. The
  * file appears whole or not at all. Errors: _ARGUMENT (no such format; what the format cannot

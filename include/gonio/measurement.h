@@ -27,7 +27,11 @@ typedef struct gonio_readings_options {
 } gonio_readings_options;
 
 /* Values needed, repeats and negative readings refused. */
-GONIO_API void gonio_readings_options_default(gonio_readings_options *options);
+GONIO_API void gonio_readings_options_default_of(gonio_readings_options *options, size_t size);
+static inline void gonio_readings_options_default(gonio_readings_options *options)
+{
+    gonio_readings_options_default_of(options, sizeof *options);
+}
 
 /* ---- from arrays ---- */
 
@@ -169,7 +173,11 @@ typedef struct gonio_instrument_options {
 } gonio_instrument_options;
 
 /* No noise. */
-GONIO_API void gonio_instrument_options_default(gonio_instrument_options *options);
+GONIO_API void gonio_instrument_options_default_of(gonio_instrument_options *options, size_t size);
+static inline void gonio_instrument_options_default(gonio_instrument_options *options)
+{
+    gonio_instrument_options_default_of(options, sizeof *options);
+}
 
 /* The simulated instrument: reads a known material at the directions of `readings` (a plan). R, G,
  * B become rho (1 + noise z) + floor z', clamped at 0, where z and z' are standard normal and

@@ -73,7 +73,11 @@ typedef struct gonio_plan_options {
                                    * and at most `count`; 0: exactly `count` */
 } gonio_plan_options;
 
-GONIO_API void gonio_plan_options_default(gonio_plan_options *options);
+GONIO_API void gonio_plan_options_default_of(gonio_plan_options *options, size_t size);
+static inline void gonio_plan_options_default(gonio_plan_options *options)
+{
+    gonio_plan_options_default_of(options, sizeof *options);
+}
 
 /* Names and one-line descriptions of the methods; NULL past the last. */
 GONIO_API const char *gonio_plan_method_name(int index);

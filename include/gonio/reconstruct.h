@@ -38,7 +38,12 @@ typedef struct gonio_reconstruct_options {
                         * dark level (gonio_reconstruction.dark) */
 } gonio_reconstruct_options;
 
-GONIO_API void gonio_reconstruct_options_default(gonio_reconstruct_options *options);
+GONIO_API void gonio_reconstruct_options_default_of(gonio_reconstruct_options *options,
+                                                    size_t size);
+static inline void gonio_reconstruct_options_default(gonio_reconstruct_options *options)
+{
+    gonio_reconstruct_options_default_of(options, sizeof *options);
+}
 
 /* Names and one-line descriptions of the methods; NULL past the last. */
 GONIO_API const char *gonio_reconstruct_method_name(int index);

@@ -153,7 +153,11 @@ typedef struct gonio_render_options {
 
 /* 512 x 512, 64 samples from seed 0, a sphere, no environment, a directional lamp up to the left in
  * front, seen from the front at 30 degrees. */
-GONIO_API void gonio_render_options_default(gonio_render_options *options);
+GONIO_API void gonio_render_options_default_of(gonio_render_options *options, size_t size);
+static inline void gonio_render_options_default(gonio_render_options *options)
+{
+    gonio_render_options_default_of(options, sizeof *options);
+}
 
 /* Renders. The BRDF is trilinear between bin centres, as gonio_table_value, and where no bin around
  * has data that of the nearest that has, along theta_d, then theta_h, then phi_d. The environment

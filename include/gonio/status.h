@@ -7,9 +7,10 @@
  *   - Objects made by gonio_X_create, _open, _read, _learn ... are owned by the caller and released
  *     by gonio_X_free(&x), which accepts NULL and nulls the pointer.
  *   - A struct of options begins with its size. Call its gonio_X_options_default, then change
- *     fields. NULL in place of options means the defaults. A struct of input without such a call is
- *     zeros but for the fields that are set, .size = sizeof(gonio_X) among them. A size that was
- *     not set is GONIO_ERROR_ARGUMENT.
+ *     fields. (That is an inline function, so that the library learns how large the struct was when
+ *     the program was compiled; other languages call _default_of.) NULL in place of options means
+ *     the defaults. A struct of input without such a call is zeros but for the fields that are set,
+ *     .size = sizeof(gonio_X) among them. A size that was not set is GONIO_ERROR_ARGUMENT.
  *   - Threads: functions that take an object as const do not write to it, so several threads may
  *     call them with the same object at a time. A function that changes an object needs it alone.
  *     A context may always be shared (context.h). Functions without objects are pure.

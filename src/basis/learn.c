@@ -42,9 +42,10 @@ typedef struct learner {
     size_t *finished; /* turns, over all passes */
 } learner;
 
-void gonio_basis_options_default(gonio_basis_options *options)
+void gonio_basis_options_default_of(gonio_basis_options *options, size_t size)
 {
-    *options = (gonio_basis_options){.size = sizeof *options, .mixtures = GONIO_USUAL_MIXTURES};
+    const gonio_basis_options usual = {.mixtures = GONIO_USUAL_MIXTURES};
+    gonio_i_give(&usual, sizeof usual, options, size);
 }
 
 /* What a thread works on. */

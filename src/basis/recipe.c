@@ -3,25 +3,26 @@
 
 #include "../core/options.h"
 
-void gonio_recipe_default(gonio_recipe *recipe)
+void gonio_recipe_default_of(gonio_recipe *recipe, size_t size)
 {
-    gonio_recipe_for_grid(recipe, GONIO_SECTORED);
+    gonio_recipe_for_grid_of(recipe, size, GONIO_SECTORED);
 }
 
-void gonio_recipe_paper(gonio_recipe *recipe)
+void gonio_recipe_paper_of(gonio_recipe *recipe, size_t size)
 {
-    gonio_recipe_for_grid(recipe, GONIO_BIVARIATE);
+    gonio_recipe_for_grid_of(recipe, size, GONIO_BIVARIATE);
 }
 
-void gonio_recipe_for_grid(gonio_recipe *recipe, gonio_representation representation)
+void gonio_recipe_for_grid_of(gonio_recipe *recipe, size_t size,
+                              gonio_representation representation)
 {
-    *recipe = (gonio_recipe){
-        .size = sizeof *recipe,
+    const gonio_recipe usual = {
         .representation = representation,
         .channels = representation == GONIO_SECTORED ? GONIO_SEPARATE : GONIO_JOINT,
         .mapping = GONIO_LOG,
         .mixtures = GONIO_USUAL_MIXTURES,
     };
+    gonio_i_give(&usual, sizeof usual, recipe, size);
 }
 
 gonio_status gonio_learn(gonio_context *context, const char *const *paths, size_t count,

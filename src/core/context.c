@@ -61,9 +61,10 @@ const char *gonio_status_text(gonio_status status)
     return texts[status];
 }
 
-void gonio_context_options_default(gonio_context_options *options)
+void gonio_context_options_default_of(gonio_context_options *options, size_t size)
 {
-    *options = (gonio_context_options){.size = sizeof *options};
+    const gonio_context_options usual = {0};
+    gonio_i_give(&usual, sizeof usual, options, size);
 }
 
 gonio_status gonio_context_create(gonio_context **context, const gonio_context_options *options)

@@ -27,8 +27,17 @@ static inline bool gonio_i_copy_known(const void *given, void *taken, size_t siz
     return set;
 }
 
-/* The same with a message. `type` is the struct's name, `remedy` what the caller should do. Errors:
- * _ARGUMENT if the size of *given was not set. */
+/* The other way: as much of the defaults as the caller's build knows of, *given being of `size`
+ * bytes, and its size. */
+static inline void gonio_i_give(const void *usual, size_t known, void *given, size_t size)
+{
+    memset(given, 0, size);
+    memcpy(given, usual, known < size ? known : size);
+    memcpy(given, &size, sizeof size);
+}
+
+/* Takes a caller's struct, with a message. `type` is the struct's name, `remedy` what the caller
+ * should do. Errors: _ARGUMENT if the size of *given was not set. */
 gonio_status gonio_i_take(gonio_context *context, const char *type, const char *remedy,
                           const void *given, void *taken, size_t size);
 

@@ -52,10 +52,11 @@ struct gonio_database {
     gonio_database_view view;
 };
 
-void gonio_database_options_default(gonio_database_options *options)
+void gonio_database_options_default_of(gonio_database_options *options, size_t size)
 {
-    *options = (gonio_database_options){
-        .size = sizeof *options, .representation = GONIO_SECTORED, .channels = GONIO_SEPARATE};
+    const gonio_database_options usual = {.representation = GONIO_SECTORED,
+                                          .channels = GONIO_SEPARATE};
+    gonio_i_give(&usual, sizeof usual, options, size);
 }
 
 /* ---- tiles ---- */

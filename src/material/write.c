@@ -43,9 +43,10 @@ static const gonio_i_format_writer writers[] = {
 
 enum { WRITERS = sizeof writers / sizeof *writers };
 
-void gonio_write_options_default(gonio_write_options *options)
+void gonio_write_options_default_of(gonio_write_options *options, size_t size)
 {
-    *options = (gonio_write_options){.size = sizeof *options};
+    const gonio_write_options usual = {0};
+    gonio_i_give(&usual, sizeof usual, options, size);
 }
 
 const char *gonio_material_writer_name(int index)

@@ -6,9 +6,10 @@
 #include "../material/source.h"
 #include "readings.h"
 
-void gonio_instrument_options_default(gonio_instrument_options *options)
+void gonio_instrument_options_default_of(gonio_instrument_options *options, size_t size)
 {
-    *options = (gonio_instrument_options){.size = sizeof *options};
+    const gonio_instrument_options usual = {0};
+    gonio_i_give(&usual, sizeof usual, options, size);
 }
 
 /* Noise belongs to a direction, not to a line: the same directions give the same reading. */

@@ -13,9 +13,10 @@
 
 enum { FIRST_ROOM = 64 };
 
-void gonio_readings_options_default(gonio_readings_options *options)
+void gonio_readings_options_default_of(gonio_readings_options *options, size_t size)
 {
-    *options = (gonio_readings_options){.size = sizeof *options, .values_needed = true};
+    const gonio_readings_options usual = {.values_needed = true};
+    gonio_i_give(&usual, sizeof usual, options, size);
 }
 
 gonio_status gonio_i_readings_new(gonio_context *context, const char *path,

@@ -50,14 +50,14 @@ const gonio_plan_basis *gonio_plan_method_basis(const char *method)
     return found != NULL ? &found->basis : NULL;
 }
 
-void gonio_plan_options_default(gonio_plan_options *options)
+void gonio_plan_options_default_of(gonio_plan_options *options, size_t size)
 {
-    *options = (gonio_plan_options){.size = sizeof *options,
-                                    .count = GONIO_USUAL_COUNT,
-                                    .restarts = 5,
-                                    .keep_history = true,
-                                    .start = "random",
-                                    .phi_d = M_PI / 2.0};
+    const gonio_plan_options usual = {.count = GONIO_USUAL_COUNT,
+                                      .restarts = 5,
+                                      .keep_history = true,
+                                      .start = "random",
+                                      .phi_d = M_PI / 2.0};
+    gonio_i_give(&usual, sizeof usual, options, size);
 }
 
 /* The options that were asked for, with what is usual for those that were left open. */

@@ -10,10 +10,10 @@
 #include "../core/options.h"
 #include "method.h"
 
-void gonio_reconstruct_options_default(gonio_reconstruct_options *options)
+void gonio_reconstruct_options_default_of(gonio_reconstruct_options *options, size_t size)
 {
-    *options = (gonio_reconstruct_options){
-        .size = sizeof *options, .eta = 40.0, .noise = 0.01, .floor = 1e-5};
+    const gonio_reconstruct_options usual = {.eta = 40.0, .noise = 0.01, .floor = 1e-5};
+    gonio_i_give(&usual, sizeof usual, options, size);
 }
 
 /* ---- methods ---- */

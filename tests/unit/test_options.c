@@ -70,6 +70,76 @@ static void test_sizes_that_were_not_set(void **state)
     assert_usual(&taken);
 }
 
+/* ---- defaults, given to callers of any build ---- */
+
+/* The struct of `size` bytes, as a caller of another build has it. */
+#define GIVER(function)                                                                            \
+    static void give_##function(void *to, size_t size)                                             \
+    {                                                                                              \
+        function(to, size);                                                                        \
+    }
+GIVER(gonio_context_options_default_of)
+GIVER(gonio_database_options_default_of)
+GIVER(gonio_basis_options_default_of)
+GIVER(gonio_recipe_default_of)
+GIVER(gonio_recipe_paper_of)
+GIVER(gonio_readings_options_default_of)
+GIVER(gonio_instrument_options_default_of)
+GIVER(gonio_plan_options_default_of)
+GIVER(gonio_reconstruct_options_default_of)
+GIVER(gonio_render_options_default_of)
+GIVER(gonio_write_options_default_of)
+
+static void give_recipe_for_grid(void *to, size_t size)
+{
+    gonio_recipe_for_grid_of(to, size, GONIO_FULL);
+}
+
+static const struct {
+    void (*give)(void *to, size_t size);
+    size_t size;
+} givers[] = {
+    {give_gonio_context_options_default_of, sizeof(gonio_context_options)},
+    {give_gonio_database_options_default_of, sizeof(gonio_database_options)},
+    {give_gonio_basis_options_default_of, sizeof(gonio_basis_options)},
+    {give_gonio_recipe_default_of, sizeof(gonio_recipe)},
+    {give_gonio_recipe_paper_of, sizeof(gonio_recipe)},
+    {give_recipe_for_grid, sizeof(gonio_recipe)},
+    {give_gonio_readings_options_default_of, sizeof(gonio_readings_options)},
+    {give_gonio_instrument_options_default_of, sizeof(gonio_instrument_options)},
+    {give_gonio_plan_options_default_of, sizeof(gonio_plan_options)},
+    {give_gonio_reconstruct_options_default_of, sizeof(gonio_reconstruct_options)},
+    {give_gonio_render_options_default_of, sizeof(gonio_render_options)},
+    {give_gonio_write_options_default_of, sizeof(gonio_write_options)},
+};
+
+/* An older caller's struct ends earlier: nothing behind its end is touched. A newer one's fields
+ * that this build does not know of are 0. */
+static void test_defaults_fit_the_callers_struct(void **state)
+{
+    (void)state;
+    enum { ROOM = 512, UNTOUCHED = 0x5a };
+    for (size_t k = 0; k < sizeof givers / sizeof *givers; k++) {
+        const size_t now = givers[k].size;
+        const size_t older = now - sizeof(int);
+        const size_t newer = now + sizeof(double);
+        unsigned char made[3][ROOM];
+        memset(made, UNTOUCHED, sizeof made);
+        const size_t sizes[3] = {now, older, newer};
+        for (int c = 0; c < 3; c++) {
+            size_t told = 0;
+            givers[k].give(made[c], sizes[c]);
+            memcpy(&told, made[c], sizeof told);
+            assert_int_equal(told, sizes[c]);
+            assert_int_equal(made[c][sizes[c]], UNTOUCHED);
+            assert_memory_equal(made[c] + sizeof told, made[0] + sizeof told, older - sizeof told);
+        }
+        for (size_t b = now; b < newer; b++) {
+            assert_int_equal(made[2][b], 0);
+        }
+    }
+}
+
 /* ---- every function that takes such a struct ---- */
 
 enum { COUNT = 4 };
@@ -410,6 +480,7 @@ int main(void)
         cmocka_unit_test(test_older_callers_leave_the_defaults),
         cmocka_unit_test(test_newer_callers_fields_are_left_out),
         cmocka_unit_test(test_sizes_that_were_not_set),
+        cmocka_unit_test(test_defaults_fit_the_callers_struct),
         cmocka_unit_test(test_every_function_refuses_what_was_not_initialised),
         cmocka_unit_test(test_no_options_are_the_defaults_of_a_context),
         cmocka_unit_test(test_no_options_are_the_defaults_of_a_writer),
