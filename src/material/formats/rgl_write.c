@@ -10,6 +10,7 @@
  *
  *     luminance(s) = L(s) ndf(u) <i, m> u sin theta_m / vndf(u), L of the values.
  *
+ * Values are fitted to the material at directions between the places (rgl_fit.c).
  * Where the material has no data, the nearest places stand in. Beyond the angle up to which it was
  * measured, the values at that angle do. */
 #include <math.h>
@@ -21,6 +22,7 @@
 #include "../tensor_write.h"
 #include "../warp.h"
 #include "rgl.h"
+#include "rgl_fit.h"
 #include "rgl_places.h"
 #include "writers.h"
 
@@ -269,17 +271,26 @@ static void store_incidence(writer *w, size_t t, const place *places, const doub
     const size_t nodes = w->side * w->side;
     const size_t channels = w->view->channels;
     for (size_t k = 0; k < nodes; k++) {
-        double luminance = 0.0;
         for (size_t c = 0; c < w->channels; c++) {
-            const double value = places[k].factor * rho[k * channels + w->order[c]];
-            w->value[(t * w->channels + c) * nodes + k] = (float)value;
-            luminance += w->weight[c] * value;
+            w->value[(t * w->channels + c) * nodes + k] =
+                (float)(places[k].factor * rho[k * channels + w->order[c]]);
         }
-        w->luminance[t * nodes + k] = (float)(fmax(luminance, 0.0) * places[k].angle);
         if (places[k].measured) {
             const size_t bit = t * nodes + k;
             w->valid[bit / 8] = (unsigned char)(w->valid[bit / 8] | (0x80U >> (bit % 8)));
         }
+    }
+}
+
+static void store_luminance(writer *w, size_t t, const place *places)
+{
+    const size_t nodes = w->side * w->side;
+    for (size_t k = 0; k < nodes; k++) {
+        double luminance = 0.0;
+        for (size_t c = 0; c < w->channels; c++) {
+            luminance += w->weight[c] * (double)w->value[(t * w->channels + c) * nodes + k];
+        }
+        w->luminance[t * nodes + k] = (float)(fmax(luminance, 0.0) * places[k].angle);
     }
 }
 
@@ -338,16 +349,37 @@ static gonio_status read_all(writer *w, workplace *p)
         if (status == GONIO_OK) {
             aim_all(w, t, p->pairs, p->places);
             store_incidence(w, t, p->places, p->latest);
-            status = gonio_i_progress(w->context, "writing", 0.99 * (double)(t + 1) / THETAS);
+            status = gonio_i_progress(w->context, "writing", 0.3 * (double)(t + 1) / THETAS);
         }
     }
     return status;
 }
 
+static gonio_status fit_values(writer *w)
+{
+    const gonio_i_rgl_values values = {.thetas = THETAS,
+                                       .theta = w->theta,
+                                       .channels = w->channels,
+                                       .order = w->order,
+                                       .side = w->side,
+                                       .value = w->value,
+                                       .ndf = w->ndf[0],
+                                       .sigma = w->sigma[0],
+                                       .warp = &w->warp};
+    return gonio_i_rgl_fit(w->context, &w->sampler, &values);
+}
+
 static gonio_status find_values(writer *w)
 {
     workplace p = {0};
-    const gonio_status status = allocate(w, &p) == GONIO_OK ? read_all(w, &p) : GONIO_ERROR_MEMORY;
+    gonio_status status = allocate(w, &p) == GONIO_OK ? read_all(w, &p) : GONIO_ERROR_MEMORY;
+    if (status == GONIO_OK) {
+        status = fit_values(w);
+    }
+    for (size_t t = 0; t < THETAS && status == GONIO_OK; t++) {
+        aim_all(w, t, p.pairs, p.places);
+        store_luminance(w, t, p.places);
+    }
     free(p.pairs);
     free(p.places);
     free(p.rho);
