@@ -476,7 +476,8 @@ static void test_ranks_share_the_work(void **state)
             if (rank > 0) { /* tells no progress */
                 context = (gonio_context_free(&context), support_context());
             }
-            assert_int_equal(run(context, f->out, &s, &group, rank == 0 ? results : NULL), GONIO_OK);
+            assert_int_equal(run(context, f->out, &s, &group, rank == 0 ? results : NULL),
+                             GONIO_OK);
             for (int k = 0; k < PIECES; k++) {
                 cost[rank] += s.computed[k] * cost_of(NULL, (size_t)k);
             }
