@@ -52,7 +52,27 @@ static bool make_room(growing *g)
     return more != NULL;
 }
 
-/* Returns Z_STREAM_END, or what went wrong; Z_MEM_ERROR also beyond `most` bytes. */
+/* Whether only zeros are left, with which tapes are filled up. */
+static bool only_zeros(const z_stream *stream)
+{
+    uInt k = 0;
+    while (k < stream->avail_in && stream->next_in[k] == 0) {
+        k++;
+    }
+    return k == stream->avail_in;
+}
+
+/* A file is one compressed member after another, as of files that were appended. What follows the
+ * last of them is an error, so that nothing is left out in silence. */
+static int begin_next(z_stream *stream)
+{
+    if (only_zeros(stream)) {
+        return Z_STREAM_END;
+    }
+    return inflateReset(stream);
+}
+
+/* Returns Z_STREAM_END, or what went wrong; Z_OK beyond `most` bytes. */
 static int inflate_all(z_stream *stream, size_t most, growing *g)
 {
     int result = Z_OK;
@@ -66,6 +86,7 @@ static int inflate_all(z_stream *stream, size_t most, growing *g)
         const uInt before = stream->avail_out;
         result = inflate(stream, Z_NO_FLUSH);
         g->length += before - stream->avail_out;
+        result = result == Z_STREAM_END ? begin_next(stream) : result;
     }
     return result;
 }

@@ -10,8 +10,10 @@ bool gonio_i_gzip_begins(const void *bytes, size_t size);
 /* Decompresses the beginning of a gzip file: at most `room` bytes. Returns how many. */
 size_t gonio_i_gzip_head(const void *bytes, size_t size, char *text, size_t room);
 
-/* Decompresses a whole gzip file into a new block, followed by a zero; the caller frees it.
- * Errors: _FORMAT (damaged, cut short, more than `most` bytes), _MEMORY. */
+/* Decompresses a whole gzip file, all of its members, into a new block, followed by a zero; the
+ * caller frees it.
+ * Errors: _FORMAT (damaged, cut short, something behind it that is not compressed, more than `most`
+ * bytes), _MEMORY. */
 gonio_status gonio_i_gzip_text(gonio_context *context, const char *path, const void *bytes,
                                size_t size, size_t most, char **text, size_t *length);
 
