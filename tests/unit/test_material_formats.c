@@ -531,6 +531,12 @@ static void test_xml_that_lies(void **state)
     end_xml(&x, path);
     check_refused(path, "145 x 145");
     x = begin_xml("", "Columns");
+    say_matrix(&x, "Integral", "Visible", "Reflection Front", 1.0, ",");
+    x.length /= 2;
+    write_bytes(path, x.text, x.length);
+    free(x.text);
+    check_refused(path, "cut short");
+    x = begin_xml("", "Columns");
     for (int k = 0; k < 100; k++) {
         say(&x, "<Deep>");
     }

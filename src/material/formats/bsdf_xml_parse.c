@@ -345,6 +345,15 @@ static void XMLCALL on_entity(void *user, const XML_Char *name, int is_parameter
     stop(user, GONIO_ERROR_FORMAT, "an entity is declared; gonio does not expand entities");
 }
 
+/* What is wrong with the XML, in words. */
+static const char *name_error(enum XML_Error code)
+{
+    const bool ends = code == XML_ERROR_NO_ELEMENTS || code == XML_ERROR_UNCLOSED_TOKEN ||
+                      code == XML_ERROR_UNCLOSED_CDATA_SECTION;
+    return ends ? "the file is cut short here; copy it again from its source"
+                : XML_ErrorString(code);
+}
+
 static void parse_text(parse *p, const char *text, size_t size)
 {
     XML_SetUserData(p->parser, p);
@@ -355,7 +364,7 @@ static void parse_text(parse *p, const char *text, size_t size)
         const bool last = size - first <= CHUNK;
         const size_t count = last ? size - first : CHUNK;
         if (XML_Parse(p->parser, text + first, (int)count, last) == XML_STATUS_ERROR) {
-            stop(p, GONIO_ERROR_FORMAT, XML_ErrorString(XML_GetErrorCode(p->parser)));
+            stop(p, GONIO_ERROR_FORMAT, name_error(XML_GetErrorCode(p->parser)));
         }
         if (last) {
             return;
