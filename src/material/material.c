@@ -246,8 +246,9 @@ static gonio_status open_file(gonio_context *context, const gonio_i_file *file,
     }
     source.size = sizeof source;
     char *name = gonio_i_base_name(file->path, false);
-    status = name == NULL ? GONIO_ERROR_MEMORY
-                          : gonio_material_create(context, name, description, &source, material);
+    status = name == NULL || description == NULL
+                 ? gonio_i_fail(context, GONIO_ERROR_MEMORY, "out of memory")
+                 : gonio_material_create(context, name, description, &source, material);
     if (status != GONIO_OK) {
         source.release(source.self);
     }

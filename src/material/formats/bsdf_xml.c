@@ -341,9 +341,6 @@ static gonio_status read_xml(reader *in, choice *c, xml_brdf *k, char **descript
     status = make_material(in, c, k);
     if (status == GONIO_OK) {
         *description = describe(c, k);
-        status = *description != NULL
-                     ? GONIO_OK
-                     : gonio_i_fail(in->context, GONIO_ERROR_MEMORY, "out of memory");
     }
     return status;
 }

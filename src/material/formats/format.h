@@ -11,7 +11,8 @@ typedef struct gonio_i_format_reader {
     const char *name; /* for "this file is not one of: ..." */
     /* Whether the content (never the name) looks like this format. */
     bool (*probe)(const gonio_i_file *file);
-    /* Opens it: gives a source and a description in words, to be released with free(). */
+    /* Opens it: gives a source and a description in words, to be released with free(). A
+     * description that is NULL, for want of memory, is the caller's to report. */
     gonio_status (*open)(gonio_context *context, const gonio_i_file *file,
                          gonio_material_source *source, char **description);
 } gonio_i_format_reader;

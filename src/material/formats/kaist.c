@@ -181,8 +181,6 @@ static gonio_status open_kaist(gonio_context *context, const gonio_i_file *file,
         *description = gonio_i_format("KAIST polarised BRDF %zu x %zu x %zu, %zu wavelengths, its "
                                       "unpolarised part",
                                       k->theta_h, k->theta_d, k->phi_d, k->channels);
-        status = *description != NULL ? GONIO_OK
-                                      : gonio_i_fail(context, GONIO_ERROR_MEMORY, "out of memory");
     }
     if (status != GONIO_OK) {
         if (k != NULL) {

@@ -208,14 +208,13 @@ static gonio_status open_table(gonio_context *context, const gonio_i_file *file,
     table->phi_bins = header_entry(file, 2);
     table->path = strdup(file->path);
     table->descriptor = open(file->path, O_RDONLY | O_CLOEXEC);
-    *description = gonio_i_format("MERL table 90 x 90 x %d", table->phi_bins);
-    if (table->path == NULL || *description == NULL || table->descriptor < 0) {
+    if (table->path == NULL || table->descriptor < 0) {
         status = gonio_i_fail(context, table->descriptor < 0 ? GONIO_ERROR_IO : GONIO_ERROR_MEMORY,
                               "%s: cannot open: %s", file->path, strerror(errno));
-        free(*description);
         release(table);
         return status;
     }
+    *description = gonio_i_format("MERL table 90 x 90 x %d", table->phi_bins);
     *source = (gonio_material_source){.read_slab = read_slab, .release = release, .self = table};
     return GONIO_OK;
 }

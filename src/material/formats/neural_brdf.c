@@ -251,11 +251,11 @@ static gonio_status open_network(gonio_context *context, const gonio_i_file *fil
         return GONIO_ERROR_MEMORY;
     }
     const gonio_status status = read_network(context, file->path, net);
-    *description = status == GONIO_OK ? strdup("neural BRDF 6-21-21-3") : NULL;
-    if (*description == NULL) {
+    if (status != GONIO_OK) {
         free(net);
-        return status == GONIO_OK ? GONIO_ERROR_MEMORY : status;
+        return status;
     }
+    *description = strdup("neural BRDF 6-21-21-3");
     *source = (gonio_material_source){.read_slab = read_slab, .release = free, .self = net};
     return GONIO_OK;
 }

@@ -384,16 +384,13 @@ static gonio_status open_rgl(gonio_context *context, const gonio_i_file *file,
     in.r = gonio_i_allocate(context, 1, sizeof *in.r);
     status = in.r != NULL ? read_rgl(&in) : GONIO_ERROR_MEMORY;
     gonio_i_tensor_close(&in.file);
-    *description = status == GONIO_OK ? describe(in.r) : NULL;
-    if (status == GONIO_OK && *description == NULL) {
-        status = gonio_i_fail(context, GONIO_ERROR_MEMORY, "out of memory");
-    }
     if (status != GONIO_OK) {
         if (in.r != NULL) {
             release(in.r);
         }
         return status;
     }
+    *description = describe(in.r);
     *source = (gonio_material_source){.evaluate = evaluate,
                                       .release = release,
                                       .self = in.r,

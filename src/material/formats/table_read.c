@@ -195,8 +195,6 @@ static gonio_status open_table(gonio_context *context, const gonio_i_file *file,
                                       GONIO_THETA_D_BINS, GONIO_PHI_D_BINS, t->channels,
                                       t->wavelength != NULL ? "wavelength" : "channel",
                                       t->channels == 1 ? "" : "s");
-        status = *description != NULL ? GONIO_OK
-                                      : gonio_i_fail(context, GONIO_ERROR_MEMORY, "out of memory");
     }
     if (status != GONIO_OK) {
         if (t != NULL) {

@@ -178,8 +178,6 @@ static gonio_status open_utia(gonio_context *context, const gonio_i_file *file,
         const bool scaled = scale_values(u);
         *description = gonio_i_format("UTIA anisotropic BRDF, %d x %d directions%s", DIRECTIONS,
                                       DIRECTIONS, scaled ? ", values divided by 140" : "");
-        status = *description != NULL ? GONIO_OK
-                                      : gonio_i_fail(context, GONIO_ERROR_MEMORY, "out of memory");
     }
     if (status != GONIO_OK) {
         free(u);
