@@ -195,8 +195,13 @@ static void print_material(const char *path, const gonio_material *material,
     printf("  peak         %.4g 1/sr\n", facts->peak);
     printf("  albedo       theta_i      R      G      B\n");
     for (int k = 0; k < TOOL_INCIDENCES; k++) {
-        printf("               %4.0f deg %6.3f %6.3f %6.3f\n", tool_incidence_deg[k],
-               facts->albedo[k][0], facts->albedo[k][1], facts->albedo[k][2]);
+        const double *rgb = facts->albedo[k];
+        if (isnan(rgb[0])) {
+            printf("               %4.0f deg  no data\n", tool_incidence_deg[k]);
+        } else {
+            printf("               %4.0f deg %6.3f %6.3f %6.3f\n", tool_incidence_deg[k], rgb[0],
+                   rgb[1], rgb[2]);
+        }
     }
     printf("  energy       %s\n", facts->largest_albedo <= 1.0
                                       ? "conserved at these incidences"

@@ -198,7 +198,8 @@ GONIO_API bool gonio_table_value(const gonio_table *table, gonio_half_difference
                                  double rho[GONIO_CHANNELS]);
 
 /* The directional-hemispherical reflectance (albedo) for light from theta_i, by the midpoint rule
- * on a grid of outgoing directions around the mirror direction. */
+ * on a grid of outgoing directions around the mirror direction. Directions without data count as 0;
+ * NaN if none has data. */
 GONIO_API void gonio_table_albedo(const gonio_table *table, double theta_i,
                                   double albedo[GONIO_CHANNELS]);
 

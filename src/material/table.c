@@ -95,6 +95,7 @@ void gonio_table_albedo(const gonio_table *table, double theta_i, double albedo[
     enum { POLAR = 2 * GONIO_THETA_H_BINS, AZIMUTH = 180 };
     const double sine_i = sin(theta_i);
     const double cosine_i = cos(theta_i);
+    bool any = false;
     albedo[0] = albedo[1] = albedo[2] = 0.0;
     for (int p = 0; p < POLAR; p++) {
         const double t = (p + 0.5) / POLAR;
@@ -113,10 +114,14 @@ void gonio_table_albedo(const gonio_table *table, double theta_i, double albedo[
                 !gonio_table_value(table, gonio_half_difference_from_pair(pair), rho)) {
                 continue;
             }
+            any = true;
             const double weight = 2.0 * o[2] * 4.0 * i_h * sin(theta_h) * step;
             for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
                 albedo[channel] += weight * rho[channel];
             }
         }
+    }
+    for (int channel = 0; channel < GONIO_CHANNELS && !any; channel++) {
+        albedo[channel] = NAN;
     }
 }

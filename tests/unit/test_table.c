@@ -107,6 +107,26 @@ static void test_albedo_of_a_lambertian(void **state)
     gonio_material_free(&material);
 }
 
+static bool is_grazing(gonio_bin bin)
+{
+    const gonio_pair pair = gonio_pair_from_half_difference(gonio_bin_centre(bin));
+    return fmax(pair.incident.theta, pair.outgoing.theta) > 70.0 * M_PI / 180.0;
+}
+
+static void test_albedo_without_data(void **state)
+{
+    (void)state;
+    gonio_material *material = made_material((made_constant){{0.1, 0.2, 0.3}, is_grazing});
+    gonio_table *table = made_table(material);
+    double albedo[GONIO_CHANNELS];
+    gonio_table_albedo(table, 85.0 * M_PI / 180.0, albedo);
+    assert_true(isnan(albedo[0]) && isnan(albedo[1]) && isnan(albedo[2]));
+    gonio_table_albedo(table, 40.0 * M_PI / 180.0, albedo);
+    assert_true(albedo[0] > 0.2 && albedo[0] < 0.1 * M_PI); /* some is missing */
+    gonio_table_free(&table);
+    gonio_material_free(&material);
+}
+
 static void test_table_on_disk(void **state)
 {
     (void)state;
@@ -207,6 +227,7 @@ int main(void)
         cmocka_unit_test(test_value_at_a_centre_is_that_of_the_bin),
         cmocka_unit_test(test_holes_are_bridged_while_a_neighbour_has_data),
         cmocka_unit_test(test_albedo_of_a_lambertian),
+        cmocka_unit_test(test_albedo_without_data),
         cmocka_unit_test(test_table_on_disk),
         cmocka_unit_test(test_log_space_goes_round),
         cmocka_unit_test(test_slabs_in_log_space),
