@@ -7,6 +7,7 @@
 #include "../core/core.h"
 #include "../core/vector_math.h"
 #include "../direction/grid.h"
+#include "../material/formats/merl.h"
 
 /* Of the relative mapping (Nielsen et al. 2015, section 4): e in 1/sr, the least w. */
 static const double relative_floor = 0.001;
@@ -14,8 +15,7 @@ static const double least_weight = 0.01;
 
 double gonio_log_scale(int channel)
 {
-    static const double scale[GONIO_CHANNELS] = {1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0};
-    return channel >= 0 && channel < GONIO_CHANNELS ? scale[channel] : 1.0 / 1500.0;
+    return gonio_i_merl_scale[channel >= 0 && channel < GONIO_CHANNELS ? channel : 0];
 }
 
 static const char *const names[] = {[GONIO_LOG] = "log", [GONIO_LOG_RELATIVE] = "relative"};

@@ -14,7 +14,7 @@
 
 #include "format.h"
 
-static const double scale[GONIO_CHANNELS] = {1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0};
+const double gonio_i_merl_scale[GONIO_CHANNELS] = {1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0};
 
 enum {
     HEADER = 12,
@@ -110,9 +110,9 @@ GONIO_I_VECTORISED static void to_reflectance(double *rho)
         /* False for negative numbers and NaN; infinity fails the second half. */
         const bool data =
             (r[k] >= 0.0) & (g[k] >= 0.0) & (b[k] >= 0.0) & (r[k] + g[k] + b[k] < INFINITY);
-        r[k] = data ? r[k] * scale[0] : -1.0;
-        g[k] = data ? g[k] * scale[1] : -1.0;
-        b[k] = data ? b[k] * scale[2] : -1.0;
+        r[k] = data ? r[k] * gonio_i_merl_scale[0] : -1.0;
+        g[k] = data ? g[k] * gonio_i_merl_scale[1] : -1.0;
+        b[k] = data ? b[k] * gonio_i_merl_scale[2] : -1.0;
     }
 }
 
@@ -224,7 +224,8 @@ const gonio_i_format_reader gonio_i_merl_reader = {"MERL .binary table", probe, 
 GONIO_I_VECTORISED static void to_stored(double *values, int channel)
 {
     for (size_t k = 0; k < GONIO_SLAB_BINS; k++) {
-        const double stored = values[k] / scale[channel]; /* outside of the choice: vectorises */
+        const double stored =
+            values[k] / gonio_i_merl_scale[channel]; /* outside of the choice: vectorises */
         values[k] = values[k] >= 0.0 ? stored : -1.0;
     }
     byte_order_to_host(values, GONIO_SLAB_BINS);

@@ -6,6 +6,9 @@
 
 #include "../../core/output.h"
 
+/* What a count of a table is worth in each channel, 1/sr; also s of gonio's log space. */
+extern const double gonio_i_merl_scale[GONIO_CHANNELS];
+
 /* How far the writing of one or more tables is. */
 typedef struct gonio_i_tables_progress {
     const char *task;

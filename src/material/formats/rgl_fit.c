@@ -17,6 +17,7 @@
 #include <string.h>
 
 #include "../../core/core.h"
+#include "merl.h"
 #include "rgl_places.h"
 
 enum {
@@ -87,8 +88,7 @@ static size_t index_of(const gonio_i_rgl_values *v, size_t node, size_t channel)
 
 static double scale_of(const fit *f, size_t channel)
 {
-    static const double scale[GONIO_CHANNELS] = {1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0};
-    return f->sampler->view->wavelength == NULL ? scale[channel % GONIO_CHANNELS] : scale[0];
+    return gonio_i_merl_scale[f->sampler->view->wavelength == NULL ? channel : 0];
 }
 
 /* The change that a direction asks of a channel. */

@@ -11,6 +11,7 @@
 
 #include "../../core/core.h"
 #include "../warp.h"
+#include "merl.h"
 
 enum {
     NORMALS = GONIO_I_RGL_NORMALS,
@@ -56,7 +57,6 @@ double gonio_i_rgl_look_up(const float row[NORMALS], double u)
 /* Sums over lines of constant incidence and azimuth, at FINE steps along u. */
 typedef struct bending {
     size_t channels;
-    double scale[GONIO_CHANNELS]; /* s of the metric; the first for other channels */
     double squares[FINE];
     double count[FINE];
 } bending;
@@ -71,7 +71,7 @@ static double error_at(const bending *b, const double *rho, const double *factor
         const double before = *(at - b->channels) * factor[-1];
         const double after = at[b->channels] * factor[1];
         const double bend = (before - 2.0 * value + after) * (FINE - 1) * (FINE - 1);
-        const double scale = b->scale[b->channels == GONIO_CHANNELS ? c : 0];
+        const double scale = gonio_i_merl_scale[b->channels == GONIO_CHANNELS ? c : 0];
         const double error = value > LOWEST ? bend / value * (at[0] / (at[0] + scale)) : 0.0;
         if (isfinite(before) && isfinite(value) && isfinite(after)) {
             sum += error * error;
@@ -131,8 +131,7 @@ static void find_density(const bending *b, float density[NORMALS])
 gonio_status gonio_i_rgl_places(gonio_context *context, const gonio_i_sampler *sampler,
                                 const float ndf[NORMALS], double limit, float density[NORMALS])
 {
-    bending b = {.channels = sampler->view->channels,
-                 .scale = {1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0}};
+    bending b = {.channels = sampler->view->channels};
     gonio_status status = GONIO_OK;
     for (size_t i = 0; i < INCIDENCES; i++) {
         for (size_t a = 0; a < AZIMUTHS && status == GONIO_OK; a++) {
