@@ -10,6 +10,9 @@ if [ ! -s probe.png ]; then
     exit 0
 fi
 
+# hex [OD OPTION...] [FILE]: bytes in hexadecimal digits, by what coreutils has
+hex() { od -An -v -tx1 "$@" | tr -d ' \n'; }
+
 # ---- what it leaves ----
 
 # shellcheck disable=SC2086
@@ -27,8 +30,8 @@ fi
     done
     expect_ok render atlas:oak-sawn $small -e seed.exr -o lit.png # an image of ours as environment
 }
-expect_true 'the magic number of PNG' test "$(head -c 4 a.png | xxd -p)" = 89504e47
-expect_true 'the magic number of OpenEXR' test "$(head -c 4 seed.exr | xxd -p)" = 762f3101
+expect_true 'the magic number of PNG' test "$(hex -N 4 a.png)" = 89504e47
+expect_true 'the magic number of OpenEXR' test "$(hex -N 4 seed.exr)" = 762f3101
 
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n' >t.obj
 # shellcheck disable=SC2086
@@ -131,7 +134,7 @@ radiance short.hdr 2000 '\200'
 # openexr FILE WIDTH BLUE GREEN RED: one line of pixels, uncompressed; a channel is WIDTH floats as printf has them.
 openexr() {
     local box one='\x00\x00\x80\x3f'
-    box=$(int32 0 0 $(($2 - 1)) 0 | xxd -p | sed 's/../\\x&/g')
+    box=$(int32 0 0 $(($2 - 1)) 0 | hex | sed 's/../\\x&/g')
     {
         printf '\x76\x2f\x31\x01\x02\x00\x00\x00channels\x00chlist\x00'
         int32 55
