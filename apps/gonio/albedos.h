@@ -8,8 +8,8 @@
 enum { TOOL_INCIDENCES = 6 };
 extern const double tool_incidence_deg[TOOL_INCIDENCES];
 
-/* The albedos there, NaN where there are no data; returns the index of the incidence with the largest of any channel, which goes
- * to *largest. */
+/* The albedos there, NaN where there are no data; returns the index of the incidence with the
+ * largest of any channel, which goes to *largest. */
 int tool_albedos(const gonio_table *table, double albedo[TOOL_INCIDENCES][GONIO_CHANNELS],
                  double *largest);
 
