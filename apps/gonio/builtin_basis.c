@@ -87,7 +87,7 @@ static gonio_status make_builtin(tool *t, const char *path, bool paper)
 
 /* To be raised when gonio learn makes something else of the same materials, so that what an earlier
  * build left in the cache is not taken for it. */
-enum { RECIPE = 3 };
+enum { RECIPE = 4 };
 
 gonio_status tool_builtin_basis(tool *t, bool paper, char **path)
 {

@@ -1,4 +1,5 @@
-/* gonio convert: any material to any format that materials are written in. */
+/* gonio convert: any material to any format that materials are written in, an older basis to one of
+ * today. */
 #include "command_line.h"
 #include "inputs.h"
 #include "json_output.h"
@@ -11,6 +12,31 @@ static int report(const tool *t, const gonio_material *material, const char *out
                                                     gonio_material_name(material), "from",
                                                     gonio_material_format(material)))
                      : 0;
+}
+
+static int convert_material(tool *t, const write_options *options, const gonio_write_options *how,
+                            const char *input, const char *output)
+{
+    gonio_material *material = NULL;
+    gonio_status status = tool_open_material(t, input, &material);
+    if (status == GONIO_OK) {
+        status = write_options_apply(t, options, material);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_material_write(t->context, material, output, how);
+    }
+    const int code = status == GONIO_OK ? report(t, material, output) : tool_exit_code(status);
+    gonio_material_free(&material);
+    return code;
+}
+
+static int convert_basis(tool *t, const char *input, const char *format, const char *output)
+{
+    const gonio_status status = gonio_basis_convert(t->context, input, output);
+    return status == GONIO_OK && tool_json
+               ? tool_print_json(t, json_pack("{s:s, s:s, s:s}", "output", output, "basis", input,
+                                              "from", format))
+               : tool_exit_code(status);
 }
 
 static int run(tool *t, void *given)
@@ -26,18 +52,14 @@ static int run(tool *t, void *given)
     if (!tool_check_output(t, arguments[1], arguments, 1) || !write_options_check(t, o, &how)) {
         return EXIT_USAGE;
     }
-    gonio_material *material = NULL;
-    gonio_status status = tool_open_material(t, arguments[0], &material);
-    if (status == GONIO_OK) {
-        status = write_options_apply(t, o, material);
+    gonio_kind kind = GONIO_KIND_UNKNOWN;
+    const char *format = NULL;
+    const gonio_status status = gonio_file_kind(t->context, arguments[0], &kind, &format);
+    if (status != GONIO_OK) {
+        return tool_exit_code(status);
     }
-    if (status == GONIO_OK) {
-        status = gonio_material_write(t->context, material, arguments[1], &how);
-    }
-    const int code =
-        status == GONIO_OK ? report(t, material, arguments[1]) : tool_exit_code(status);
-    gonio_material_free(&material);
-    return code;
+    return kind == GONIO_KIND_BASIS ? convert_basis(t, arguments[0], format, arguments[1])
+                                    : convert_material(t, o, &how, arguments[0], arguments[1]);
 }
 
 int cmd_convert(int argc, const char **argv)
@@ -53,7 +75,9 @@ int cmd_convert(int argc, const char **argv)
             "'gonio info atlas:' lists them).\n"
             "OUT becomes an RGL .bsdf, for Mitsuba 3 and pbrt-v4, if its name ends in .bsdf; a "
             "table of all channels in HDF5 (.h5); BSDF-XML (.xml), for Radiance; readings on a "
-            "grid (.csv); a MERL .binary table otherwise.",
+            "grid (.csv); a MERL .binary table otherwise.\n"
+            "If IN is a basis of an older gonio (HDF5), OUT becomes the same basis in today's "
+            "format.",
         .work = run,
         .options = &o};
     return tool_run(argc, argv, &line);

@@ -6,6 +6,8 @@
  * stored row by row: the K values of a row are next to each other, so a row is what one reading
  * sees. Rows are numbered as in database.h: joint, row = 3 x (position of the cell) + channel;
  * separate, row = position of the cell. The k-th component's sign makes its largest entry positive.
+ * V is in single precision, in memory as in a file, so that a basis does the same before and after
+ * it is written; all else is in double precision.
  */
 #ifndef GONIO_BASIS_H
 #define GONIO_BASIS_H
@@ -58,9 +60,9 @@ static inline void gonio_basis_options_default(gonio_basis_options *options)
 }
 
 /* Learns a basis by the Gram matrix of the columns, accumulated over tiles of rows in double
- * precision. max |V'V - I| is at most 1e-11: where it would be more, V is orthonormalised again
- * (Cholesky QR), to rounding. The result does not depend on the number of threads. Memory: the
- * basis, and a few MB a thread.
+ * precision. Before V is rounded to single precision, max |V'V - I| is at most 1e-11: where it
+ * would be more, V is orthonormalised again (Cholesky QR). The result does not depend on the number
+ * of threads. Memory: the basis, and a few MB a thread.
  * options may be NULL. *basis is the caller's; the database need not outlive it.
  * Errors: _ARGUMENT if K > columns - 1 (without mean, > columns), for mixtures of another kind of
  * database and for a material of the subset that it does not have; _DATA if the columns span fewer
@@ -113,16 +115,23 @@ GONIO_API gonio_status gonio_learn(gonio_context *context, const char *const *pa
 
 GONIO_API void gonio_basis_free(gonio_basis **basis);
 
-/* Writes a basis as an HDF5 file (layout: docs/basis-file.md); command is kept in it for the record
- * and may be NULL. The file appears whole or not at all. Errors: _IO, _MEMORY. */
+/* Writes a basis as a safetensors file (layout: docs/basis-file.md); command is kept in it for the
+ * record and may be NULL. The file appears whole or not at all. Errors: _IO, _MEMORY. */
 GONIO_API gonio_status gonio_basis_write(gonio_context *context, const gonio_basis *basis,
                                          const char *command, const char *path);
 
-/* Reads a basis file and checks it: shapes, finite values, orthonormality, fingerprint.
- * Errors: _IO; _FORMAT for another kind of file, missing or mis-shaped datasets, damage; _MEMORY.
- */
+/* Reads a basis file and checks it: shapes, plausible values, orthonormality, checksums. V stays
+ * in the file, which is mapped without a lock until the basis is freed: it may be replaced
+ * meanwhile (gonio_basis_write does that), but not changed or cut.
+ * Errors: _IO; _FORMAT for another kind of file, missing or mis-shaped arrays, damage; _MEMORY. */
 GONIO_API gonio_status gonio_basis_read(gonio_context *context, const char *path,
                                         gonio_basis **basis);
+
+/* Converts a basis file of an older gonio, which is HDF5, to today's format, with the same checks.
+ * The record of the command that learned it is kept. A damaged file of that kind may crash the HDF5
+ * library: convert only files that you trust. Errors: those of reading and writing. */
+GONIO_API gonio_status gonio_basis_convert(gonio_context *context, const char *input,
+                                           const char *output);
 
 /* What is in it. The view and the pointers in it belong to the basis. */
 typedef struct gonio_basis_view {
@@ -147,7 +156,7 @@ typedef struct gonio_basis_view {
     uint64_t
         fingerprint; /* which basis it is: its cells, materials' names and leading variances to six
                       * digits, so that the same one learned on another processor is the same */
-    uint64_t checksum;   /* of every bit of cells, mean, vectors and variances */
+    uint64_t checksum;   /* of every bit of cells, mean, V and variances */
     const char *program; /* "gonio 0.1.0" that learned it */
     const char *command; /* "" if unknown */
 } gonio_basis_view;

@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "../direction/grid.h"
-#include "../linalg/linalg.h"
 
 size_t gonio_i_basis_row_count(size_t cells, gonio_channel_model channels)
 {
@@ -39,7 +38,6 @@ gonio_basis *gonio_i_basis_allocate(gonio_context *context, size_t materials, si
     made->fingerprints = gonio_i_allocate(context, materials, sizeof *made->fingerprints);
     made->cell = gonio_i_allocate(context, cells, sizeof *made->cell);
     made->mean = gonio_i_allocate(context, rows, sizeof *made->mean);
-    made->vectors = gonio_i_allocate(context, rows * components, sizeof *made->vectors);
     made->variances = gonio_i_allocate(context, variance_count, sizeof *made->variances);
     made->loadings =
         gonio_i_allocate(context, gonio_i_basis_columns(made) * components, sizeof *made->loadings);
@@ -47,8 +45,8 @@ gonio_basis *gonio_i_basis_allocate(gonio_context *context, size_t materials, si
         made->parents = gonio_i_allocate(context, 2 * mixtures, sizeof *made->parents);
     }
     if (made->names == NULL || made->fingerprints == NULL || made->cell == NULL ||
-        made->mean == NULL || made->vectors == NULL || made->variances == NULL ||
-        made->loadings == NULL || (mixtures > 0 && made->parents == NULL)) {
+        made->mean == NULL || made->variances == NULL || made->loadings == NULL ||
+        (mixtures > 0 && made->parents == NULL)) {
         gonio_basis_free(&made);
     }
     return made;
@@ -67,7 +65,8 @@ void gonio_basis_free(gonio_basis **basis)
     free(old->fingerprints);
     free(old->cell);
     free(old->mean);
-    free(old->vectors);
+    free(old->kept);
+    gonio_i_safetensors_close(&old->file);
     free(old->variances);
     free(old->loadings);
     free(old->parents);
@@ -204,37 +203,22 @@ static void add_everything(const gonio_basis *basis, gonio_fingerprint *fingerpr
 {
     add_kind(basis, fingerprint);
     gonio_fingerprint_add(fingerprint, basis->mean, basis->rows * sizeof *basis->mean);
-    gonio_fingerprint_add(fingerprint, basis->vectors,
-                          basis->rows * basis->components * sizeof *basis->vectors);
+    gonio_fingerprint_add(fingerprint, &basis->vectors_checksum, sizeof basis->vectors_checksum);
     gonio_fingerprint_add(fingerprint, basis->variances,
                           basis->variance_count * sizeof *basis->variances);
 }
 
-/* Apart from the rest, so that programs that know nothing of loadings find theirs. */
-static void add_loadings(const gonio_basis *basis, gonio_fingerprint *fingerprint)
-{
-    gonio_fingerprint_add(fingerprint, basis->loadings,
-                          gonio_i_basis_columns(basis) * basis->components *
-                              sizeof *basis->loadings);
-}
-
-static void add_parents(const gonio_basis *basis, gonio_fingerprint *fingerprint)
-{
-    gonio_fingerprint_add(fingerprint, basis->parents,
-                          2 * basis->mixtures * sizeof *basis->parents);
-}
-
-static gonio_status hash(const gonio_basis *basis,
-                         void (*add)(const gonio_basis *, gonio_fingerprint *), uint64_t *value)
+gonio_status gonio_i_basis_hash(gonio_context *context, const void *data, size_t size,
+                                uint64_t *value)
 {
     gonio_fingerprint *fingerprint = NULL;
-    const gonio_status status = gonio_fingerprint_create(&fingerprint);
-    if (status == GONIO_OK) {
-        add(basis, fingerprint);
-        *value = gonio_fingerprint_value(fingerprint);
+    if (gonio_fingerprint_create(&fingerprint) != GONIO_OK) {
+        return gonio_i_fail(context, GONIO_ERROR_MEMORY, "out of memory");
     }
+    gonio_fingerprint_add(fingerprint, data, size);
+    *value = gonio_fingerprint_value(fingerprint);
     gonio_fingerprint_free(&fingerprint);
-    return status;
+    return GONIO_OK;
 }
 
 static gonio_basis_view view_of(const gonio_basis *basis)
@@ -267,18 +251,25 @@ static gonio_basis_view view_of(const gonio_basis *basis)
 
 gonio_status gonio_i_basis_finish(gonio_context *context, gonio_basis *basis)
 {
-    gonio_status status = hash(basis, add_identity, &basis->fingerprint);
+    gonio_fingerprint *identity = NULL;
+    gonio_fingerprint *everything = NULL;
+    gonio_status status = gonio_fingerprint_create(&identity);
     if (status == GONIO_OK) {
-        status = hash(basis, add_everything, &basis->checksum);
+        status = gonio_fingerprint_create(&everything);
     }
-    if (status == GONIO_OK && basis->loadings != NULL) {
-        status = hash(basis, add_loadings, &basis->loadings_checksum);
+    if (status == GONIO_OK) {
+        add_identity(basis, identity);
+        add_everything(basis, everything);
+        basis->fingerprint = gonio_fingerprint_value(identity);
+        basis->checksum = gonio_fingerprint_value(everything);
+        basis->view = view_of(basis);
+        status = gonio_i_basis_map_cells(context, basis);
+    } else {
+        gonio_i_fail(context, status, "out of memory");
     }
-    if (status == GONIO_OK && basis->parents != NULL) {
-        status = hash(basis, add_parents, &basis->parents_checksum);
-    }
-    basis->view = view_of(basis);
-    return status == GONIO_OK ? gonio_i_basis_map_cells(context, basis) : status;
+    gonio_fingerprint_free(&identity);
+    gonio_fingerprint_free(&everything);
+    return status;
 }
 
 const gonio_basis_view *gonio_basis_describe(const gonio_basis *basis)
@@ -288,12 +279,45 @@ const gonio_basis_view *gonio_basis_describe(const gonio_basis *basis)
 
 /* ---- rows of V ---- */
 
+/* Doubles to floats in the same memory, from the front: what is written lies behind what is still
+ * to be read. */
+static void round_in_place(double *values, size_t count)
+{
+    enum { CHUNK = 1024 };
+    float rounded[CHUNK];
+    for (size_t first = 0; first < count; first += CHUNK) {
+        const size_t length = count - first < CHUNK ? count - first : CHUNK;
+        for (size_t k = 0; k < length; k++) {
+            rounded[k] = (float)values[first + k];
+        }
+        memcpy((char *)values + first * sizeof *rounded, rounded, length * sizeof *rounded);
+    }
+}
+
+gonio_status gonio_i_basis_keep_vectors(gonio_context *context, gonio_basis *basis, double *vectors)
+{
+    const size_t count = basis->rows * basis->components;
+    round_in_place(vectors, count);
+    float *smaller = realloc(vectors, count * sizeof *smaller);
+    basis->kept = smaller != NULL ? smaller : (float *)(void *)vectors;
+    basis->vectors = basis->kept;
+    return gonio_i_basis_hash(context, basis->vectors, count * sizeof *basis->vectors,
+                              &basis->vectors_checksum);
+}
+
+GONIO_I_VECTORISED static void widen(const float *from, size_t count, double *to)
+{
+    for (size_t k = 0; k < count; k++) {
+        to[k] = (double)from[k];
+    }
+}
+
 void gonio_i_basis_rows(const gonio_basis *basis, size_t first, size_t count, size_t components,
                         double *values)
 {
     for (size_t i = 0; i < count; i++) {
-        memcpy(values + i * components, basis->vectors + (first + i) * basis->components,
-               components * sizeof *values);
+        widen(basis->vectors + (first + i) * basis->components, components,
+              values + i * components);
     }
 }
 
@@ -310,9 +334,19 @@ gonio_status gonio_basis_rows(gonio_context *context, const gonio_basis *basis, 
     return GONIO_OK;
 }
 
+GONIO_I_VECTORISED static double dot(const float *v, const double *c, size_t count)
+{
+    double sum = 0.0;
+#pragma omp simd reduction(+ : sum)
+    for (size_t k = 0; k < count; k++) {
+        sum += (double)v[k] * c[k];
+    }
+    return sum;
+}
+
 double gonio_i_basis_dot(const gonio_basis *basis, size_t row, const double *c, size_t components)
 {
-    return gonio_i_dot(basis->vectors + row * basis->components, c, components);
+    return dot(basis->vectors + row * basis->components, c, components);
 }
 
 double gonio_i_singular_value(const gonio_basis_view *view, size_t k)
@@ -386,10 +420,10 @@ void gonio_i_basis_row_at(const gonio_basis *basis, gonio_half_difference coordi
     *mean = 0.0;
     memset(row, 0, components * sizeof *row);
     for (int k = 0; k < points; k++) {
-        const double *source = basis->vectors + around[k].row * basis->components;
+        const float *source = basis->vectors + around[k].row * basis->components;
         *mean += around[k].weight * basis->mean[around[k].row];
         for (size_t j = 0; j < components; j++) {
-            row[j] += around[k].weight * source[j];
+            row[j] += around[k].weight * (double)source[j];
         }
     }
 }

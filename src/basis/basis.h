@@ -5,6 +5,7 @@
 #include <gonio/basis.h>
 
 #include "../core/file_head.h"
+#include "../core/safetensors.h"
 #include "../database/layout.h"
 
 struct gonio_basis {
@@ -21,15 +22,16 @@ struct gonio_basis {
     size_t rows;
     size_t components;
     double *mean;
-    double *vectors;
+    const float *vectors;      /* [rows][components], in one of the next two */
+    float *kept;               /* NULL where V is in a file */
+    gonio_i_safetensors *file; /* NULL where V is in memory */
     size_t variance_count;
     double *variances;
-    double *loadings;           /* NULL where a file has none */
-    int32_t *parents;           /* [mixtures][2]; NULL without mixtures, or where a file has none */
-    uint64_t fingerprint;       /* what it is, the same on every processor */
-    uint64_t checksum;          /* of every bit of it but the loadings, against damage */
-    uint64_t loadings_checksum; /* the same of the loadings; 0 without */
-    uint64_t parents_checksum;  /* the same of the parents; 0 without */
+    double *loadings;          /* NULL where a file has none */
+    int32_t *parents;          /* [mixtures][2]; NULL without mixtures, or where a file has none */
+    uint64_t fingerprint;      /* what it is, the same on every processor */
+    uint64_t vectors_checksum; /* of every bit of V */
+    uint64_t checksum;         /* of every bit of cells, mean, V and variances */
     char *program;
     char *command;
     int32_t *position; /* of the whole grid: which of `cell` stands for it */
@@ -45,14 +47,38 @@ bool gonio_i_basis_may_be(const gonio_i_file *file);
 /* The names of the formats that are read; NULL past the last. */
 const char *gonio_i_basis_format_name(int index);
 
-/* Allocates everything of a basis with no contents; NULL after a message. */
+/* Allocates everything of a basis but V, with no contents; NULL after a message. */
 gonio_basis *gonio_i_basis_allocate(gonio_context *context, size_t materials, size_t mixtures,
                                     size_t cells, gonio_channel_model channels, size_t components,
                                     size_t variance_count);
 
-/* The last step of making one: its fingerprint, its checksum, the map of nearest cells and the view
- * of it. */
+/* gonio_basis_learn before its last steps: a basis without V, and V ([rows][components]) as it was
+ * computed. */
+gonio_status gonio_i_basis_learn_exact(gonio_context *context, const gonio_database *database,
+                                       const gonio_basis_options *options, gonio_basis **basis,
+                                       double **vectors);
+
+/* V ([rows][components], as gonio_i_allocate gave it, the basis's in any case) rounded to single
+ * precision, so that a basis in memory is what its file holds. Errors: _MEMORY. */
+gonio_status gonio_i_basis_keep_vectors(gonio_context *context, gonio_basis *basis,
+                                        double *vectors);
+
+/* The last step of making one, with V known: its fingerprint, its checksum, the map of nearest
+ * cells and the view of it. */
 gonio_status gonio_i_basis_finish(gonio_context *context, gonio_basis *basis);
+
+/* Reads a basis file of an older gonio. Errors: as gonio_basis_read. */
+gonio_status gonio_i_basis_read_hdf5(gonio_context *context, const char *path, gonio_basis **basis);
+
+/* XXH3, 64 bits. Errors: _MEMORY. */
+gonio_status gonio_i_basis_hash(gonio_context *context, const void *data, size_t size,
+                                uint64_t *value);
+
+/* What a basis from a file of any format has to be: cells in order, plausible numbers, V and W
+ * orthonormal, V of its checksum, parents among the measured columns. Messages name `path`.
+ * Errors: _FORMAT, _MEMORY. */
+gonio_status gonio_i_basis_check(gonio_context *context, const char *path,
+                                 const gonio_basis *basis);
 
 size_t gonio_i_basis_row_count(size_t cells, gonio_channel_model channels);
 size_t gonio_i_basis_columns(const gonio_basis *basis);

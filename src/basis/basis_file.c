@@ -1,4 +1,4 @@
-/* The basis file: HDF5, layout in docs/basis-file.md. */
+/* The basis file: a safetensors file, layout in docs/basis-file.md. */
 #include "basis.h"
 
 #include <errno.h>
@@ -7,651 +7,617 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-
-#include "../core/hdf.h"
-#include "../core/output.h"
-#include "../linalg/linalg.h"
-
-enum { FORMAT_VERSION = 1, MOST_MATERIALS = 1 << 20 };
 
 static const char format_name[] = "gonio basis";
+static const char format_version[] = "2";
+static const char remedy[] = "learn the basis again with gonio learn";
+
+enum { HASH_SIZE = 17 }; /* 16 hexadecimal digits */
+
 /* Words for the values of an enumeration, from 0 on. */
 static const char *const representations[] = {"bivariate", "full", "sectored", NULL};
 static const char *const channel_models[] = {"joint", "separate", NULL};
 static const char *const mappings[] = {"log", "relative", NULL};
 static const char *const centrings[] = {"mean", "none", NULL};
 
+/* The grid that this program works on. */
+static const struct {
+    const char *key;
+    const char *bins;
+} grid[] = {{"theta_h_bins", "90"}, {"theta_d_bins", "90"}, {"phi_d_bins", "180"}};
+
+enum { GRID = sizeof grid / sizeof *grid };
+
+/* The arrays of a file. */
+enum {
+    LOG_SCALE,
+    MEAN,
+    VARIANCES,
+    MATERIAL_FINGERPRINTS,
+    COMPONENTS,
+    CELL,
+    MATERIAL_NAMES,
+    LOADINGS,
+    MIXTURE_PARENTS,
+    ARRAYS
+};
+
+static const struct {
+    const char *name;
+    const char *checksum; /* the key of its hash */
+    gonio_i_array_type type;
+    int rank;
+    bool needed;
+} layout[ARRAYS] = {
+    [LOG_SCALE] = {"log_scale", "xxh3.log_scale", GONIO_I_F64, 1, true},
+    [MEAN] = {"mean", "xxh3.mean", GONIO_I_F64, 1, true},
+    [VARIANCES] = {"variances", "xxh3.variances", GONIO_I_F64, 1, true},
+    [MATERIAL_FINGERPRINTS] = {"material_fingerprints", "xxh3.material_fingerprints", GONIO_I_U64,
+                               1, true},
+    [COMPONENTS] = {"components", "xxh3.components", GONIO_I_F32, 2, true},
+    [CELL] = {"cell", "xxh3.cell", GONIO_I_I32, 1, true},
+    [MATERIAL_NAMES] = {"material_names", "xxh3.material_names", GONIO_I_U8, 1, true},
+    [LOADINGS] = {"loadings", "xxh3.loadings", GONIO_I_F64, 2, false},
+    [MIXTURE_PARENTS] = {"mixture_parents", "xxh3.mixture_parents", GONIO_I_I32, 2, false},
+};
+
+static void print_hash(uint64_t value, char text[HASH_SIZE])
+{
+    snprintf(text, HASH_SIZE, "%016" PRIx64, value);
+}
+
 /* ---- writing ---- */
 
-static bool write_grid(hid_t file, const gonio_basis *basis)
+/* Names, each with a 0 at its end; NULL when out of memory. */
+static char *join_names(const gonio_basis *basis, size_t *size)
 {
-    const hid_t grid = H5Gcreate2(file, "grid", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-    const bool done =
-        grid >= 0 && gonio_i_hdf_write_number(grid, "theta_h_bins", GONIO_THETA_H_BINS) &&
-        gonio_i_hdf_write_number(grid, "theta_d_bins", GONIO_THETA_D_BINS) &&
-        gonio_i_hdf_write_number(grid, "phi_d_bins", GONIO_PHI_D_BINS) &&
-        gonio_i_hdf_write_string(grid, "representation", representations[basis->representation]) &&
-        gonio_i_hdf_write_string(grid, "channels", channel_models[basis->channels]) &&
-        gonio_i_hdf_write_array(grid, "cell", 1, &basis->cells, H5T_NATIVE_INT32, H5T_STD_I32LE,
-                                basis->cell);
-    if (grid >= 0) {
-        H5Gclose(grid);
+    *size = 0;
+    for (size_t k = 0; k < basis->materials; k++) {
+        *size += strlen(basis->names[k]) + 1;
     }
-    return done;
-}
-
-static bool write_materials(hid_t file, const gonio_basis *basis)
-{
-    const hid_t group = H5Gcreate2(file, "materials", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-    const bool done =
-        group >= 0 &&
-        gonio_i_hdf_write_strings(group, "name", basis->materials,
-                                  (const char *const *)basis->names) &&
-        gonio_i_hdf_write_array(group, "fingerprint", 1, &basis->materials, H5T_NATIVE_UINT64,
-                                H5T_STD_U64LE, basis->fingerprints);
-    if (group >= 0) {
-        H5Gclose(group);
+    char *joined = malloc(*size + 1);
+    char *end = joined;
+    for (size_t k = 0; joined != NULL && k < basis->materials; k++) {
+        end = stpcpy(end, basis->names[k]) + 1;
     }
-    return done;
+    return joined;
 }
 
-static bool write_hash(hid_t file, const char *name, uint64_t value)
+/* Data and shapes of all arrays; those that are not there have no data. */
+static void list_arrays(const gonio_basis *basis, const double *scale, const char *names,
+                        size_t names_size, gonio_i_array arrays[ARRAYS])
 {
-    char text[32];
-    snprintf(text, sizeof text, "%016" PRIx64, value);
-    return gonio_i_hdf_write_string(file, name, text);
+    const size_t k = basis->components;
+    const struct {
+        const void *data;
+        size_t shape[2];
+        size_t size; /* of one value */
+    } contents[ARRAYS] = {
+        [LOG_SCALE] = {scale, {GONIO_CHANNELS}, sizeof *scale},
+        [MEAN] = {basis->mean, {basis->rows}, sizeof *basis->mean},
+        [VARIANCES] = {basis->variances, {basis->variance_count}, sizeof *basis->variances},
+        [MATERIAL_FINGERPRINTS] = {basis->fingerprints,
+                                   {basis->materials},
+                                   sizeof *basis->fingerprints},
+        [COMPONENTS] = {basis->vectors, {basis->rows, k}, sizeof *basis->vectors},
+        [CELL] = {basis->cell, {basis->cells}, sizeof *basis->cell},
+        [MATERIAL_NAMES] = {names, {names_size}, 1},
+        [LOADINGS] = {basis->loadings, {gonio_i_basis_columns(basis), k}, sizeof(double)},
+        [MIXTURE_PARENTS] = {basis->parents, {basis->mixtures, 2}, sizeof(int32_t)},
+    };
+    for (size_t j = 0; j < ARRAYS; j++) {
+        arrays[j] = (gonio_i_array){.name = layout[j].name,
+                                    .type = layout[j].type,
+                                    .rank = layout[j].rank,
+                                    .data = contents[j].data,
+                                    .size = contents[j].size * contents[j].shape[0]};
+        memcpy(arrays[j].shape, contents[j].shape, sizeof contents[j].shape);
+        arrays[j].size *= layout[j].rank == 2 ? contents[j].shape[1] : 1;
+    }
 }
 
-static bool write_loadings(hid_t file, const gonio_basis *basis)
+/* Texts of the metadata that are made for a file. */
+typedef struct made_texts {
+    char mixtures[24];
+    char fingerprint[HASH_SIZE];
+    char checksum[ARRAYS][HASH_SIZE];
+} made_texts;
+
+static size_t list_metadata(const gonio_basis *basis, const char *command, const made_texts *made,
+                            const gonio_i_array *arrays, gonio_i_metadata *metadata)
 {
-    const size_t shape[2] = {gonio_i_basis_columns(basis), basis->components};
-    return basis->loadings == NULL ||
-           (write_hash(file, "loadings_checksum", basis->loadings_checksum) &&
-            gonio_i_hdf_write_array(file, "loadings", 2, shape, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE,
-                                    basis->loadings));
+    const gonio_i_metadata first[] = {
+        {"format", format_name},
+        {"format_version", format_version},
+        {"program", basis->program != NULL ? basis->program : ""},
+        {"command", command != NULL ? command : ""},
+        {"representation", representations[basis->representation]},
+        {"channels", channel_models[basis->channels]},
+        {"mapping", mappings[basis->mapping]},
+        {"centring", centrings[basis->without_mean]},
+        {"mixtures", made->mixtures},
+        {"fingerprint", made->fingerprint},
+    };
+    size_t count = sizeof first / sizeof *first;
+    memcpy(metadata, first, sizeof first);
+    for (size_t k = 0; k < GRID; k++) {
+        metadata[count++] = (gonio_i_metadata){grid[k].key, grid[k].bins};
+    }
+    for (size_t k = 0; k < ARRAYS; k++) {
+        if (arrays[k].data != NULL) {
+            metadata[count++] = (gonio_i_metadata){layout[k].checksum, made->checksum[k]};
+        }
+    }
+    return count;
 }
 
-static bool write_parents(hid_t file, const gonio_basis *basis)
+static gonio_status make_texts(gonio_context *context, const gonio_basis *basis,
+                               const gonio_i_array *arrays, made_texts *made)
 {
-    const size_t shape[2] = {basis->mixtures, 2};
-    return basis->parents == NULL ||
-           (write_hash(file, "mixture_parents_checksum", basis->parents_checksum) &&
-            gonio_i_hdf_write_array(file, "mixture_parents", 2, shape, H5T_NATIVE_INT32,
-                                    H5T_STD_I32LE, basis->parents));
-}
-
-static bool write_contents(hid_t file, const gonio_basis *basis, const char *command)
-{
-    const size_t scales = GONIO_CHANNELS;
-    const double scale[GONIO_CHANNELS] = {gonio_log_scale(0), gonio_log_scale(1),
-                                          gonio_log_scale(2)};
-    const size_t shape[2] = {basis->rows, basis->components};
-    return gonio_i_hdf_write_string(file, "format", format_name) &&
-           gonio_i_hdf_write_number(file, "format_version", FORMAT_VERSION) &&
-           gonio_i_hdf_write_string(file, "program", basis->program) &&
-           gonio_i_hdf_write_string(file, "command", command != NULL ? command : "") &&
-           gonio_i_hdf_write_string(file, "mapping", mappings[basis->mapping]) &&
-           gonio_i_hdf_write_string(file, "centring", centrings[basis->without_mean]) &&
-           gonio_i_hdf_write_number(file, "mixtures", (int64_t)basis->mixtures) &&
-           write_hash(file, "fingerprint", basis->fingerprint) &&
-           write_hash(file, "checksum", basis->checksum) && write_grid(file, basis) &&
-           write_materials(file, basis) && write_loadings(file, basis) &&
-           write_parents(file, basis) &&
-           gonio_i_hdf_write_array(file, "log_scale", 1, &scales, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE,
-                                   scale) &&
-           gonio_i_hdf_write_array(file, "mean", 1, &basis->rows, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE,
-                                   basis->mean) &&
-           gonio_i_hdf_write_array(file, "components", 2, shape, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE,
-                                   basis->vectors) &&
-           gonio_i_hdf_write_array(file, "variances", 1, &basis->variance_count, H5T_NATIVE_DOUBLE,
-                                   H5T_IEEE_F64LE, basis->variances);
-}
-
-/* The file is made in memory and then written like any other output: HDF5 does not survive a disk
- * that fills up while it writes. */
-static gonio_status write_image(gonio_context *context, const gonio_basis *basis,
-                                const char *command, gonio_i_output *output)
-{
-    const hid_t file = gonio_i_hdf_create_image();
-    const void *image = NULL;
-    size_t size = 0;
     gonio_status status = GONIO_OK;
-    if (file >= 0 && write_contents(file, basis, command) &&
-        gonio_i_hdf_read_image(file, &image, &size)) {
-        status = gonio_i_output_write(context, output, image, size);
-    } else {
-        status = gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", output->path);
-    }
-    if (file >= 0) {
-        H5Fclose(file);
+    snprintf(made->mixtures, sizeof made->mixtures, "%zu", basis->mixtures);
+    print_hash(basis->fingerprint, made->fingerprint);
+    for (size_t k = 0; k < ARRAYS && status == GONIO_OK; k++) {
+        uint64_t hash = basis->vectors_checksum;
+        if (k != COMPONENTS && arrays[k].data != NULL) {
+            status = gonio_i_basis_hash(context, arrays[k].data, arrays[k].size, &hash);
+        }
+        print_hash(hash, made->checksum[k]);
     }
     return status;
+}
+
+static gonio_status write_arrays(gonio_context *context, const gonio_basis *basis,
+                                 const char *command, const gonio_i_array *arrays, const char *path)
+{
+    enum { MOST_TEXTS = 32 };
+    gonio_i_metadata metadata[MOST_TEXTS];
+    gonio_i_array present[ARRAYS];
+    made_texts made;
+    size_t count = 0;
+    for (size_t k = 0; k < ARRAYS; k++) {
+        if (arrays[k].data != NULL) {
+            present[count++] = arrays[k];
+        }
+    }
+    const gonio_status status = make_texts(context, basis, arrays, &made);
+    if (status != GONIO_OK) {
+        return status;
+    }
+    const size_t texts = list_metadata(basis, command, &made, arrays, metadata);
+    return gonio_i_safetensors_write(context, metadata, texts, present, count, path);
 }
 
 gonio_status gonio_basis_write(gonio_context *context, const gonio_basis *basis,
                                const char *command, const char *path)
 {
-    gonio_i_output output;
-    gonio_status status = gonio_i_output_open(context, path, &output);
-    if (status != GONIO_OK) {
-        return status;
+    const double scale[GONIO_CHANNELS] = {gonio_log_scale(0), gonio_log_scale(1),
+                                          gonio_log_scale(2)};
+    gonio_i_array arrays[ARRAYS];
+    size_t size = 0;
+    char *names = join_names(basis, &size);
+    if (names == NULL) {
+        return gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", path);
     }
-    gonio_i_hdf_session session;
-    gonio_i_hdf_enter(&session);
-    status = write_image(context, basis, command, &output);
-    gonio_i_hdf_leave(&session);
-    return gonio_i_output_close(context, &output, status);
+    list_arrays(basis, scale, names, size, arrays);
+    const gonio_status status = write_arrays(context, basis, command, arrays, path);
+    free(names);
+    return status;
 }
 
 /* ---- reading ---- */
 
-/* What a file holds, before it becomes a basis. */
-typedef struct contents {
+/* A file, the basis that it becomes, and its arrays; NULL where the file has none. */
+typedef struct reader {
     gonio_context *context;
     const char *path;
-    hid_t file;
-    int64_t representation, channels, mapping, without_mean;
-    void *cell, *mean, *vectors, *variances, *loadings, *parents, *fingerprints;
-    size_t cells, rows, components, variance_count, materials, mixtures;
-    char **names;
-    char *program, *command;
-    uint64_t fingerprint, checksum, loadings_checksum, parents_checksum;
-} contents;
+    gonio_i_safetensors *file;
+    const gonio_i_array *arrays[ARRAYS];
+    gonio_basis *basis;
+} reader;
 
-static gonio_status damaged(const contents *c, const char *what, const char *problem)
+static gonio_status damaged(const reader *r, const char *what, const char *problem)
 {
-    return gonio_i_fail(c->context, GONIO_ERROR_FORMAT,
-                        "%s: '%s' %s; learn the basis again with gonio learn", c->path, what,
-                        problem);
+    return gonio_i_fail(r->context, GONIO_ERROR_FORMAT, "%s: '%s' %s; %s", r->path, what, problem,
+                        remedy);
 }
 
-static gonio_status read_word(const contents *c, hid_t parent, const char *name,
-                              const char *const *words, int64_t *value)
+/* It is a basis, and of a version that this program knows. */
+static gonio_status check_kind(const reader *r)
 {
-    char **text = NULL;
-    size_t count = 0;
-    *value = -1;
-    if (gonio_i_hdf_read_strings(parent, name, false, &text, &count) && count == 1) {
-        for (int k = 0; words[k] != NULL; k++) {
-            *value = strcmp(text[0], words[k]) == 0 ? k : *value;
-        }
+    const char *format = gonio_i_safetensors_text(r->file, "format");
+    const char *version = gonio_i_safetensors_text(r->file, "format_version");
+    if (format == NULL || strcmp(format, format_name) != 0) {
+        return gonio_i_fail(r->context, GONIO_ERROR_FORMAT,
+                            "%s: a safetensors file, but not a gonio basis; gonio learn makes one",
+                            r->path);
     }
-    free(text);
-    return *value >= 0 ? GONIO_OK : damaged(c, name, "is missing or unknown");
-}
-
-/* What a file of gonio 0.1.0 does not say: then it is the first of the words. */
-static gonio_status read_new_word(const contents *c, const char *name, const char *const *words,
-                                  int64_t *value)
-{
-    *value = 0;
-    return H5Aexists(c->file, name) > 0 ? read_word(c, c->file, name, words, value) : GONIO_OK;
-}
-
-static gonio_status read_space(contents *c)
-{
-    const gonio_status status = read_new_word(c, "mapping", mappings, &c->mapping);
-    return status == GONIO_OK ? read_new_word(c, "centring", centrings, &c->without_mean) : status;
-}
-
-/* Columns that are no materials', which files of gonio 0.1.0 do not have. */
-static gonio_status read_mixtures(contents *c)
-{
-    int64_t mixtures = 0;
-    if (H5Aexists(c->file, "mixtures") > 0 &&
-        (!gonio_i_hdf_read_number(c->file, "mixtures", &mixtures) || mixtures < 0 ||
-         mixtures > MOST_MATERIALS)) {
-        return damaged(c, "mixtures", "is not a number of columns");
+    if (version == NULL || strcmp(version, format_version) != 0) {
+        return gonio_i_fail(r->context, GONIO_ERROR_FORMAT,
+                            "%s: a basis of format version %.20s; this gonio reads version %s",
+                            r->path, version != NULL ? version : "(none)", format_version);
     }
-    c->mixtures = (size_t)mixtures;
     return GONIO_OK;
 }
 
-static size_t measured_of(const contents *c)
+static gonio_status check_grid(const reader *r)
 {
-    return gonio_i_columns_per_material((gonio_channel_model)c->channels) * c->materials;
-}
-
-static size_t columns_of(const contents *c)
-{
-    return measured_of(c) + c->mixtures;
-}
-
-static gonio_status read_grid(contents *c)
-{
-    static const char *const names[3] = {"theta_h_bins", "theta_d_bins", "phi_d_bins"};
-    static const int64_t expected[3] = {GONIO_THETA_H_BINS, GONIO_THETA_D_BINS, GONIO_PHI_D_BINS};
-    const hid_t grid = H5Gopen2(c->file, "grid", H5P_DEFAULT);
-    if (grid < 0) {
-        return damaged(c, "grid", "is missing");
-    }
-    gonio_status status = GONIO_OK;
-    for (int k = 0; k < 3 && status == GONIO_OK; k++) {
-        int64_t bins = 0;
-        if (!gonio_i_hdf_read_number(grid, names[k], &bins)) {
-            status = damaged(c, names[k], "is missing");
-        } else if (bins != expected[k]) {
-            status = gonio_i_fail(c->context, GONIO_ERROR_MISMATCH,
-                                  "%s: a basis on a grid with %lld %s; this gonio works on "
-                                  "90 x 90 x 180",
-                                  c->path, (long long)bins, names[k]);
+    for (size_t k = 0; k < GRID; k++) {
+        const char *bins = gonio_i_safetensors_text(r->file, grid[k].key);
+        if (bins == NULL) {
+            return damaged(r, grid[k].key, "is missing");
+        }
+        if (strcmp(bins, grid[k].bins) != 0) {
+            return gonio_i_fail(r->context, GONIO_ERROR_MISMATCH,
+                                "%s: a basis on a grid with %.20s %s; this gonio works on "
+                                "90 x 90 x 180",
+                                r->path, bins, grid[k].key);
         }
     }
+    return GONIO_OK;
+}
+
+static gonio_status read_word(const reader *r, const char *key, const char *const *words,
+                              int *value)
+{
+    const char *text = gonio_i_safetensors_text(r->file, key);
+    for (int k = 0; text != NULL && words[k] != NULL; k++) {
+        if (strcmp(text, words[k]) == 0) {
+            *value = k;
+            return GONIO_OK;
+        }
+    }
+    return damaged(r, key, "is missing or unknown");
+}
+
+static gonio_status read_words(const reader *r)
+{
+    int value[4] = {0};
+    gonio_status status = read_word(r, "representation", representations, &value[0]);
     if (status == GONIO_OK) {
-        status = read_word(c, grid, "representation", representations, &c->representation);
+        status = read_word(r, "channels", channel_models, &value[1]);
     }
     if (status == GONIO_OK) {
-        status = read_word(c, grid, "channels", channel_models, &c->channels);
+        status = read_word(r, "mapping", mappings, &value[2]);
     }
     if (status == GONIO_OK) {
-        const char *problem = gonio_i_hdf_read_array(grid, "cell", 1, GONIO_BINS, H5T_NATIVE_INT32,
-                                                     &c->cell, &c->cells);
-        status = problem != NULL ? damaged(c, "grid/cell", problem) : GONIO_OK;
+        status = read_word(r, "centring", centrings, &value[3]);
     }
-    H5Gclose(grid);
+    r->basis->representation = (gonio_representation)value[0];
+    r->basis->channels = (gonio_channel_model)value[1];
+    r->basis->mapping = (gonio_mapping)value[2];
+    r->basis->without_mean = value[3] != 0;
     return status;
 }
 
-static gonio_status read_materials(contents *c)
+/* The arrays by their names, each of the type and rank that it has to have. */
+static gonio_status find_arrays(reader *r)
 {
-    size_t fingerprints = 0;
-    if (!gonio_i_hdf_read_strings(c->file, "materials/name", true, &c->names, &c->materials)) {
-        return damaged(c, "materials/name", "is missing or not a list of strings");
+    for (size_t k = 0; k < ARRAYS; k++) {
+        const gonio_i_array *found = gonio_i_safetensors_array(r->file, layout[k].name);
+        if (found == NULL && layout[k].needed) {
+            return damaged(r, layout[k].name, "is missing");
+        }
+        if (found != NULL && (found->type != layout[k].type || found->rank != layout[k].rank)) {
+            return damaged(r, layout[k].name, "has another type or rank");
+        }
+        r->arrays[k] = found;
     }
-    const char *problem =
-        gonio_i_hdf_read_array(c->file, "materials/fingerprint", 1, MOST_MATERIALS,
-                               H5T_NATIVE_UINT64, &c->fingerprints, &fingerprints);
-    if (problem == NULL && fingerprints != c->materials) {
-        problem = "has a wrong shape";
+    return GONIO_OK;
+}
+
+static gonio_status read_mixtures(const reader *r)
+{
+    const gonio_i_array *parents = r->arrays[MIXTURE_PARENTS];
+    const char *text = gonio_i_safetensors_text(r->file, "mixtures");
+    char *end = NULL;
+    const bool digits = text != NULL && *text >= '0' && *text <= '9';
+    errno = 0;
+    const unsigned long long mixtures = digits ? strtoull(text, &end, 10) : 0;
+    if (!digits || *end != '\0' || errno != 0 || mixtures > INT32_MAX) {
+        return damaged(r, "mixtures", "is not a number of columns");
     }
-    return problem != NULL ? damaged(c, "materials/fingerprint", problem) : GONIO_OK;
+    if (parents != NULL &&
+        (mixtures == 0 || parents->shape[0] != mixtures || parents->shape[1] != 2)) {
+        return damaged(r, "mixture_parents", "has a shape that does not fit the mixtures");
+    }
+    r->basis->mixtures = (size_t)mixtures;
+    return GONIO_OK;
+}
+
+/* The sizes of a basis from the shapes, which have to fit each other. */
+static gonio_status read_shapes(const reader *r)
+{
+    gonio_basis *basis = r->basis;
+    const gonio_i_array *const *a = r->arrays;
+    basis->cells = a[CELL]->shape[0];
+    basis->rows = gonio_i_basis_row_count(basis->cells, basis->channels);
+    basis->components = a[COMPONENTS]->shape[1];
+    basis->variance_count = a[VARIANCES]->shape[0];
+    basis->materials = a[MATERIAL_FINGERPRINTS]->shape[0];
+    if (basis->cells > GONIO_BINS || a[MEAN]->shape[0] != basis->rows) {
+        return damaged(r, "mean", "has a shape that does not fit the cells");
+    }
+    const gonio_status status = read_mixtures(r);
+    if (status != GONIO_OK) {
+        return status;
+    }
+    const size_t columns = gonio_i_basis_columns(basis);
+    if (basis->materials == 0) {
+        return damaged(r, "material_fingerprints", "has none");
+    }
+    if (columns < 2 || basis->variance_count > columns) {
+        return damaged(r, "variances", "are more than there are columns");
+    }
+    if (a[COMPONENTS]->shape[0] != basis->rows || basis->components == 0 ||
+        basis->components > basis->variance_count) {
+        return damaged(r, "components", "has a shape that does not fit the cells and variances");
+    }
+    if (a[LOADINGS] != NULL &&
+        (a[LOADINGS]->shape[0] != columns || a[LOADINGS]->shape[1] != basis->components)) {
+        return damaged(r, "loadings", "has a shape that does not fit the columns and components");
+    }
+    return a[LOG_SCALE]->shape[0] == GONIO_CHANNELS ? GONIO_OK
+                                                    : damaged(r, "log_scale", "has a wrong shape");
 }
 
 /* Another scale would be another log space. */
-static gonio_status check_log_scale(const contents *c)
+static gonio_status check_log_scale(const reader *r)
 {
-    void *scale = NULL;
-    size_t count = 0;
-    const char *problem =
-        gonio_i_hdf_read_array(c->file, "log_scale", 1, 64, H5T_NATIVE_DOUBLE, &scale, &count);
-    if (problem == NULL && count != GONIO_CHANNELS) {
-        problem = "has a wrong shape";
-    }
-    for (int k = 0; k < GONIO_CHANNELS && problem == NULL; k++) {
+    const double *scale = r->arrays[LOG_SCALE]->data;
+    for (int k = 0; k < GONIO_CHANNELS; k++) {
         const double ours = gonio_log_scale(k);
-        if (!(fabs(((const double *)scale)[k] - ours) <= 1e-12 * ours)) {
-            problem = "is not this program's";
+        if (!(fabs(scale[k] - ours) <= 1e-12 * ours)) {
+            return damaged(r, "log_scale", "is not this program's");
         }
-    }
-    free(scale);
-    return problem != NULL ? damaged(c, "log_scale", problem) : GONIO_OK;
-}
-
-static gonio_status read_numbers(contents *c)
-{
-    /* Each size limits the next, so that no file asks for more memory than its grid needs. */
-    const size_t rows = gonio_i_basis_row_count(c->cells, (gonio_channel_model)c->channels);
-    size_t shape[2] = {0, 0};
-    const char *what = "mean";
-    const char *problem =
-        gonio_i_hdf_read_array(c->file, what, 1, rows, H5T_NATIVE_DOUBLE, &c->mean, &c->rows);
-    if (problem == NULL) {
-        what = "variances";
-        problem = gonio_i_hdf_read_array(c->file, what, 1, columns_of(c), H5T_NATIVE_DOUBLE,
-                                         &c->variances, &c->variance_count);
-    }
-    if (problem == NULL) {
-        what = "components";
-        problem = gonio_i_hdf_read_array(c->file, what, 2, rows * c->variance_count,
-                                         H5T_NATIVE_DOUBLE, &c->vectors, shape);
-        c->components = shape[1];
-    }
-    if (problem == NULL && (c->rows != rows || shape[0] != c->rows || c->components == 0 ||
-                            c->cells == 0 || c->components > c->variance_count)) {
-        what = "components";
-        problem = "has a shape that does not fit the grid and the mean";
-    }
-    return problem != NULL ? damaged(c, what, problem) : GONIO_OK;
-}
-
-/* It is one of ours, and of a version that this program knows. */
-static gonio_status check_kind(const contents *c)
-{
-    char **text = NULL;
-    size_t count = 0;
-    int64_t version = 0;
-    const bool ours = gonio_i_hdf_read_strings(c->file, "format", false, &text, &count) &&
-                      count == 1 && strcmp(text[0], format_name) == 0;
-    free(text);
-    if (!ours) {
-        return gonio_i_fail(c->context, GONIO_ERROR_FORMAT,
-                            "%s: an HDF5 file, but not a gonio basis; gonio learn makes one",
-                            c->path);
-    }
-    if (!gonio_i_hdf_read_number(c->file, "format_version", &version) ||
-        version != FORMAT_VERSION) {
-        return gonio_i_fail(c->context, GONIO_ERROR_FORMAT,
-                            "%s: a basis of format version %lld; this gonio reads version %d",
-                            c->path, (long long)version, FORMAT_VERSION);
     }
     return GONIO_OK;
 }
 
-/* An attribute that is one string. */
-static gonio_status read_text(const contents *c, const char *name, char **text)
+static gonio_status read_names(const reader *r)
 {
-    char **strings = NULL;
-    size_t count = 0;
-    if (gonio_i_hdf_read_strings(c->file, name, false, &strings, &count) && count == 1) {
-        *text = strdup(strings[0]);
-    }
-    free(strings);
-    return *text != NULL ? GONIO_OK : damaged(c, name, "is missing");
-}
-
-/* An attribute of hexadecimal digits. */
-static gonio_status read_hash(const contents *c, const char *name, uint64_t *value)
-{
-    char *text = NULL;
-    const gonio_status status = read_text(c, name, &text);
-    *value = text != NULL ? strtoull(text, NULL, 16) : 0;
-    free(text);
-    return status;
-}
-
-/* W, which files of gonio 0.1.0 lack. */
-static gonio_status read_loadings(contents *c)
-{
-    const size_t columns = columns_of(c);
-    size_t shape[2] = {0, 0};
-    if (H5Lexists(c->file, "loadings", H5P_DEFAULT) <= 0) {
-        return GONIO_OK;
-    }
-    const char *problem = gonio_i_hdf_read_array(c->file, "loadings", 2, columns * c->components,
-                                                 H5T_NATIVE_DOUBLE, &c->loadings, shape);
-    if (problem == NULL && (shape[0] != columns || shape[1] != c->components)) {
-        problem = "has a shape that does not fit the materials and the components";
-    }
-    return problem != NULL ? damaged(c, "loadings", problem)
-                           : read_hash(c, "loadings_checksum", &c->loadings_checksum);
-}
-
-/* What mixtures are made of, which older files lack. */
-static gonio_status read_parents(contents *c)
-{
-    size_t shape[2] = {0, 0};
-    if (c->mixtures == 0 || H5Lexists(c->file, "mixture_parents", H5P_DEFAULT) <= 0) {
-        return GONIO_OK;
-    }
-    const char *problem = gonio_i_hdf_read_array(c->file, "mixture_parents", 2, 2 * c->mixtures,
-                                                 H5T_NATIVE_INT32, &c->parents, shape);
-    if (problem == NULL && (shape[0] != c->mixtures || shape[1] != 2)) {
-        problem = "has a shape that does not fit the mixtures";
-    }
-    return problem != NULL ? damaged(c, "mixture_parents", problem)
-                           : read_hash(c, "mixture_parents_checksum", &c->parents_checksum);
-}
-
-static gonio_status read_contents(contents *c)
-{
-    gonio_status status = check_kind(c);
-    if (status == GONIO_OK) {
-        status = read_space(c);
-    }
-    if (status == GONIO_OK) {
-        status = read_grid(c);
-    }
-    if (status == GONIO_OK) {
-        status = read_materials(c);
-    }
-    if (status == GONIO_OK) {
-        status = read_mixtures(c);
-    }
-    if (status == GONIO_OK) {
-        status = check_log_scale(c);
-    }
-    if (status == GONIO_OK) {
-        status = read_numbers(c);
-    }
-    if (status == GONIO_OK) {
-        status = read_loadings(c);
-    }
-    if (status == GONIO_OK) {
-        status = read_parents(c);
-    }
-    if (status == GONIO_OK) {
-        status = read_text(c, "program", &c->program);
-    }
-    if (status == GONIO_OK) {
-        status = read_text(c, "command", &c->command);
-    }
-    if (status == GONIO_OK) {
-        status = read_hash(c, "fingerprint", &c->fingerprint);
-    }
-    if (status == GONIO_OK) {
-        status = read_hash(c, "checksum", &c->checksum);
-    }
-    return status;
-}
-
-static void free_contents(contents *c)
-{
-    free(c->cell);
-    free(c->mean);
-    free(c->vectors);
-    free(c->variances);
-    free(c->loadings);
-    free(c->parents);
-    free(c->fingerprints);
-    free(c->names);
-    free(c->program);
-    free(c->command);
-}
-
-static bool all_finite(const double *values, size_t count)
-{
-    for (size_t k = 0; k < count; k++) {
-        if (!isfinite(values[k])) {
-            return false;
-        }
-    }
-    return true;
-}
-
-static bool cells_in_order(const contents *c)
-{
-    const int32_t *cell = c->cell;
-    const int32_t end = gonio_grid_cells((gonio_representation)c->representation);
-    int32_t last = -1;
-    for (size_t k = 0; k < c->cells; k++) {
-        if (cell[k] <= last || cell[k] >= end) {
-            return false;
-        }
-        last = cell[k];
-    }
-    return true;
-}
-
-static bool parents_are_measured(const contents *c)
-{
-    const int32_t *parent = c->parents;
-    for (size_t k = 0; parent != NULL && k < 2 * c->mixtures; k++) {
-        if (parent[k] < 0 || (size_t)parent[k] >= measured_of(c)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-/* max |V'V - I| */
-static gonio_status check_orthonormal(const contents *c)
-{
-    const size_t k = c->components;
-    double *gram = gonio_i_allocate(c->context, k * k, sizeof *gram);
-    if (gram == NULL) {
+    const gonio_i_array *array = r->arrays[MATERIAL_NAMES];
+    const char *names = array->data;
+    const char *end = names + array->size;
+    r->basis->names = gonio_i_allocate(r->context, r->basis->materials, sizeof *r->basis->names);
+    if (r->basis->names == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    gonio_status status = gonio_i_gram_rows(c->context, c->vectors, c->rows, k, k, gram);
-    for (size_t j = 0; j < k * k && status == GONIO_OK; j++) {
-        if (!(fabs(gram[j] - (j % (k + 1) == 0 ? 1.0 : 0.0)) < 1e-8)) {
-            status = damaged(c, "components", "are not orthonormal");
+    for (size_t k = 0; k < r->basis->materials; k++) {
+        const size_t length = strnlen(names, (size_t)(end - names));
+        if (names + length == end) {
+            return damaged(r, "material_names", "has fewer names than there are materials");
         }
+        r->basis->names[k] = strndup(names, length);
+        if (r->basis->names[k] == NULL) {
+            return gonio_i_fail(r->context, GONIO_ERROR_MEMORY, "%s: out of memory", r->path);
+        }
+        names += length + 1;
     }
-    free(gram);
+    return names == end ? GONIO_OK
+                        : damaged(r, "material_names", "has more names than there are materials");
+}
+
+/* A copy, which nobody can change after it is checked; NULL where the file has no such array. */
+static gonio_status copy_array(const reader *r, int which, void *copy)
+{
+    const gonio_i_array *array = r->arrays[which];
+    void *made = NULL;
+    if (array != NULL) {
+        made = gonio_i_allocate(r->context, array->size, 1);
+        if (made == NULL) {
+            return GONIO_ERROR_MEMORY;
+        }
+        memcpy(made, array->data, array->size);
+    }
+    memcpy(copy, &made, sizeof made);
+    return GONIO_OK;
+}
+
+/* All but V, which stays in the file. */
+static gonio_status copy_arrays(const reader *r)
+{
+    gonio_basis *basis = r->basis;
+    const struct {
+        int which;
+        void *copy;
+    } copies[] = {{MEAN, &basis->mean},         {VARIANCES, &basis->variances},
+                  {CELL, &basis->cell},         {MATERIAL_FINGERPRINTS, &basis->fingerprints},
+                  {LOADINGS, &basis->loadings}, {MIXTURE_PARENTS, &basis->parents}};
+    gonio_status status = GONIO_OK;
+    for (size_t k = 0; k < sizeof copies / sizeof *copies && status == GONIO_OK; k++) {
+        status = copy_array(r, copies[k].which, copies[k].copy);
+    }
+    basis->vectors = r->arrays[COMPONENTS]->data;
     return status;
 }
 
-static gonio_status check_values(const contents *c)
+static gonio_status read_texts(const reader *r)
 {
-    if (!cells_in_order(c)) {
-        return damaged(c, "grid/cell", "is not a rising list of cells of the grid");
+    const char *program = gonio_i_safetensors_text(r->file, "program");
+    const char *command = gonio_i_safetensors_text(r->file, "command");
+    const char *vectors = gonio_i_safetensors_text(r->file, layout[COMPONENTS].checksum);
+    if (program == NULL || command == NULL) {
+        return damaged(r, program == NULL ? "program" : "command", "is missing");
     }
-    if (!all_finite(c->mean, c->rows) || !all_finite(c->vectors, c->rows * c->components) ||
-        !all_finite(c->variances, c->variance_count)) {
-        return damaged(c, "mean, components or variances", "holds a number that is not finite");
-    }
-    const size_t columns = columns_of(c);
-    if (c->loadings != NULL && !all_finite(c->loadings, columns * c->components)) {
-        return damaged(c, "loadings", "holds a number that is not finite");
-    }
-    if (!parents_are_measured(c)) {
-        return damaged(c, "mixture_parents", "names a column that no material has");
-    }
-    return check_orthonormal(c);
+    r->basis->vectors_checksum = vectors != NULL ? strtoull(vectors, NULL, 16) : 0;
+    r->basis->program = strdup(program);
+    r->basis->command = strdup(command);
+    return r->basis->program != NULL && r->basis->command != NULL
+               ? GONIO_OK
+               : gonio_i_fail(r->context, GONIO_ERROR_MEMORY, "%s: out of memory", r->path);
 }
 
-static void *take(void **from)
+static gonio_status compare_hash(const reader *r, const char *key, uint64_t value)
 {
-    void *taken = *from;
-    *from = NULL;
-    return taken;
+#ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
+    (void)r; /* what lies behind the hashes is to be found too */
+    (void)key;
+    (void)value;
+    return GONIO_OK;
+#else
+    char text[HASH_SIZE];
+    const char *stored = gonio_i_safetensors_text(r->file, key);
+    print_hash(value, text);
+    return stored != NULL && strcmp(stored, text) == 0
+               ? GONIO_OK
+               : damaged(r, key, "does not fit the contents (the file was changed)");
+#endif
 }
 
-static gonio_status check_hash(const contents *c, const char *name, uint64_t stored, uint64_t value)
+/* Of the arrays but V as they are used, so of the copies. */
+static gonio_status compare_hashes(const reader *r)
 {
-    return stored == value ? GONIO_OK
-                           : damaged(c, name, "does not fit the contents (the file was changed)");
-}
-
-/* Moves what was read into a basis. */
-static gonio_status assemble(contents *c, gonio_basis **basis)
-{
-    gonio_basis *made = gonio_i_allocate(c->context, 1, sizeof *made);
-    if (made == NULL) {
-        return GONIO_ERROR_MEMORY;
-    }
-    *made = (gonio_basis){
-        .representation = (gonio_representation)c->representation,
-        .channels = (gonio_channel_model)c->channels,
-        .mapping = (gonio_mapping)c->mapping,
-        .without_mean = c->without_mean != 0,
-        .materials = c->materials,
-        .mixtures = c->mixtures,
-        .names = gonio_i_allocate(c->context, c->materials, sizeof *made->names),
-        .fingerprints = take(&c->fingerprints),
-        .cells = c->cells,
-        .cell = take(&c->cell),
-        .rows = c->rows,
-        .components = c->components,
-        .mean = take(&c->mean),
-        .vectors = take(&c->vectors),
-        .variance_count = c->variance_count,
-        .variances = take(&c->variances),
-        .loadings = take(&c->loadings),
-        .parents = take(&c->parents),
-        .program = c->program,
-        .command = c->command,
+    const gonio_basis *basis = r->basis;
+    const void *const used[ARRAYS] = {
+        [LOG_SCALE] = r->arrays[LOG_SCALE]->data,
+        [MEAN] = basis->mean,
+        [VARIANCES] = basis->variances,
+        [MATERIAL_FINGERPRINTS] = basis->fingerprints,
+        [CELL] = basis->cell,
+        [MATERIAL_NAMES] = r->arrays[MATERIAL_NAMES]->data,
+        [LOADINGS] = basis->loadings,
+        [MIXTURE_PARENTS] = basis->parents,
     };
-    c->program = NULL; /* the basis's now */
-    c->command = NULL;
-    bool done = made->names != NULL;
-    for (size_t k = 0; done && k < c->materials; k++) {
-        made->names[k] = strdup(c->names[k]);
-        done = made->names[k] != NULL;
+    gonio_status status = GONIO_OK;
+    for (size_t k = 0; k < ARRAYS && status == GONIO_OK; k++) {
+        uint64_t hash = 0;
+        if (used[k] != NULL) {
+            status = gonio_i_basis_hash(r->context, used[k], r->arrays[k]->size, &hash);
+            status = status == GONIO_OK ? compare_hash(r, layout[k].checksum, hash) : status;
+        }
     }
-    gonio_status status = done ? gonio_i_basis_finish(c->context, made) : GONIO_ERROR_MEMORY;
-    if (status == GONIO_OK) {
-        status = check_hash(c, "checksum", c->checksum, made->checksum);
-    }
-    if (status == GONIO_OK) {
-        status = check_hash(c, "fingerprint", c->fingerprint, made->fingerprint);
-    }
-    if (status == GONIO_OK) {
-        status = check_hash(c, "loadings_checksum", c->loadings_checksum, made->loadings_checksum);
-    }
-    if (status == GONIO_OK) {
-        status =
-            check_hash(c, "mixture_parents_checksum", c->parents_checksum, made->parents_checksum);
-    }
-    if (status != GONIO_OK) {
-        gonio_basis_free(&made);
-        return status;
-    }
-    *basis = made;
-    return GONIO_OK;
+    return status;
 }
 
-static gonio_status check_file(gonio_context *context, const char *path)
+/* From the header to a basis of which nothing is known but that its arrays have the right sizes. */
+static gonio_status read_header(reader *r)
 {
-    struct stat status;
-    if (stat(path, &status) != 0) {
-        return gonio_i_fail(context, GONIO_ERROR_IO, "%s: cannot read: %s", path, strerror(errno));
+    static gonio_status (*const steps[])(const reader *) = {read_shapes, check_log_scale,
+                                                            read_names, copy_arrays, read_texts};
+    gonio_status status = check_kind(r);
+    if (status == GONIO_OK) {
+        status = check_grid(r);
     }
-    if (S_ISDIR(status.st_mode)) {
-        return gonio_i_fail(context, GONIO_ERROR_IO, "%s: cannot read: %s", path, strerror(EISDIR));
+    if (status == GONIO_OK) {
+        status = read_words(r);
     }
-    FILE *file = fopen(path, "rbe");
-    if (file == NULL) {
-        return gonio_i_fail(context, GONIO_ERROR_IO, "%s: cannot read: %s", path, strerror(errno));
+    if (status == GONIO_OK) {
+        status = find_arrays(r);
     }
-    fclose(file);
-    return GONIO_OK;
+    for (size_t k = 0; k < sizeof steps / sizeof *steps && status == GONIO_OK; k++) {
+        status = steps[k](r);
+    }
+    return status;
 }
 
-bool gonio_i_basis_may_be(const gonio_i_file *file)
+static gonio_status read_basis(reader *r)
+{
+    gonio_status status = read_header(r);
+    if (status == GONIO_OK) {
+        status = compare_hashes(r);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_basis_check(r->context, r->path, r->basis);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_basis_finish(r->context, r->basis);
+    }
+    return status == GONIO_OK ? compare_hash(r, "fingerprint", r->basis->fingerprint) : status;
+}
+
+/* ---- which file is one ---- */
+
+static bool is_hdf5(const gonio_i_file *file)
 {
     return gonio_i_file_begins(file, "\x89HDF\r\n\x1a\n", 8);
 }
 
+static bool is_marked(const gonio_i_file *file)
+{
+    return memmem(file->head, file->head_size, format_name, sizeof format_name - 1) != NULL;
+}
+
+bool gonio_i_basis_may_be(const gonio_i_file *file)
+{
+    return is_hdf5(file) || gonio_i_safetensors_begin(file->head, file->head_size);
+}
+
 const char *gonio_i_basis_format_of(const gonio_i_file *file)
 {
-    const bool marked =
-        memmem(file->head, file->head_size, format_name, sizeof format_name - 1) != NULL;
-    return gonio_i_basis_may_be(file) && marked ? format_name : NULL;
+    const bool basis = gonio_i_basis_may_be(file) && is_marked(file);
+    return !basis ? NULL : is_hdf5(file) ? "gonio basis of an older gonio, HDF5" : format_name;
 }
 
 const char *gonio_i_basis_format_name(int index)
 {
-    return index == 0 ? format_name : NULL;
+    return index == 0 ? format_name : NULL; /* older ones are converted, not read */
+}
+
+/* What is no safetensors file: an older basis, or no basis. */
+static gonio_status check_beginning(gonio_context *context, const gonio_i_file *file)
+{
+    if (is_hdf5(file) && is_marked(file)) {
+        return gonio_i_fail(context, GONIO_ERROR_FORMAT,
+                            "%s: a basis of an older gonio (HDF5); 'gonio convert %s NEW.gonio' "
+                            "makes one of today",
+                            file->path, file->path);
+    }
+    if (!gonio_i_safetensors_begin(file->head, file->head_size)) {
+        return gonio_i_fail(context, GONIO_ERROR_FORMAT,
+                            "%s: %snot a gonio basis; gonio learn "
+                            "makes one",
+                            file->path, is_hdf5(file) ? "an HDF5 file, but " : "");
+    }
+    return GONIO_OK;
 }
 
 gonio_status gonio_basis_read(gonio_context *context, const char *path, gonio_basis **basis)
 {
-    gonio_status status = check_file(context, path);
+    reader r = {.context = context, .path = path};
+    gonio_i_file head;
+    gonio_status status = gonio_i_file_look(context, path, &head);
+    if (status == GONIO_OK) {
+        status = check_beginning(context, &head);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_safetensors_open(context, path, remedy, &r.file);
+    }
     if (status != GONIO_OK) {
         return status;
     }
-    contents c = {.context = context, .path = path};
-    gonio_i_hdf_session session;
-    gonio_i_hdf_enter(&session);
-    c.file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
-    if (c.file < 0) {
+    r.basis = gonio_i_allocate(context, 1, sizeof *r.basis);
+    if (r.basis == NULL) {
+        gonio_i_safetensors_close(&r.file);
+        return GONIO_ERROR_MEMORY;
+    }
+    r.basis->file = r.file; /* closed with it */
+    status = read_basis(&r);
+    if (status != GONIO_OK) {
+        gonio_basis_free(&r.basis);
+        return status;
+    }
+    *basis = r.basis;
+    return GONIO_OK;
+}
+
+gonio_status gonio_basis_convert(gonio_context *context, const char *input, const char *output)
+{
+    gonio_basis *basis = NULL;
+    gonio_i_file head;
+    gonio_status status = gonio_i_file_look(context, input, &head);
+    if (status == GONIO_OK && !is_hdf5(&head)) {
         status = gonio_i_fail(context, GONIO_ERROR_FORMAT,
-                              "%s: not a gonio basis (not an HDF5 file, or a damaged one); "
-                              "gonio learn makes one",
-                              path);
-    } else {
-        status = read_contents(&c);
-        H5Fclose(c.file);
-    }
-    gonio_i_hdf_leave(&session);
-    if (status == GONIO_OK) {
-        status = check_values(&c);
+                              "%s: a basis (%s), not a material; only bases of older gonios (HDF5) "
+                              "are converted",
+                              input, format_name);
     }
     if (status == GONIO_OK) {
-        status = assemble(&c, basis);
+        status = gonio_i_basis_read_hdf5(context, input, &basis);
     }
-    free_contents(&c);
+    if (status == GONIO_OK) {
+        status = gonio_basis_write(context, basis, basis->command, output);
+    }
+    gonio_basis_free(&basis);
     return status;
 }

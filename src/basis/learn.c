@@ -37,6 +37,7 @@ typedef struct learner {
     double weight[2];                 /* of a measured column and of a mixture; on average 1 */
     bool any_rank;                    /* fewer components will do */
     gonio_basis *basis;
+    double *vectors; /* V before it is rounded */
     size_t tiles;
     size_t turns;
     size_t *finished; /* turns, over all passes */
@@ -251,7 +252,7 @@ static gonio_status project(const learner *l, gonio_i_row_range rows, const work
                             const double *p)
 {
     const size_t k = l->basis->components;
-    double *v = l->basis->vectors + rows.first * k;
+    double *v = l->vectors + rows.first * k;
     const gonio_status status =
         gonio_i_product_columns(l->context, w->h, rows.count, l->columns, p, k, v);
     return status == GONIO_OK ? gonio_i_add_gram_rows(l->context, v, rows.count, k, w->part)
@@ -294,8 +295,8 @@ static gonio_status orthonormalise(const learner *l, double *c)
     }
 #pragma omp parallel for schedule(static) num_threads(gonio_context_threads(l->context))
     for (size_t block = 0; block < (basis->rows + BLOCK_ROWS - 1) / BLOCK_ROWS; block++) {
-        gonio_i_divide_triangle(basis->vectors + block * BLOCK_ROWS * k, block_rows(basis, block),
-                                k, c);
+        gonio_i_divide_triangle(l->vectors + block * BLOCK_ROWS * k, block_rows(basis, block), k,
+                                c);
     }
     return GONIO_OK;
 }
@@ -336,7 +337,7 @@ static gonio_status fix_signs(const learner *l)
     {
 #pragma omp for schedule(static)
         for (size_t block = 0; block < blocks; block++) {
-            find_largest(basis->vectors + block * BLOCK_ROWS * k, block_rows(basis, block), k,
+            find_largest(l->vectors + block * BLOCK_ROWS * k, block_rows(basis, block), k,
                          largest + block * k);
         }
 #pragma omp single
@@ -348,8 +349,7 @@ static gonio_status fix_signs(const learner *l)
         }
 #pragma omp for schedule(static)
         for (size_t block = 0; block < blocks; block++) {
-            scale_columns(basis->vectors + block * BLOCK_ROWS * k, block_rows(basis, block), k,
-                          sign);
+            scale_columns(l->vectors + block * BLOCK_ROWS * k, block_rows(basis, block), k, sign);
         }
     }
     scale_columns(basis->loadings, l->columns, k, sign);
@@ -474,9 +474,6 @@ static gonio_status learn(learner *l, const gonio_basis_options *options)
     if (status == GONIO_OK) {
         status = fix_signs(l);
     }
-    if (status == GONIO_OK) {
-        status = gonio_i_basis_finish(l->context, l->basis);
-    }
     return status;
 }
 
@@ -538,8 +535,9 @@ static gonio_status choose_components(gonio_context *context, size_t columns,
     return GONIO_OK;
 }
 
-gonio_status gonio_basis_learn(gonio_context *context, const gonio_database *database,
-                               const gonio_basis_options *options, gonio_basis **basis)
+gonio_status gonio_i_basis_learn_exact(gonio_context *context, const gonio_database *database,
+                                       const gonio_basis_options *options, gonio_basis **basis,
+                                       double **vectors)
 {
     gonio_basis_options how;
     gonio_status status = GONIO_I_TAKE(context, gonio_basis_options, options, &how);
@@ -575,14 +573,42 @@ gonio_status gonio_basis_learn(gonio_context *context, const gonio_database *dat
     if (l.basis == NULL) {
         return GONIO_ERROR_MEMORY;
     }
+    l.vectors = gonio_i_allocate(context, l.basis->rows * components, sizeof *l.vectors);
+    if (l.vectors == NULL) {
+        gonio_basis_free(&l.basis);
+        return GONIO_ERROR_MEMORY;
+    }
     l.basis->without_mean = options->without_mean;
     l.context = gonio_i_team_begin(context);
     status = learn(&l, options);
     gonio_i_team_end(l.context, context);
     if (status != GONIO_OK) {
+        free(l.vectors);
         gonio_basis_free(&l.basis);
         return status;
     }
     *basis = l.basis;
+    *vectors = l.vectors;
+    return GONIO_OK;
+}
+
+gonio_status gonio_basis_learn(gonio_context *context, const gonio_database *database,
+                               const gonio_basis_options *options, gonio_basis **basis)
+{
+    gonio_basis *made = NULL;
+    double *vectors = NULL;
+    gonio_status status = gonio_i_basis_learn_exact(context, database, options, &made, &vectors);
+    if (status != GONIO_OK) {
+        return status;
+    }
+    status = gonio_i_basis_keep_vectors(context, made, vectors);
+    if (status == GONIO_OK) {
+        status = gonio_i_basis_finish(context, made);
+    }
+    if (status != GONIO_OK) {
+        gonio_basis_free(&made);
+        return status;
+    }
+    *basis = made;
     return GONIO_OK;
 }

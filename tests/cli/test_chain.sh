@@ -87,7 +87,7 @@ expect_ok reconstruct builtin-readings.csv -o builtin.binary
 expect_true 'the second use is silent' test ! -s "$root/work/stderr"
 head -c 5000 "$cached" >damaged
 mv damaged "$cached"
-expect_fail 1 "$cached: not a gonio basis" plan --method condition --components 3 -n 5 -o x.csv
+expect_fail 1 "$cached: damaged: " plan --method condition --components 3 -n 5 -o x.csv
 rm builtin*
 
 # ---- conversions ----

@@ -61,7 +61,7 @@ expect_fail 1 'x.binary: cannot write: File too large' convert m.binary x.binary
 expect_fail 1 'm-old.binary: cannot write: File too large' \
     convert atlas:red-cotton m-old.binary --threads 4
 expect_fail 1 'x.binary: cannot write: File too large' reconstruct b.gonio r.csv -o x.binary
-kilobytes=580 # room for what learn keeps in its scratch files, but not for the basis
+kilobytes=350 # room for what learn keeps in its scratch files, but not for the basis
 # shellcheck disable=SC2086
 expect_fail 1 'x.gonio: cannot write: File too large' learn --grid bivariate $materials -o x.gonio
 kilobytes=200 # the scratch files of three materials reach to 290
