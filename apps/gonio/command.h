@@ -4,26 +4,29 @@
 
 enum { EXIT_DATA = 1, EXIT_USAGE = 2 }; /* 0 is success */
 
-/* One command of the program: to add one, write cmd_NAME.c and add a line to the table in main.c.
- */
+/* One command of the program: to add one, write cmd_NAME.c and add a line to the list below. */
 typedef struct tool_command {
     const char *name;
     const char *summary;
     int (*run)(int argc, const char **argv); /* argv[0] is the command's name; an exit code */
 } tool_command;
 
-/* The commands, each in its file. */
-int cmd_info(int argc, const char **argv);
-int cmd_convert(int argc, const char **argv);
-int cmd_learn(int argc, const char **argv);
-int cmd_plan(int argc, const char **argv);
-int cmd_next(int argc, const char **argv);
-int cmd_measure(int argc, const char **argv);
-int cmd_reconstruct(int argc, const char **argv);
-int cmd_compare(int argc, const char **argv);
-int cmd_report(int argc, const char **argv);
-int cmd_render(int argc, const char **argv);
-int cmd_reproduce(int argc, const char **argv);
-int cmd_demo(int argc, const char **argv);
+/* The commands, each in its file, as help lists them. */
+#define TOOL_COMMANDS(COMMAND)                                                                     \
+    COMMAND(info, "what a file is: materials, bases, plans, readings, meshes, images")             \
+    COMMAND(convert, "a material to a MERL table")                                                 \
+    COMMAND(learn, "a basis from measured materials")                                              \
+    COMMAND(plan, "where to measure")                                                              \
+    COMMAND(measure, "a simulated instrument reads a known material")                              \
+    COMMAND(reconstruct, "the whole BRDF from a few readings")                                     \
+    COMMAND(next, "where to measure next, given what was read")                                    \
+    COMMAND(compare, "how far BRDFs are from a reference")                                         \
+    COMMAND(report, "a page for a browser: spheres, directions, lobes, errors")                    \
+    COMMAND(render, "a material on a sphere or a mesh, comparison pictures")                       \
+    COMMAND(reproduce, "the paper's experiments on your materials")                                \
+    COMMAND(demo, "the whole chain on a built-in material")
+
+#define TOOL_DECLARE_COMMAND(name, summary) int cmd_##name(int argc, const char **argv);
+TOOL_COMMANDS(TOOL_DECLARE_COMMAND)
 
 #endif

@@ -9,20 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
-static const tool_command commands[] = {
-    {"info", "what a file is: materials, bases, plans, readings, meshes, images", cmd_info},
-    {"convert", "a material to a MERL table", cmd_convert},
-    {"learn", "a basis from measured materials", cmd_learn},
-    {"plan", "where to measure", cmd_plan},
-    {"measure", "a simulated instrument reads a known material", cmd_measure},
-    {"reconstruct", "the whole BRDF from a few readings", cmd_reconstruct},
-    {"next", "where to measure next, given what was read", cmd_next},
-    {"compare", "how far BRDFs are from a reference", cmd_compare},
-    {"report", "a page for a browser: spheres, directions, lobes, errors", cmd_report},
-    {"render", "a material on a sphere or a mesh, comparison pictures", cmd_render},
-    {"reproduce", "the paper's experiments on your materials", cmd_reproduce},
-    {"demo", "the whole chain on a built-in material", cmd_demo},
-};
+#define ROW(name, summary) {#name, summary, cmd_##name},
+static const tool_command commands[] = {TOOL_COMMANDS(ROW)};
 
 enum { COMMANDS = sizeof commands / sizeof *commands };
 

@@ -19,10 +19,8 @@ struct gonio_fingerprint {
     XXH3_state_t *state;
 };
 
-static const gonio_i_format_reader *const readers[] = {
-    &gonio_i_merl_reader,  &gonio_i_table_reader, &gonio_i_neural_reader,   &gonio_i_rgl_reader,
-    &gonio_i_kaist_reader, &gonio_i_utia_reader,  &gonio_i_bsdf_xml_reader,
-};
+#define ROW(name) &gonio_i_##name##_reader,
+static const gonio_i_format_reader *const readers[] = {GONIO_I_MATERIAL_READERS(ROW)};
 
 enum { READERS = sizeof readers / sizeof *readers };
 

@@ -6,40 +6,10 @@
 
 #include "../core/core.h"
 #include "../core/options.h"
-#include "colour.h"
 #include "formats/writers.h"
 
-static gonio_status write_merl(gonio_context *context, const gonio_material *material,
-                               const char *path, const gonio_write_options *options)
-{
-    const gonio_material_view *view = gonio_material_describe(material);
-    (void)options;
-    if (view->wavelength != NULL) {
-        gonio_i_note_colours(context, view->name, view->wavelength, view->channels);
-    }
-    return gonio_material_write_merl(context, material, path);
-}
-
-static gonio_status write_rgl(gonio_context *context, const gonio_material *material,
-                              const char *path, const gonio_write_options *options)
-{
-    (void)options;
-    return gonio_material_write_rgl(context, material, path);
-}
-
-/* The first of an extension is the one that it stands for. */
-static const gonio_i_format_writer writers[] = {
-    {"merl", ".binary", "MERL table 90 x 90 x 180 of R, G, B; isotropic, reciprocal", write_merl},
-    {"rgl", ".bsdf", "RGL BSDF of RGB or spectra, for Mitsuba 3 and pbrt-v4 (measured); isotropic",
-     write_rgl},
-    {"table", ".h5", "table 90 x 90 x 180 of any channels, HDF5; isotropic, reciprocal",
-     gonio_i_table_write},
-    {"klems", ".xml", "BSDF-XML, 145 x 145 patches of the full Klems basis, for Radiance, WINDOW",
-     gonio_i_klems_write},
-    {"zemax", ".bsdf", "Zemax BSDF text about the mirror direction; isotropic",
-     gonio_i_zemax_write},
-    {"csv", ".csv", "readings in CSV at directions on a grid (--steps)", gonio_i_grid_write},
-};
+#define ROW(name) &gonio_i_##name##_writer,
+static const gonio_i_format_writer *const writers[] = {GONIO_I_MATERIAL_WRITERS(ROW)};
 
 enum { WRITERS = sizeof writers / sizeof *writers };
 
@@ -51,23 +21,23 @@ void gonio_write_options_default_of(gonio_write_options *options, size_t size)
 
 const char *gonio_material_writer_name(int index)
 {
-    return index >= 0 && index < WRITERS ? writers[index].name : NULL;
+    return index >= 0 && index < WRITERS ? writers[index]->name : NULL;
 }
 
 const char *gonio_material_writer_extension(int index)
 {
-    return index >= 0 && index < WRITERS ? writers[index].extension : NULL;
+    return index >= 0 && index < WRITERS ? writers[index]->extension : NULL;
 }
 
 const char *gonio_material_writer_summary(int index)
 {
-    return index >= 0 && index < WRITERS ? writers[index].summary : NULL;
+    return index >= 0 && index < WRITERS ? writers[index]->summary : NULL;
 }
 
 static int find_by_name(const char *name)
 {
     for (int k = 0; k < WRITERS; k++) {
-        if (strcmp(writers[k].name, name) == 0) {
+        if (strcmp(writers[k]->name, name) == 0) {
             return k;
         }
     }
@@ -79,7 +49,7 @@ static int find_by_extension(const char *path)
     const char *slash = strrchr(path, '/');
     const char *dot = strrchr(slash != NULL ? slash : path, '.');
     for (int k = 0; dot != NULL && k < WRITERS; k++) {
-        if (strcasecmp(writers[k].extension, dot) == 0) {
+        if (strcasecmp(writers[k]->extension, dot) == 0) {
             return k;
         }
     }
@@ -104,11 +74,11 @@ gonio_status gonio_material_write(gonio_context *context, const gonio_material *
         char known[256] = "";
         for (int k = 0; k < WRITERS; k++) {
             strncat(known, k > 0 ? ", " : "", sizeof known - strlen(known) - 1);
-            strncat(known, writers[k].name, sizeof known - strlen(known) - 1);
+            strncat(known, writers[k]->name, sizeof known - strlen(known) - 1);
         }
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
                             "no format is called '%s'; materials are written as one of: %s",
                             how.format, known);
     }
-    return writers[writer].write(context, material, path, &how);
+    return writers[writer]->write(context, material, path, &how);
 }

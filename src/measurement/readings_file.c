@@ -11,11 +11,8 @@
 #include "../core/text_file.h"
 #include "formats/format.h"
 
-/* In the order in which they are tried; CSV takes what nothing else does. */
-static const gonio_i_readings_format *const formats[] = {
-    &gonio_i_readings_scattered,
-    &gonio_i_readings_csv,
-};
+#define ROW(name) &gonio_i_readings_##name,
+static const gonio_i_readings_format *const formats[] = {GONIO_I_READINGS_FORMATS(ROW)};
 
 static const char grid_name[] = "half/difference 90 x 90 x 180";
 

@@ -75,13 +75,14 @@ typedef struct gonio_i_method {
         .representation = GONIO_FULL, .channels = GONIO_SEPARATE, .mapping = GONIO_LOG_RELATIVE    \
     }
 
-/* As in the table in methods.c. */
-extern const gonio_i_method gonio_i_expected_error_method;
-extern const gonio_i_method gonio_i_condition_method;
-extern const gonio_i_method gonio_i_random_method;
-extern const gonio_i_method gonio_i_matusik_method;
-extern const gonio_i_method gonio_i_nielsen_method;
-extern const gonio_i_method gonio_i_frost_method;
+/* The methods, in the order in which they are listed; of those that suit a basis the first is its
+ * default. */
+#define GONIO_I_PLAN_METHODS(METHOD)                                                               \
+    METHOD(expected_error)                                                                         \
+    METHOD(condition) METHOD(random) METHOD(matusik) METHOD(nielsen) METHOD(frost)
+
+#define GONIO_I_DECLARE_METHOD(name) extern const gonio_i_method gonio_i_##name##_method;
+GONIO_I_PLAN_METHODS(GONIO_I_DECLARE_METHOD)
 
 /* ---- what methods that choose rows share ---- */
 

@@ -8,11 +8,8 @@
 #include "plan.h"
 #include "starting_rows.h"
 
-/* In the order in which they are listed; of those that suit a basis the first is its default. */
-static const gonio_i_method *const methods[] = {
-    &gonio_i_expected_error_method, &gonio_i_condition_method, &gonio_i_random_method,
-    &gonio_i_matusik_method,        &gonio_i_nielsen_method,   &gonio_i_frost_method,
-};
+#define ROW(name) &gonio_i_##name##_method,
+static const gonio_i_method *const methods[] = {GONIO_I_PLAN_METHODS(ROW)};
 
 enum { METHODS = sizeof methods / sizeof *methods };
 

@@ -64,9 +64,12 @@ struct gonio_i_reconstruct_method {
                           gonio_i_solution *solution);
 };
 
-extern const gonio_i_reconstruct_method gonio_i_least_squares_method;
-extern const gonio_i_reconstruct_method gonio_i_ridge_method;
-extern const gonio_i_reconstruct_method gonio_i_posterior_method;
+/* The methods. */
+#define GONIO_I_RECONSTRUCT_METHODS(METHOD) METHOD(least_squares) METHOD(ridge) METHOD(posterior)
+
+#define GONIO_I_DECLARE_METHOD(name)                                                               \
+    extern const gonio_i_reconstruct_method gonio_i_##name##_method;
+GONIO_I_RECONSTRUCT_METHODS(GONIO_I_DECLARE_METHOD)
 
 /* Whether the basis has all of rows[count]. Errors: _ARGUMENT. */
 gonio_status gonio_i_reconstruct_check_rows(gonio_context *context, const gonio_basis *basis,

@@ -18,11 +18,8 @@ void gonio_reconstruct_options_default_of(gonio_reconstruct_options *options, si
 
 /* ---- methods ---- */
 
-static const gonio_i_reconstruct_method *const methods[] = {
-    &gonio_i_least_squares_method,
-    &gonio_i_ridge_method,
-    &gonio_i_posterior_method,
-};
+#define ROW(name) &gonio_i_##name##_method,
+static const gonio_i_reconstruct_method *const methods[] = {GONIO_I_RECONSTRUCT_METHODS(ROW)};
 
 enum { METHODS = sizeof methods / sizeof *methods };
 

@@ -1,5 +1,5 @@
-/* A file format of materials: to add one, write a file like merl.c and add a line to the table in
- * material.c. */
+/* A file format that materials are read from: to add one, write a file like merl.c and add its name
+ * to the list below. */
 #ifndef GONIO_FORMAT_H
 #define GONIO_FORMAT_H
 
@@ -17,13 +17,13 @@ typedef struct gonio_i_format_reader {
                          gonio_material_source *source, char **description);
 } gonio_i_format_reader;
 
-extern const gonio_i_format_reader gonio_i_merl_reader;
-extern const gonio_i_format_reader gonio_i_table_reader;
-extern const gonio_i_format_reader gonio_i_neural_reader;
-extern const gonio_i_format_reader gonio_i_rgl_reader;
-extern const gonio_i_format_reader gonio_i_kaist_reader;
-extern const gonio_i_format_reader gonio_i_utia_reader;
-extern const gonio_i_format_reader gonio_i_bsdf_xml_reader;
+/* The readers, in the order in which they are tried. */
+#define GONIO_I_MATERIAL_READERS(READER)                                                           \
+    READER(merl)                                                                                   \
+    READER(table) READER(neural) READER(rgl) READER(kaist) READER(utia) READER(bsdf_xml)
+
+#define GONIO_I_DECLARE_READER(name) extern const gonio_i_format_reader gonio_i_##name##_reader;
+GONIO_I_MATERIAL_READERS(GONIO_I_DECLARE_READER)
 
 /* The name of the format that a file is of; NULL if of none. */
 const char *gonio_i_material_format_of(const gonio_i_file *file);

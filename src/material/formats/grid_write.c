@@ -136,8 +136,8 @@ static gonio_status check_size(const writer *w)
                               "a grid of %.0f directions; at most 1e8 are written", directions);
 }
 
-gonio_status gonio_i_grid_write(gonio_context *context, const gonio_material *material,
-                                const char *path, const gonio_write_options *options)
+static gonio_status write_grid(gonio_context *context, const gonio_material *material,
+                               const char *path, const gonio_write_options *options)
 {
     static const double degree = M_PI / 180.0;
     gonio_i_sampler sampler;
@@ -168,3 +168,10 @@ gonio_status gonio_i_grid_write(gonio_context *context, const gonio_material *ma
     gonio_i_sampler_end(&sampler);
     return status == GONIO_OK ? gonio_i_progress(context, "writing", 1.0) : status;
 }
+
+const gonio_i_format_writer gonio_i_grid_writer = {
+    .name = "csv",
+    .extension = ".csv",
+    .summary = "readings in CSV at directions on a grid (--steps)",
+    .write = write_grid,
+};

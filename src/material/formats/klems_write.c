@@ -181,8 +181,8 @@ static gonio_status write_sampled(writer *w, const char *path)
     return status;
 }
 
-gonio_status gonio_i_klems_write(gonio_context *context, const gonio_material *material,
-                                 const char *path, const gonio_write_options *options)
+static gonio_status write_klems(gonio_context *context, const gonio_material *material,
+                                const char *path, const gonio_write_options *options)
 {
     gonio_i_sampler sampler;
     (void)options;
@@ -197,3 +197,10 @@ gonio_status gonio_i_klems_write(gonio_context *context, const gonio_material *m
     gonio_i_sampler_end(&sampler);
     return status == GONIO_OK ? gonio_i_progress(context, "writing", 1.0) : status;
 }
+
+const gonio_i_format_writer gonio_i_klems_writer = {
+    .name = "klems",
+    .extension = ".xml",
+    .summary = "BSDF-XML, 145 x 145 patches of the full Klems basis, for Radiance, WINDOW",
+    .write = write_klems,
+};

@@ -518,3 +518,17 @@ gonio_status gonio_material_write_rgl(gonio_context *context, const gonio_materi
     free(w);
     return status;
 }
+
+static gonio_status write_rgl(gonio_context *context, const gonio_material *material,
+                              const char *path, const gonio_write_options *options)
+{
+    (void)options;
+    return gonio_material_write_rgl(context, material, path);
+}
+
+const gonio_i_format_writer gonio_i_rgl_writer = {
+    .name = "rgl",
+    .extension = ".bsdf",
+    .summary = "RGL BSDF of RGB or spectra, for Mitsuba 3 and pbrt-v4 (measured); isotropic",
+    .write = write_rgl,
+};

@@ -182,8 +182,8 @@ static gonio_status make_file(writer *w, const char *path)
     return status;
 }
 
-gonio_status gonio_i_table_write(gonio_context *context, const gonio_material *material,
-                                 const char *path, const gonio_write_options *options)
+static gonio_status write_table(gonio_context *context, const gonio_material *material,
+                                const char *path, const gonio_write_options *options)
 {
     gonio_i_sampler sampler;
     (void)options;
@@ -207,3 +207,10 @@ gonio_status gonio_i_table_write(gonio_context *context, const gonio_material *m
     gonio_i_sampler_end(&sampler);
     return status == GONIO_OK ? gonio_i_progress(context, "writing", 1.0) : status;
 }
+
+const gonio_i_format_writer gonio_i_table_writer = {
+    .name = "table",
+    .extension = ".h5",
+    .summary = "table 90 x 90 x 180 of any channels, HDF5; isotropic, reciprocal",
+    .write = write_table,
+};

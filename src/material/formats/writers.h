@@ -1,5 +1,5 @@
-/* Formats that materials are written in: to add one, write a function like those below and add a
- * line to the table in write.c. */
+/* Formats that materials are written in: to add one, write a file that ends with its row, like
+ * rgl_write.c, and add its name to the list below. */
 #ifndef GONIO_WRITERS_H
 #define GONIO_WRITERS_H
 
@@ -20,13 +20,12 @@ typedef struct gonio_i_format_writer {
     gonio_i_write write;
 } gonio_i_format_writer;
 
-gonio_status gonio_i_klems_write(gonio_context *context, const gonio_material *material,
-                                 const char *path, const gonio_write_options *options);
-gonio_status gonio_i_zemax_write(gonio_context *context, const gonio_material *material,
-                                 const char *path, const gonio_write_options *options);
-gonio_status gonio_i_grid_write(gonio_context *context, const gonio_material *material,
-                                const char *path, const gonio_write_options *options);
-gonio_status gonio_i_table_write(gonio_context *context, const gonio_material *material,
-                                 const char *path, const gonio_write_options *options);
+/* The writers. The first of an extension is the one that it stands for; the first of all is what a
+ * file of an unknown extension becomes. */
+#define GONIO_I_MATERIAL_WRITERS(WRITER)                                                           \
+    WRITER(merl) WRITER(rgl) WRITER(table) WRITER(klems) WRITER(zemax) WRITER(grid)
+
+#define GONIO_I_DECLARE_WRITER(name) extern const gonio_i_format_writer gonio_i_##name##_writer;
+GONIO_I_MATERIAL_WRITERS(GONIO_I_DECLARE_WRITER)
 
 #endif

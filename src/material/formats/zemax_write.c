@@ -194,8 +194,8 @@ static gonio_status write_values(writer *w, const char *path)
     return status;
 }
 
-gonio_status gonio_i_zemax_write(gonio_context *context, const gonio_material *material,
-                                 const char *path, const gonio_write_options *options)
+static gonio_status write_zemax(gonio_context *context, const gonio_material *material,
+                                const char *path, const gonio_write_options *options)
 {
     static const double degree = M_PI / 180.0;
     gonio_i_sampler sampler;
@@ -219,3 +219,10 @@ gonio_status gonio_i_zemax_write(gonio_context *context, const gonio_material *m
     gonio_i_sampler_end(&sampler);
     return status;
 }
+
+const gonio_i_format_writer gonio_i_zemax_writer = {
+    .name = "zemax",
+    .extension = ".bsdf",
+    .summary = "Zemax BSDF text about the mirror direction; isotropic",
+    .write = write_zemax,
+};

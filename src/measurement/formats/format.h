@@ -1,4 +1,4 @@
-/* File formats of readings: one file and one row of the table in readings_file.c each.
+/* File formats of readings: one file and one name in the list below each.
  *
  * A file is read whole, once; its first format whose probe accepts it reads it. The reader says its
  * channels (gonio_i_readings_begin), adds one reading after another (gonio_i_readings_add, which
@@ -36,8 +36,11 @@ typedef struct gonio_i_readings_format {
                           const char *command, FILE *stream);
 } gonio_i_readings_format;
 
-extern const gonio_i_readings_format gonio_i_readings_csv;
-extern const gonio_i_readings_format gonio_i_readings_scattered;
+/* The formats, in the order in which they are tried; CSV takes what nothing else does. */
+#define GONIO_I_READINGS_FORMATS(FORMAT) FORMAT(scattered) FORMAT(csv)
+
+#define GONIO_I_DECLARE_FORMAT(name) extern const gonio_i_readings_format gonio_i_readings_##name;
+GONIO_I_READINGS_FORMATS(GONIO_I_DECLARE_FORMAT)
 
 /* The name of the format that a file is of, told by its beginning; NULL if of none. */
 const char *gonio_i_readings_format_of(const gonio_i_file *file);
