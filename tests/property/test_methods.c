@@ -209,6 +209,7 @@ static void test_loadings(void **state)
         double *vectors = NULL; /* before they are rounded */
         assert_int_equal(gonio_i_basis_learn_exact(NULL, database, &options, &basis, &vectors),
                          GONIO_OK);
+        assert_int_equal(gonio_i_basis_finish(NULL, basis), GONIO_OK);
         const gonio_basis_view *view = gonio_basis_describe(basis);
         const size_t k = view->components;
         assert_int_equal(k, without_mean ? MATERIALS : MATERIALS - 1);

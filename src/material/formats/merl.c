@@ -12,9 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "../colour.h"
 #include "format.h"
-#include "writers.h"
 
 const double gonio_i_merl_scale[GONIO_CHANNELS] = {1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0};
 
@@ -344,21 +342,3 @@ gonio_status gonio_material_write_merl(gonio_context *context, const gonio_mater
     }
     return gonio_i_output_close(context, &output, status);
 }
-
-static gonio_status write_merl(gonio_context *context, const gonio_material *material,
-                               const char *path, const gonio_write_options *options)
-{
-    const gonio_material_view *view = gonio_material_describe(material);
-    (void)options;
-    if (view->wavelength != NULL) {
-        gonio_i_note_colours(context, view->name, view->wavelength, view->channels);
-    }
-    return gonio_material_write_merl(context, material, path);
-}
-
-const gonio_i_format_writer gonio_i_merl_writer = {
-    .name = "merl",
-    .extension = ".binary",
-    .summary = "MERL table 90 x 90 x 180 of R, G, B; isotropic, reciprocal",
-    .write = write_merl,
-};
