@@ -280,6 +280,7 @@ int cmd_compare(int argc, const char **argv)
          "Of readings: leave out the directions of this file (those that were used)", "FILE"},
         {"render", '\0', POPT_ARG_NONE, &o.render, 0, "Also render both and compare the renderings",
          NULL},
+        TOOL_READINGS_OPTIONS,
         TOOL_OPTIONS};
     char *text = help_text();
     const tool_command_line line = {.table = table,

@@ -452,7 +452,7 @@ static int run(tool *t, void *given)
 
 int cmd_info(int argc, const char **argv)
 {
-    const struct poptOption table[] = {TOOL_OPTIONS};
+    const struct poptOption table[] = {TOOL_READINGS_OPTIONS, TOOL_OPTIONS};
     const tool_command_line line = {
         .table = table,
         .usage = "[OPTION...] FILE...",

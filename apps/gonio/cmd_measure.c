@@ -129,6 +129,7 @@ int cmd_measure(int argc, const char **argv)
         {"outliers", '\0', POPT_ARG_DOUBLE, &o.outliers, 0,
          "Share of directions read ten times too high or too low (default: 0)", "PERCENT"},
         {"seed", '\0', POPT_ARG_LONG, &o.seed, 0, "Same seed, same noise (default: 0)", "N"},
+        TOOL_READINGS_OPTIONS,
         TOOL_OPTIONS};
     const tool_command_line line = {
         .table = table,

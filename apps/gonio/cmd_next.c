@@ -121,6 +121,7 @@ int cmd_next(int argc, const char **argv)
             &o.planning, "How many readings to propose (default: 5)",
             "Say so, and propose nothing, once the expected error (E6) is no more than this"),
         POSTERIOR_OPTIONS(&o.posterior),
+        TOOL_READINGS_OPTIONS,
         TOOL_OPTIONS};
     const tool_command_line line = {
         .table = table,

@@ -2,6 +2,7 @@
 #include "builtin_basis.h"
 #include "command_line.h"
 #include "json_output.h"
+#include "inputs.h"
 #include "planning_options.h"
 
 #include <math.h>
@@ -135,6 +136,7 @@ int cmd_plan(int argc, const char **argv)
          "DEGREES"},
         {"history", '\0', POPT_ARG_STRING, &o.history, 0,
          "Write the condition number after each swap (CSV)", "FILE"},
+        TOOL_READINGS_OPTIONS,
         TOOL_OPTIONS};
     const tool_command_line line = {
         .table = table,

@@ -470,6 +470,7 @@ int cmd_reconstruct(int argc, const char **argv)
          "Take negative readings as 0", NULL},
         {"other-basis", '\0', POPT_ARG_NONE, &o.other_basis, 0,
          "Accept readings that were planned with another basis", NULL},
+        TOOL_READINGS_OPTIONS,
         TOOL_OPTIONS};
     const tool_command_line line = {
         .table = table,

@@ -127,6 +127,7 @@ int cmd_report(int argc, const char **argv)
          "Show these directions, a plan's or readings'", "FILE"},
         {"deviation", '\0', POPT_ARG_STRING, &o.deviation, 0,
          "Standard deviations of ln(1 + rho/s) of the reconstruction, a MERL table", "FILE"},
+        TOOL_READINGS_OPTIONS,
         TOOL_OPTIONS};
     const tool_command_line line = {
         .table = table,

@@ -4,6 +4,19 @@
 
 #include "command_line.h"
 
+/* The options of commands that read readings, to be put into their tables. */
+extern const char *tool_as;
+#define TOOL_READINGS_OPTIONS                                                                      \
+    {                                                                                              \
+        "as", '\0', POPT_ARG_STRING, &tool_as, 0,                                                  \
+            "What the numbers of readings stand for, where it is other than gonio takes them "     \
+            "for: "                                                                                \
+            "angles=degrees|radians, values=brdf|factor|percent|cosine|factor-cosine, "            \
+            "mirror=180|0, "                                                                       \
+            "wavelengths=nm|um|m, zeros=missing|dark, sample=NUMBER, format=NAME; commas between", \
+            "LIST"                                                                                 \
+    }
+
 /* As gonio_material_open, after gonio_file_expect. */
 gonio_status tool_open_material(const tool *t, const char *path, gonio_material **material);
 

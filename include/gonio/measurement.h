@@ -18,12 +18,64 @@ extern "C" {
 
 typedef struct gonio_readings gonio_readings;
 
+/* ---- what the numbers of a file stand for ---- */
+
+/* Every choice is 0 for "as the file says, or as its format has it". */
+enum { GONIO_AS_STATED = 0 };
+typedef enum gonio_angle_unit { GONIO_DEGREES = 1, GONIO_RADIANS } gonio_angle_unit;
+typedef enum gonio_value_kind {
+    GONIO_VALUE_BRDF = 1,     /* f, 1/sr */
+    GONIO_VALUE_FACTOR,       /* reflectance factor, pi f */
+    GONIO_VALUE_PERCENT,      /* reflectance factor in per cent, 100 pi f */
+    GONIO_VALUE_COSINE,       /* f cos theta_o, 1/sr */
+    GONIO_VALUE_FACTOR_COSINE /* pi f cos theta_o */
+} gonio_value_kind;
+typedef enum gonio_mirror_azimuth {
+    GONIO_MIRROR_180 = 1, /* phi_o = phi_i + 180 degrees is the mirror's side, as in gonio */
+    GONIO_MIRROR_0        /* phi_o = phi_i is */
+} gonio_mirror_azimuth;
+typedef enum gonio_wavelength_unit {
+    GONIO_NANOMETRES = 1,
+    GONIO_MICROMETRES,
+    GONIO_METRES
+} gonio_wavelength_unit;
+typedef enum gonio_zero_meaning {
+    GONIO_ZEROS_MISSING = 1, /* 0 stands where nothing was measured */
+    GONIO_ZEROS_DARK         /* 0 is a value */
+} gonio_zero_meaning;
+
+/* A convention; zero-initialised it changes nothing. */
+typedef struct gonio_convention {
+    const char
+        *format;     /* the word of a format (gonio_readings_format_word); NULL: judged by content
+                      */
+    int angles;      /* gonio_angle_unit */
+    int values;      /* gonio_value_kind */
+    int mirror;      /* gonio_mirror_azimuth */
+    int wavelengths; /* gonio_wavelength_unit */
+    int zeros;       /* gonio_zero_meaning */
+    int sample;      /* of a file of several samples: the number of one; 0: the first */
+} gonio_convention;
+
+/* A convention from text: "angles=radians,values=factor,mirror=0". Keys and words: angles=degrees,
+ * radians; values=brdf, factor, percent, cosine, factor-cosine; mirror=180, 0; wavelengths=nm, um,
+ * m; zeros=missing, dark; sample=NUMBER; format=WORD. What the text does not name stays as it is.
+ * Errors: _ARGUMENT for a key or word that there is not; the message names those that there are. */
+GONIO_API gonio_status gonio_convention_parse(gonio_context *context, const char *text,
+                                              gonio_convention *convention);
+
+/* The words and names of the formats of readings, in the order in which a file is tried; NULL past
+ * the last. */
+GONIO_API const char *gonio_readings_format_word(int index);
+
 typedef struct gonio_readings_options {
     size_t size;           /* of this struct, which gonio_readings_options_default sets */
     bool values_needed;    /* of files: false: a plan will do */
     bool average_repeats;  /* a direction read more than once in the same channel: true to accept
                             * (least squares averages it), false to refuse */
     bool negative_to_zero; /* a reading below zero: true to take it as 0, false to refuse */
+    gonio_convention as;   /* of files: what their numbers stand for, where it is other than they
+                            * say */
 } gonio_readings_options;
 
 /* Values needed, repeats and negative readings refused. */

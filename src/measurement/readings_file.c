@@ -35,10 +35,17 @@ const char *gonio_i_readings_format_name(int index)
     return index < FORMATS ? formats[index]->name : NULL;
 }
 
-static const gonio_i_readings_format *find_format(const char *text, size_t size)
+const char *gonio_readings_format_word(int index)
+{
+    return index >= 0 && index < FORMATS ? formats[index]->word : NULL;
+}
+
+/* The format that the user says, or else the one that the content tells. */
+static const gonio_i_readings_format *find_format(const char *word, const char *text, size_t size)
 {
     size_t k = 0;
-    while (k + 1 < FORMATS && !formats[k]->probe(text, size)) {
+    while (k + 1 < FORMATS &&
+           !(word != NULL ? strcmp(word, formats[k]->word) == 0 : formats[k]->probe(text, size))) {
         k++;
     }
     return formats[k];
@@ -89,7 +96,9 @@ static gonio_status read_text(gonio_i_readings_file *file, gonio_readings *readi
     if (!gonio_i_plain_numbers_begin(&plain)) {
         return gonio_i_fail(file->context, GONIO_ERROR_MEMORY, "%s: out of memory", file->path);
     }
-    gonio_status status = find_format(file->text, file->size)->read(file, readings);
+    const gonio_i_readings_format *format =
+        find_format(readings->options.as.format, file->text, file->size);
+    gonio_status status = format->read(file, readings);
     gonio_i_plain_numbers_end(&plain);
     if (status == GONIO_OK) {
         status = read_comments(file->context, readings);

@@ -230,4 +230,4 @@ static gonio_status read(gonio_i_readings_file *file, gonio_readings *readings)
 }
 
 const gonio_i_readings_format gonio_i_readings_csv = {
-    .name = "CSV", .probe = probe, .read = read, .print = gonio_i_csv_print};
+    .word = "csv", .name = "CSV", .probe = probe, .read = read, .print = gonio_i_csv_print};

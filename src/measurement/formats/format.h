@@ -1,10 +1,11 @@
 /* File formats of readings: one file and one name in the list below each.
  *
- * A file is read whole, once; its first format whose probe accepts it reads it. The reader says its
- * channels (gonio_i_readings_begin), adds one reading after another (gonio_i_readings_add, which
- * checks every number and names file and line), puts comments into readings->comment, what else it
- * wants to write again into readings->attachment, and says with gonio_i_readings_note what it
- * changed or left out. Numbers are read and printed with decimal points in any locale. */
+ * A file is read whole, once; its first format whose probe accepts it reads it. The reader says
+ * what its numbers stand for and its channels, and adds one row after another (../import.h, which
+ * turns angles and values into gonio's, leaves out what is no reading, and says in a note what the
+ * file was taken for). It puts comments into readings->comment, and what else it wants to write
+ * again into readings->attachment. Numbers are read and printed with decimal points in any locale.
+ */
 #ifndef GONIO_READINGS_FORMAT_H
 #define GONIO_READINGS_FORMAT_H
 
@@ -22,6 +23,7 @@ typedef struct gonio_i_readings_file {
 } gonio_i_readings_file;
 
 typedef struct gonio_i_readings_format {
+    const char *word; /* for --as format=WORD */
     const char *name; /* for people */
 
     /* Whether a text is of this format, by its content; text[size] is 0. */

@@ -1,98 +1,51 @@
 /* Scattered readings as text, as Cornell's laboratory and pbrt have them: see measurement.h. */
-#include <ctype.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "../import.h"
 #include "format.h"
+#include "numbers.h"
 
-enum { MOST_WAVELENGTHS = 4096, ANGLES = 4, DIGITS = 9 };
+enum { MOST_WAVELENGTHS = 4096, ANGLES = 4, LEAST_WAVELENGTH = 100 };
 
-/* The numbers of a text, one after another. */
-typedef struct numbers {
-    gonio_context *context;
-    const char *path;
-    const char *at;
-    const char *end;
-    size_t line;
-} numbers;
-
-/* Passes over blanks and comments; whether there is more. */
-static bool skip(numbers *n)
+static bool is_whole_number(const char *word)
 {
-    while (n->at < n->end && (isspace((unsigned char)*n->at) || *n->at == '#')) {
-        const char *end = *n->at == '#' ? memchr(n->at, '\n', (size_t)(n->end - n->at)) : n->at;
-        n->at = end != NULL ? end : n->end;
-        n->line += n->at < n->end && *n->at == '\n';
-        n->at += n->at < n->end;
-    }
-    return n->at < n->end;
+    return word[0] != '\0' && word[strspn(word, "0123456789")] == '\0';
 }
 
-/* The next word. */
-static void read_word(numbers *n, char word[64])
+/* Whether the rest of a line could be wavelengths, or the first of them: at most `most` numbers,
+ * and larger than angles in radians and values are. */
+static bool begins_with_wavelengths(gonio_i_numbers *n, size_t most)
 {
-    size_t length = 0;
-    for (; n->at < n->end && !isspace((unsigned char)*n->at) && *n->at != '#'; n->at++) {
-        if (length < 63) {
-            word[length++] = *n->at;
-        }
+    double wavelength = 0.0;
+    size_t count = 0;
+    bool good = true;
+    while (good && gonio_i_numbers_skip_blanks(n)) {
+        char word[GONIO_I_WORD];
+        char *end = NULL;
+        gonio_i_numbers_word(n, word);
+        wavelength = strtod(word, &end);
+        good = *end == '\0' && wavelength >= LEAST_WAVELENGTH && ++count <= most;
     }
-    word[length] = '\0';
+    return good;
 }
 
-static gonio_status read_number(numbers *n, double *value)
-{
-    char word[64];
-    char *end = NULL;
-    if (!skip(n)) {
-        return gonio_i_fail(n->context, GONIO_ERROR_FORMAT,
-                            "%s: ends within a reading (line %zu); is the file whole?", n->path,
-                            n->line);
-    }
-    read_word(n, word);
-    *value = strtod(word, &end);
-    if (*end != '\0' || end == word || !isfinite(*value)) {
-        return gonio_i_fail(n->context, GONIO_ERROR_FORMAT, "%s:%zu: '%.40s' is not a number",
-                            n->path, n->line, word);
-    }
-    return GONIO_OK;
-}
-
-/* A text whose first word is a whole number, alone on its line: in a CSV file there are names. */
+/* A text that begins with a whole number and as many wavelengths: in a CSV file there are names.
+ * What is wrong with their values is for the reader to say. */
 static bool probe(const char *text, size_t size)
 {
-    numbers n = {.at = text, .end = text + size, .line = 1};
-    char word[64] = "";
-    const size_t before = skip(&n) ? n.line : 0;
-    read_word(&n, word);
-    const bool number = word[0] != '\0' && word[strspn(word, "0123456789")] == '\0';
-    return number && skip(&n) && n.line > before;
+    gonio_i_numbers n = {.at = text, .end = text + size, .line = 1, .comment = '#'};
+    char word[GONIO_I_WORD] = "";
+    const size_t before = gonio_i_numbers_skip(&n) ? n.line : 0;
+    gonio_i_numbers_word(&n, word);
+    return is_whole_number(word) && begins_with_wavelengths(&n, strtoul(word, NULL, 10)) &&
+           gonio_i_numbers_skip(&n) && n.line > before;
 }
 
-static gonio_status read_wavelength(numbers *n, double *wavelength, size_t k)
-{
-    const gonio_status status = read_number(n, &wavelength[k]);
-    if (status != GONIO_OK) {
-        return status;
-    }
-    if (!(wavelength[k] > 0.0 && wavelength[k] < 1e6)) {
-        return gonio_i_fail(n->context, GONIO_ERROR_FORMAT, "%s:%zu: %g is not a wavelength in nm",
-                            n->path, n->line, wavelength[k]);
-    }
-    for (size_t j = 0; j < k; j++) {
-        if (wavelength[j] == wavelength[k]) {
-            return gonio_i_fail(n->context, GONIO_ERROR_FORMAT, "%s:%zu: %g nm occurs twice",
-                                n->path, n->line, wavelength[k]);
-        }
-    }
-    return GONIO_OK;
-}
-
-static gonio_status read_wavelengths(numbers *n, gonio_readings *readings)
+static gonio_status read_wavelengths(gonio_i_numbers *n, gonio_i_import *in)
 {
     double number = 0.0;
-    gonio_status status = read_number(n, &number);
+    gonio_status status = gonio_i_numbers_read(n, &number);
     if (status == GONIO_OK && !(number >= 1.0 && number <= MOST_WAVELENGTHS)) {
         return gonio_i_fail(n->context, GONIO_ERROR_FORMAT,
                             "%s:%zu: %g wavelengths; 1 to %d are expected", n->path, n->line,
@@ -105,62 +58,60 @@ static gonio_status read_wavelengths(numbers *n, gonio_readings *readings)
     double *wavelength = gonio_i_allocate(n->context, count, sizeof *wavelength);
     status = wavelength != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
     for (size_t k = 0; k < count && status == GONIO_OK; k++) {
-        status = read_wavelength(n, wavelength, k);
+        status = gonio_i_numbers_read(n, &wavelength[k]);
     }
     if (status == GONIO_OK) {
-        status = gonio_i_readings_begin(n->context, readings, count, wavelength);
+        status = gonio_i_import_channels(in, count, wavelength);
     }
     free(wavelength);
     return status;
 }
 
-/* Nine digits, as many as CSV has of these angles: a direction is the same number in both files. */
-static double rounded(double degrees)
+static gonio_status read_row(gonio_i_numbers *n, gonio_i_import *in, double *value)
 {
-    if (degrees == 0.0) {
-        return 0.0;
-    }
-    const int places = DIGITS - 1 - (int)floor(log10(fabs(degrees)));
-    const double scale = pow(10.0, places);
-    const double whole = nearbyint(degrees * scale);
-    return places >= 0 && places <= 22 ? whole / scale : degrees;
-}
-
-static gonio_status read_reading(numbers *n, gonio_readings *readings, double *value)
-{
-    gonio_i_reading reading = {.planned = GONIO_ALL_CHANNELS, .line = n->line, .value = value};
+    gonio_i_row row = {.planned = GONIO_ALL_CHANNELS, .line = n->line, .value = value};
     gonio_status status = GONIO_OK;
     for (size_t k = 0; k < ANGLES && status == GONIO_OK; k++) {
-        double radians = 0.0;
-        status = read_number(n, &radians);
-        reading.degrees[k] = rounded(radians * 180.0 / M_PI);
+        double angle = 0.0;
+        status = gonio_i_numbers_read(n, &angle);
+        row.degrees[k] = gonio_i_import_degrees(in, angle);
     }
-    for (size_t k = 0; k < readings->channels && status == GONIO_OK; k++) {
-        status = read_number(n, &value[k]);
+    for (size_t k = 0; k < in->readings->channels && status == GONIO_OK; k++) {
+        status = gonio_i_numbers_read(n, &value[k]);
     }
-    return status == GONIO_OK ? gonio_i_readings_add(n->context, readings, &reading) : status;
+    return status == GONIO_OK ? gonio_i_import_add(in, &row) : status;
 }
 
-static gonio_status read(gonio_i_readings_file *file, gonio_readings *readings)
+static gonio_status read_rows(gonio_i_numbers *n, gonio_i_import *in)
 {
-    numbers n = {.context = file->context,
-                 .path = file->path,
-                 .at = file->text,
-                 .end = file->text + file->size,
-                 .line = 1};
-    readings->keep_angles = true;
-    gonio_status status = read_wavelengths(&n, readings);
-    if (status != GONIO_OK) {
-        return status;
+    gonio_status status = read_wavelengths(n, in);
+    double *value = NULL;
+    if (status == GONIO_OK) {
+        value = gonio_i_allocate(n->context, in->readings->channels, sizeof *value);
+        status = value != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
     }
-    double *value = gonio_i_allocate(file->context, readings->channels, sizeof *value);
-    status = value != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
-    while (status == GONIO_OK && skip(&n)) {
-        status = read_reading(&n, readings, value);
+    while (status == GONIO_OK && gonio_i_numbers_skip(n)) {
+        status = read_row(n, in, value);
     }
     free(value);
     return status;
 }
 
+static gonio_status read(gonio_i_readings_file *file, gonio_readings *readings)
+{
+    static const gonio_convention stated = {
+        .angles = GONIO_RADIANS, .values = GONIO_VALUE_BRDF, .wavelengths = GONIO_NANOMETRES};
+    gonio_i_numbers n = {.context = file->context,
+                         .path = file->path,
+                         .at = file->text,
+                         .end = file->text + file->size,
+                         .line = 1,
+                         .comment = '#'};
+    gonio_i_import in;
+    gonio_i_import_begin(&in, file->context, readings, "scattered readings (Cornell, pbrt)",
+                         &stated);
+    return gonio_i_import_end(&in, read_rows(&n, &in));
+}
+
 const gonio_i_readings_format gonio_i_readings_scattered = {
-    .name = "scattered readings as text", .probe = probe, .read = read};
+    .word = "scattered", .name = "scattered readings as text", .probe = probe, .read = read};

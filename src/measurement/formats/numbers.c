@@ -1,0 +1,93 @@
+/* The words and numbers of a text: see numbers.h. */
+#include "numbers.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool at_comment(const gonio_i_numbers *n)
+{
+    return n->comment != '\0' && *n->at == n->comment;
+}
+
+static const char *line_end(const gonio_i_numbers *n)
+{
+    const char *end = memchr(n->at, '\n', (size_t)(n->end - n->at));
+    return end != NULL ? end : n->end;
+}
+
+bool gonio_i_numbers_skip(gonio_i_numbers *n)
+{
+    while (n->at < n->end && (isspace((unsigned char)*n->at) || at_comment(n))) {
+        n->at = at_comment(n) ? line_end(n) : n->at;
+        n->line += n->at < n->end && *n->at == '\n';
+        n->at += n->at < n->end;
+    }
+    return n->at < n->end;
+}
+
+bool gonio_i_numbers_skip_blanks(gonio_i_numbers *n)
+{
+    while (n->at < n->end && *n->at != '\n' && (isspace((unsigned char)*n->at) || at_comment(n))) {
+        n->at = at_comment(n) ? line_end(n) : n->at + 1;
+    }
+    return n->at < n->end && *n->at != '\n';
+}
+
+void gonio_i_numbers_next_line(gonio_i_numbers *n)
+{
+    n->at = line_end(n);
+    n->line += n->at < n->end;
+    n->at += n->at < n->end;
+}
+
+void gonio_i_numbers_word(gonio_i_numbers *n, char word[GONIO_I_WORD])
+{
+    size_t length = 0;
+    for (; n->at < n->end && !isspace((unsigned char)*n->at) && !at_comment(n); n->at++) {
+        if (length < GONIO_I_WORD - 1) {
+            word[length++] = *n->at;
+        }
+    }
+    word[length] = '\0';
+}
+
+static bool number_of(const char *word, double *value)
+{
+    char *end = NULL;
+    *value = strtod(word, &end);
+    return end != word && *end == '\0' && isfinite(*value);
+}
+
+gonio_status gonio_i_numbers_read(gonio_i_numbers *n, double *value)
+{
+    char word[GONIO_I_WORD];
+    if (!gonio_i_numbers_skip(n)) {
+        return gonio_i_fail(n->context, GONIO_ERROR_FORMAT,
+                            "%s: ends within a reading (line %zu); is the file whole?", n->path,
+                            n->line);
+    }
+    gonio_i_numbers_word(n, word);
+    if (!number_of(word, value)) {
+        return gonio_i_fail(n->context, GONIO_ERROR_FORMAT, "%s:%zu: '%.40s' is not a number",
+                            n->path, n->line, word);
+    }
+    return GONIO_OK;
+}
+
+int gonio_i_numbers_row(gonio_i_numbers *n, double *value, int most)
+{
+    int count = 0;
+    bool good = true;
+    while (good && gonio_i_numbers_skip_blanks(n)) {
+        char word[GONIO_I_WORD];
+        gonio_i_numbers_word(n, word);
+        good = count < most && number_of(word, &value[count]);
+        count += good;
+    }
+    if (good) {
+        gonio_i_numbers_next_line(n);
+    }
+    return good ? count : -1;
+}

@@ -1,0 +1,38 @@
+/* The words and numbers of a text, one after another, with the line that each is in. */
+#ifndef GONIO_NUMBERS_H
+#define GONIO_NUMBERS_H
+
+#include "../../core/core.h"
+
+enum { GONIO_I_WORD = 64 };
+
+typedef struct gonio_i_numbers {
+    gonio_context *context;
+    const char *path; /* for messages */
+    const char *at;
+    const char *end;
+    size_t line;  /* from 1 */
+    char comment; /* the sign that begins a comment, which goes to the end of its line; 0: none */
+} gonio_i_numbers;
+
+/* Passes over blanks, line ends and comments; whether there is more. */
+bool gonio_i_numbers_skip(gonio_i_numbers *numbers);
+
+/* The same within a line; whether the line has more. */
+bool gonio_i_numbers_skip_blanks(gonio_i_numbers *numbers);
+
+/* Passes to the beginning of the next line. */
+void gonio_i_numbers_next_line(gonio_i_numbers *numbers);
+
+/* The next word, at most 63 characters of it; "" at the end. */
+void gonio_i_numbers_word(gonio_i_numbers *numbers, char word[GONIO_I_WORD]);
+
+/* The next number, on whatever line. Errors: _FORMAT at the end of the text, for a word that is no
+ * finite number; the message names the line. */
+gonio_status gonio_i_numbers_read(gonio_i_numbers *numbers, double *value);
+
+/* The numbers of the rest of the line, at most `most`, and its end is passed. A word that is none
+ * ends them: -1 is returned then. Otherwise their count, 0 for an empty line. */
+int gonio_i_numbers_row(gonio_i_numbers *numbers, double *value, int most);
+
+#endif

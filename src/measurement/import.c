@@ -1,0 +1,394 @@
+/* From rows to readings: see import.h. */
+#include "import.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "convention.h"
+
+enum { DIGITS = 9 };
+
+static const double LEAST_WAVELENGTH = 100.0; /* nm; no goniometer works below */
+static const double MOST_WAVELENGTH = 1e6;
+static const double MOST_AZIMUTH = 720.0; /* degrees */
+static const double SAME = 1e-9;          /* relative: values that repeat others */
+
+/* ---- beginning ---- */
+
+void gonio_i_import_begin(gonio_i_import *import, gonio_context *context, gonio_readings *readings,
+                          const char *taken_as, const gonio_convention *stated)
+{
+    *import = (gonio_i_import){.context = context,
+                               .readings = readings,
+                               .how = gonio_i_convention_of(stated, &readings->options.as),
+                               .taken_as = taken_as};
+    readings->keep_angles = true;
+}
+
+void gonio_i_import_leniently(gonio_i_import *import)
+{
+    import->lenient = true;
+    import->readings->options.average_repeats = true;
+}
+
+/* The unit of a wavelength that would be light. */
+static const char *unit_of_light(double wavelength)
+{
+    return wavelength > LEAST_WAVELENGTH * 1e-9 && wavelength < MOST_WAVELENGTH * 1e-9   ? "m"
+           : wavelength > LEAST_WAVELENGTH * 1e-3 && wavelength < MOST_WAVELENGTH * 1e-3 ? "um"
+                                                                                         : NULL;
+}
+
+static gonio_status refuse_wavelength(const gonio_i_import *in, double wavelength)
+{
+    const char *unit = unit_of_light(wavelength);
+    return unit != NULL && in->how.wavelengths <= GONIO_NANOMETRES
+               ? gonio_i_fail(in->context, GONIO_ERROR_FORMAT,
+                              "%s: a wavelength of %g nm is no light; is it in %s? Give nm, or use "
+                              "--as wavelengths=%s",
+                              in->readings->path, wavelength, unit, unit)
+               : gonio_i_fail(in->context, GONIO_ERROR_FORMAT,
+                              "%s: %g is not a wavelength of light", in->readings->path,
+                              wavelength);
+}
+
+static double nanometres(const gonio_i_import *in, double wavelength)
+{
+    const double scale = in->how.wavelengths == GONIO_METRES        ? 1e9
+                         : in->how.wavelengths == GONIO_MICROMETRES ? 1e3
+                                                                    : 1.0;
+    return scale == 1.0 ? wavelength : nearbyint(wavelength * scale * 1e6) / 1e6;
+}
+
+static gonio_status take_wavelengths(const gonio_i_import *in, size_t channels,
+                                     const double *wavelength, double *nm)
+{
+    for (size_t k = 0; k < channels; k++) {
+        nm[k] = nanometres(in, wavelength[k]);
+        if (!(nm[k] >= LEAST_WAVELENGTH && nm[k] <= MOST_WAVELENGTH)) {
+            return refuse_wavelength(in, wavelength[k]);
+        }
+        for (size_t j = 0; j < k; j++) {
+            if (nm[j] == nm[k]) {
+                return gonio_i_fail(in->context, GONIO_ERROR_FORMAT, "%s: %g nm occurs twice",
+                                    in->readings->path, nm[k]);
+            }
+        }
+    }
+    return gonio_i_readings_begin(in->context, in->readings, channels, nm);
+}
+
+gonio_status gonio_i_import_channels(gonio_i_import *import, size_t channels,
+                                     const double *wavelength)
+{
+    import->value = gonio_i_allocate(import->context, channels, sizeof *import->value);
+    import->deviation = gonio_i_allocate(import->context, channels, sizeof *import->deviation);
+    double *nm = gonio_i_allocate(import->context, channels, sizeof *nm);
+    gonio_status status = GONIO_ERROR_MEMORY;
+    if (import->value != NULL && import->deviation != NULL && nm != NULL) {
+        status = wavelength != NULL
+                     ? take_wavelengths(import, channels, wavelength, nm)
+                     : gonio_i_readings_begin(import->context, import->readings, channels, NULL);
+    }
+    free(nm);
+    return status;
+}
+
+/* ---- angles ---- */
+
+static double rounded(double degrees)
+{
+    if (degrees == 0.0 || !isfinite(degrees)) {
+        return fabs(degrees);
+    }
+    const int places = DIGITS - 1 - (int)floor(log10(fabs(degrees)));
+    const double scale = pow(10.0, places);
+    const double whole = nearbyint(degrees * scale);
+    return places >= 0 && places <= 22 ? whole / scale : degrees;
+}
+
+double gonio_i_import_degrees(const gonio_i_import *import, double angle)
+{
+    return import->how.angles == GONIO_RADIANS ? rounded(angle * 180.0 / M_PI) : angle;
+}
+
+static double as_in_file(const gonio_i_import *in, double degrees)
+{
+    return in->how.angles == GONIO_RADIANS ? degrees * M_PI / 180.0 : degrees;
+}
+
+static gonio_status refuse_angle(const gonio_i_import *in, const gonio_i_row *row, int which)
+{
+    static const char *const names[4] = {"theta_i", "phi_i", "theta_o", "phi_o"};
+    const bool radians = in->how.angles == GONIO_RADIANS;
+    const double number = as_in_file(in, row->degrees[which]);
+    const char *advice = radians && fabs(number) <= 360.0 ? "; these look like degrees: use --as "
+                                                            "angles=degrees"
+                                                          : "";
+    return gonio_i_fail(in->context, isfinite(number) ? GONIO_ERROR_DATA : GONIO_ERROR_FORMAT,
+                        "%s:%zu: %s = %.7g is no such angle in %s%s", in->readings->path, row->line,
+                        names[which], number, radians ? "radians" : "degrees", advice);
+}
+
+/* The other side has the azimuth of the other side; turns beyond the first say nothing. */
+static void fold(double *theta, double *phi)
+{
+    if (*theta < 0.0) {
+        *theta = -*theta;
+        *phi += *phi < 180.0 ? 180.0 : -180.0;
+    }
+    if (fabs(*phi) > 360.0) {
+        *phi = rounded(fmod(*phi, 360.0));
+    }
+}
+
+/* At the pole azimuths say nothing. */
+static void settle_pole(double theta, double *phi)
+{
+    *phi = theta == 0.0 ? 0.0 : *phi;
+}
+
+/* Angles of a row in gonio's convention; false at or below the horizon. */
+static bool take_angles(const gonio_i_import *in, const double from[4], double to[4])
+{
+    memcpy(to, from, 4 * sizeof *to);
+    if (in->how.mirror == GONIO_MIRROR_0) {
+        to[3] += 180.0;
+    }
+    fold(&to[0], &to[1]);
+    fold(&to[2], &to[3]);
+    if (in->lenient) {
+        settle_pole(to[0], &to[1]);
+        settle_pole(to[2], &to[3]);
+    }
+    return to[0] < 90.0 && to[2] < 90.0;
+}
+
+static gonio_status check_angles(const gonio_i_import *in, const gonio_i_row *row)
+{
+    for (int k = 0; k < 4; k++) {
+        const bool polar = k % 2 == 0;
+        if (!isfinite(row->degrees[k]) || fabs(row->degrees[k]) > (polar ? 180.0 : MOST_AZIMUTH)) {
+            return refuse_angle(in, row, k);
+        }
+    }
+    return GONIO_OK;
+}
+
+/* ---- values ---- */
+
+/* What a value of the file is divided by. */
+static double divisor(const gonio_i_import *in, const double degrees[4])
+{
+    const double cosine = cos(degrees[2] * M_PI / 180.0);
+    switch (in->how.values) {
+    case GONIO_VALUE_FACTOR:
+        return M_PI;
+    case GONIO_VALUE_PERCENT:
+        return 100.0 * M_PI;
+    case GONIO_VALUE_COSINE:
+        return cosine;
+    case GONIO_VALUE_FACTOR_COSINE:
+        return M_PI * cosine;
+    default:
+        return 1.0;
+    }
+}
+
+/* Values of a row as a BRDF; whether there is one. */
+static bool take_values(gonio_i_import *in, const gonio_i_row *row, const double degrees[4])
+{
+    const double by = divisor(in, degrees);
+    bool any = false;
+    for (size_t k = 0; k < in->readings->channels; k++) {
+        const bool missing = row->value[k] == 0.0 && in->how.zeros == GONIO_ZEROS_MISSING;
+        const double value = missing ? NAN : row->value[k] / by;
+        const bool negative = in->lenient && value < 0.0 && isfinite(value);
+        in->negative += negative;
+        in->value[k] = negative ? 0.0 : value;
+        any = any || !isnan(value);
+        in->deviation[k] = row->deviation != NULL ? row->deviation[k] / by : NAN;
+    }
+    return any;
+}
+
+gonio_status gonio_i_import_add(gonio_i_import *import, const gonio_i_row *row)
+{
+    gonio_i_reading reading = {.planned = row->planned,
+                               .line = row->line,
+                               .value = import->value,
+                               .deviation = row->deviation != NULL ? import->deviation : NULL};
+    const gonio_status status = check_angles(import, row);
+    if (status != GONIO_OK) {
+        return status;
+    }
+    if (!take_angles(import, row->degrees, reading.degrees)) {
+        gonio_i_import_leave_out(import, GONIO_I_BELOW_HORIZON);
+        return GONIO_OK;
+    }
+    if (!take_values(import, row, reading.degrees) && import->readings->options.values_needed) {
+        gonio_i_import_leave_out(import, GONIO_I_NOT_MEASURED);
+        return GONIO_OK;
+    }
+    return gonio_i_readings_add(import->context, import->readings, &reading);
+}
+
+/* ---- the end ---- */
+
+static bool same_number(double a, double b)
+{
+    return (isnan(a) && isnan(b)) || fabs(a - b) <= SAME * fabs(a);
+}
+
+static bool same_values(gonio_readings *r, size_t a, size_t b)
+{
+    bool same = r->planned[a] == r->planned[b];
+    for (size_t k = 0; k < r->channels && same; k++) {
+        same = same_number(gonio_i_readings_values(r, a)[k], gonio_i_readings_values(r, b)[k]);
+    }
+    return same;
+}
+
+static void move(gonio_readings *r, size_t from, size_t to)
+{
+    const size_t bytes = r->channels * sizeof *r->value;
+    r->pair[to] = r->pair[from];
+    r->planned[to] = r->planned[from];
+    r->line[to] = r->line[from];
+    memmove(&r->value[to * r->channels], &r->value[from * r->channels], bytes);
+    if (r->deviation != NULL) {
+        memmove(&r->deviation[to * r->channels], &r->deviation[from * r->channels], bytes);
+    }
+    memmove(r->given[to], r->given[from], sizeof *r->given);
+}
+
+/* Takes out readings that say again what the first of their directions says. */
+static gonio_status drop_repeats(gonio_i_import *in)
+{
+    gonio_readings *r = in->readings;
+    const gonio_status status = gonio_i_readings_group(in->context, r);
+    if (status != GONIO_OK) {
+        return status;
+    }
+    bool *repeated = gonio_i_allocate(in->context, r->count, sizeof *repeated);
+    if (repeated == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    for (size_t k = 0; k < r->count; k++) {
+        repeated[k] = r->first_same[k] != k && same_values(r, k, r->first_same[k]);
+        in->left_out[GONIO_I_REPEATED] += repeated[k];
+    }
+    size_t kept = 0;
+    for (size_t k = 0; k < r->count; k++) {
+        if (!repeated[k]) {
+            move(r, k, kept++);
+        }
+    }
+    r->count = kept;
+    free(repeated);
+    return GONIO_OK;
+}
+
+static const char *const reasons[GONIO_I_REASONS] = {
+    [GONIO_I_BELOW_HORIZON] = "at or below the horizon",
+    [GONIO_I_NOT_MEASURED] = "not measured",
+    [GONIO_I_REPEATED] = "said again of the same directions",
+    [GONIO_I_EXTRAPOLATED] = "extrapolated",
+    [GONIO_I_TRANSMITTED] = "transmitted light",
+};
+
+static void print_left_out(const gonio_i_import *in, FILE *stream)
+{
+    const char *between = "; left out: ";
+    for (int k = 0; k < GONIO_I_REASONS; k++) {
+        if (in->left_out[k] > 0) {
+            fprintf(stream, "%s%zu %s", between, in->left_out[k], reasons[k]);
+            between = ", ";
+        }
+    }
+    if (in->negative > 0) {
+        fprintf(stream, "; %zu value%s below zero taken as 0", in->negative,
+                in->negative > 1 ? "s" : "");
+    }
+}
+
+static bool anything_changed(const gonio_i_import *in)
+{
+    size_t changed = in->negative;
+    for (int k = 0; k < GONIO_I_REASONS; k++) {
+        changed += in->left_out[k];
+    }
+    return changed > 0;
+}
+
+/* "taken as Zemax BSDF: angles in degrees, values in 1/sr; 812 readings; left out: ...". */
+static gonio_status write_note(gonio_i_import *in)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *stream = open_memstream(&text, &size);
+    if (stream == NULL) {
+        return gonio_i_fail(in->context, GONIO_ERROR_MEMORY, "%s: out of memory",
+                            in->readings->path);
+    }
+    fprintf(stream, "taken as %s: ", in->taken_as);
+    gonio_i_convention_print(&in->how, stream);
+    fprintf(stream, "; %zu reading%s", in->readings->count, in->readings->count > 1 ? "s" : "");
+    print_left_out(in, stream);
+    fclose(stream);
+    const gonio_status status = gonio_i_readings_note(in->context, in->readings, "%s", text);
+    free(text);
+    return status;
+}
+
+static gonio_status refuse_nothing(const gonio_i_import *in)
+{
+    size_t rows = 0;
+    for (int k = 0; k < GONIO_I_REASONS; k++) {
+        rows += in->left_out[k];
+    }
+    return rows == 0 ? gonio_i_fail(in->context, GONIO_ERROR_DATA, "%s: no readings in it",
+                                    in->readings->path)
+                     : gonio_i_fail(in->context, GONIO_ERROR_DATA,
+                                    "%s: none of the %zu rows is a reading above the horizon",
+                                    in->readings->path, rows);
+}
+
+gonio_status gonio_i_import_end(gonio_i_import *import, gonio_status status)
+{
+    if (status == GONIO_OK && import->readings->count == 0) {
+        status = refuse_nothing(import);
+    }
+    if (status == GONIO_OK && import->lenient) {
+        status = drop_repeats(import);
+    }
+    if (status == GONIO_OK && (!import->quiet || anything_changed(import))) {
+        status = write_note(import);
+    }
+    free(import->value);
+    free(import->deviation);
+    import->value = NULL;
+    import->deviation = NULL;
+    return status;
+}
+
+/* ---- about the mirror direction ---- */
+
+void gonio_i_from_mirror(double theta_i, double radial, double azimuth, double *theta_o,
+                         double *phi_difference)
+{
+    const double t = theta_i * M_PI / 180.0;
+    const double r = radial * M_PI / 180.0;
+    const double a = azimuth * M_PI / 180.0;
+    /* The mirror direction m = (-sin t, 0, cos t) for light from (sin t, 0, cos t); towards the
+     * normal from there: u = (cos t, 0, sin t); v = m x u. */
+    const double along = cos(r);
+    const double towards = sin(r) * cos(a);
+    const double x = -sin(t) * along + cos(t) * towards;
+    const double y = sin(r) * sin(a);
+    const double z = cos(t) * along + sin(t) * towards;
+    *theta_o = rounded(atan2(hypot(x, y), z) * 180.0 / M_PI);
+    *phi_difference = *theta_o < 1e-6 ? 0.0 : rounded(atan2(y, x) * 180.0 / M_PI);
+    *theta_o = *theta_o < 1e-6 ? 0.0 : *theta_o;
+}

@@ -1,0 +1,84 @@
+/* From the rows of a file, in its own convention, to readings.
+ *
+ * Between gonio_i_import_begin and _end a reader adds rows. Azimuths may be any numbers. A negative
+ * theta is the other side: phi is turned by 180 degrees. Rows at or below the horizon and, where
+ * values are needed, rows without any are left out and counted. The end says in a note what the
+ * file was taken for, what was left out and why. */
+#ifndef GONIO_IMPORT_H
+#define GONIO_IMPORT_H
+
+#include "readings.h"
+
+/* Why a row is no reading. */
+typedef enum gonio_i_reason {
+    GONIO_I_BELOW_HORIZON,
+    GONIO_I_NOT_MEASURED, /* no value, or 0 where 0 means that */
+    GONIO_I_REPEATED,     /* the same directions and values */
+    GONIO_I_EXTRAPOLATED, /* the file says that the value was made up, or that it is too low */
+    GONIO_I_TRANSMITTED,
+    GONIO_I_REASONS
+} gonio_i_reason;
+
+typedef struct gonio_i_import {
+    gonio_context *context;
+    gonio_readings *readings;
+    gonio_convention how; /* in force: what is stated and what the user says */
+    const char *taken_as; /* the format, for the note; with an article */
+    bool quiet;           /* no note if nothing was left out or changed */
+    bool lenient;         /* see gonio_i_import_leniently */
+    double *value;        /* [channels] of a row */
+    double *deviation;    /* [channels] */
+    size_t left_out[GONIO_I_REASONS];
+    size_t negative; /* values taken as 0 */
+} gonio_i_import;
+
+/* One row. Angles in degrees (gonio_i_import_degrees), values as the file has them. */
+typedef struct gonio_i_row {
+    double degrees[4]; /* theta_i, phi_i, theta_o, phi_o; theta from the normal, -180 to 180 */
+    int planned;       /* a channel or GONIO_ALL_CHANNELS */
+    size_t line;
+    const double *value;     /* [channels], NaN where nothing was read */
+    const double *deviation; /* [channels] or NULL, in all rows the same */
+} gonio_i_row;
+
+/* stated: what the file or its format says; `taken_as` is kept, not copied. */
+void gonio_i_import_begin(gonio_i_import *import, gonio_context *context, gonio_readings *readings,
+                          const char *taken_as, const gonio_convention *stated);
+
+/* For the files of instruments and their programs: rows that repeat the values of the same
+ * directions (theta_o = 0 for each azimuth) are left out, other repeats are accepted, and values
+ * below zero, which are noise about a dark level, are taken as 0. All are counted. */
+void gonio_i_import_leniently(gonio_i_import *import);
+
+/* The channels, before the first row. wavelength[channels], in the convention's unit, or NULL.
+ * Errors: _FORMAT for what is no wavelength of light or there twice, _MEMORY. */
+gonio_status gonio_i_import_channels(gonio_i_import *import, size_t channels,
+                                     const double *wavelength);
+
+/* An angle as the file has it in degrees, rounded to nine digits, so that the same direction is the
+ * same number. */
+double gonio_i_import_degrees(const gonio_i_import *import, double angle);
+
+/* Adds a row or leaves it out. Errors: _DATA for what cannot be an angle or a value; the message
+ * has the number as it is in the file. */
+gonio_status gonio_i_import_add(gonio_i_import *import, const gonio_i_row *row);
+
+/* Counts a row that the reader itself left out. */
+static inline void gonio_i_import_leave_out(gonio_i_import *import, gonio_i_reason reason)
+{
+    import->left_out[reason]++;
+}
+
+/* The end, after an error too: `status` is what the reader came to. Takes out rows that repeat
+ * others, writes the note. Errors: _DATA if no reading is left, _MEMORY, `status`. */
+gonio_status gonio_i_import_end(gonio_i_import *import, gonio_status status);
+
+/* ---- directions about the mirror direction ---- */
+
+/* theta_o and phi_o - phi_i, degrees, of a direction at a radial angle from the mirror direction of
+ * theta_i and an azimuth about it: 0 towards the normal, counted as phi is. theta_o is above 90
+ * below the horizon. */
+void gonio_i_from_mirror(double theta_i, double radial, double azimuth, double *theta_o,
+                         double *phi_difference);
+
+#endif
