@@ -34,14 +34,26 @@ static size_t find_illuminant(const char *name)
     return k;
 }
 
+enum { MOST_WRITERS = 32 };
+
+/* Whether gonio writes a format, after a complaint if it does not. */
+static bool check_format(const tool *t, const char *format)
+{
+    const char *names[MOST_WRITERS + 1] = {NULL};
+    int choice = 0;
+    for (int k = 0; k < MOST_WRITERS && gonio_material_writer_name(k) != NULL; k++) {
+        names[k] = gonio_material_writer_name(k);
+    }
+    return format == NULL || tool_check_word(t, "--format", format, names, &choice);
+}
+
 bool write_options_check(const tool *t, const write_options *options, gonio_write_options *how)
 {
     double step[3] = {0.0};
     gonio_write_options_default(how);
     how->format = options->format;
-    if (options->format != NULL && gonio_material_writer_find("", options->format) < 0) {
-        return tool_refuse(t, "--format %s: gonio writes merl, rgl, table, klems, zemax and csv",
-                           options->format);
+    if (!check_format(t, options->format)) {
+        return false;
     }
     if (options->illuminant != NULL && find_illuminant(options->illuminant) == ILLUMINANTS) {
         return tool_refuse(t, "--illuminant %s: E, D65 or A", options->illuminant);

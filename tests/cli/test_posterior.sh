@@ -133,7 +133,7 @@ expect_ok convert paint.bsdf --illuminant A paint.xml
 expect_output 'BSDF-XML Reflection Front, LBNL/Klems Full, 145 x 145 patches, CIE X, Y, Z' info paint.xml
 expect_fail 2 '--illuminant F11: E, D65 or A' convert paint.bsdf --illuminant F11 x.xml
 expect_fail 2 '--steps 10,5: give three steps' convert paint.bsdf --steps 10,5 x.csv
-expect_fail 2 '--format exr: gonio writes merl, rgl,' convert paint.bsdf --format exr x.exr
+expect_fail 2 "--format: 'exr' is none of merl, rgl," convert paint.bsdf --format exr x.exr
 rm paint.bsdf paint.xml deviation.binary
 expect_output 'from 40 readings in 3 channels' reconstruct b.gonio paint.brdf -o paint.binary
 
