@@ -1,0 +1,35 @@
+/* Tables with a row for each direction and wavelength (and polarisation), to rows of all
+ * wavelengths: equal directions are found, in the order in which they first appear. Several values
+ * of a direction and wavelength become their mean: that of s and p is unpolarised. */
+#ifndef GONIO_LONG_TABLE_H
+#define GONIO_LONG_TABLE_H
+
+#include "import.h"
+
+typedef struct gonio_i_long_row {
+    double degrees[4]; /* as in gonio_i_row */
+    double wavelength; /* in the convention's unit; 0: the table has none */
+    double value;
+    double deviation; /* NaN: not known */
+    size_t line;
+} gonio_i_long_row;
+
+typedef struct gonio_i_long_table {
+    gonio_context *context;
+    size_t count;
+    size_t room;
+    gonio_i_long_row *row; /* [count] */
+    bool any_deviation;
+} gonio_i_long_table;
+
+/* A table begins zero-initialised but for its context. Errors: _MEMORY. */
+gonio_status gonio_i_long_table_add(gonio_i_long_table *table, const gonio_i_long_row *row);
+
+/* Says the channels of the import (wavelengths ascending, or one without a name) and adds its rows.
+ * The deviation of a mean of m values is the root of the sum of their squares, over m. Errors: as
+ * of the import; _FORMAT for more than 4096 wavelengths; _MEMORY. */
+gonio_status gonio_i_long_table_import(gonio_i_long_table *table, gonio_i_import *import);
+
+void gonio_i_long_table_free(gonio_i_long_table *table);
+
+#endif
