@@ -67,8 +67,9 @@ static int report(const tool *t, const gonio_basis *basis, const options *o)
                                             (json_int_t)view->cells, "explained_variance", share));
     }
     if (!tool_quiet) {
-        printf("%s: %zu components from %zu materials on %zu cells, %.2f %% of the variance\n",
-               o->output, view->components, view->materials, view->cells, 100.0 * share);
+        fprintf(tool_results(),
+                "%s: %zu components from %zu materials on %zu cells, %.2f %% of the variance\n",
+                o->output, view->components, view->materials, view->cells, 100.0 * share);
     }
     return 0;
 }

@@ -26,8 +26,8 @@ static int report(const tool *t, const options *o, const gonio_readings *reading
                                             (json_int_t)view->channels, "material", material));
     }
     if (!tool_quiet) {
-        printf("%s: %zu reading%s of %s\n", o->output, view->count, tool_plural(view->count),
-               material);
+        fprintf(tool_results(), "%s: %zu reading%s of %s\n", o->output, view->count,
+                tool_plural(view->count), material);
     }
     return 0;
 }

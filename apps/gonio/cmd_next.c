@@ -36,11 +36,14 @@ static int report(const tool *t, const options *o, const answer *a)
                          "suspicion", a->suspicion));
     }
     if (!tool_quiet && plan == NULL) {
-        printf("expected error (E6) %.2f %%: the target is met, no more readings are needed\n",
-               a->now);
+        fprintf(tool_results(),
+                "expected error (E6) %.2f %%: the target is met, no more readings are needed\n",
+                a->now);
     } else if (!tool_quiet) {
-        printf("%s: %zu more reading%s; expected error (E6) now %.2f %%, then %.2f %%\n", o->output,
-               plan->count, tool_plural(plan->count), a->now, plan->expected[plan->count - 1]);
+        fprintf(tool_results(),
+                "%s: %zu more reading%s; expected error (E6) now %.2f %%, then %.2f %%\n",
+                o->output, plan->count, tool_plural(plan->count), a->now,
+                plan->expected[plan->count - 1]);
     }
     return 0;
 }

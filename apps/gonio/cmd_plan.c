@@ -34,12 +34,12 @@ static int report(const tool *t, const gonio_plan *plan, const options *o)
                                             "expected_e6_percent", tool_json_number(expected)));
     }
     if (!tool_quiet && plan->expected != NULL) {
-        printf("%s: %zu reading%s, in order of use; expected error (E6) %.2f %%\n", o->output,
-               plan->count, tool_plural(plan->count), plan->expected[plan->count - 1]);
+        fprintf(tool_results(), "%s: %zu reading%s, in order of use; expected error (E6) %.2f %%\n",
+                o->output, plan->count, tool_plural(plan->count), plan->expected[plan->count - 1]);
     } else if (!tool_quiet) {
-        printf("%s: %zu reading%s for %zu component%s, condition number %.3f\n", o->output,
-               plan->count, tool_plural(plan->count), plan->components,
-               tool_plural(plan->components), plan->condition_number);
+        fprintf(tool_results(), "%s: %zu reading%s for %zu component%s, condition number %.3f\n",
+                o->output, plan->count, tool_plural(plan->count), plan->components,
+                tool_plural(plan->components), plan->condition_number);
     }
     return 0;
 }

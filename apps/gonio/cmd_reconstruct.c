@@ -113,23 +113,26 @@ static json_t *as_json(const gonio_reconstruction *r, const char *output, const 
 static void print(const gonio_reconstruction *r, const char *output, const energy *e)
 {
     if (r->field != NULL) {
-        printf("%s: from %zu reading%s in %zu channel%s; expected error (E6) %.2f %%, residual "
-               "%.4f (log units)",
-               output, r->readings, tool_plural(r->readings), r->columns, tool_plural(r->columns),
-               r->predicted_e6, r->residual);
+        fprintf(tool_results(),
+                "%s: from %zu reading%s in %zu channel%s; expected error (E6) %.2f %%, residual "
+                "%.4f (log units)",
+                output, r->readings, tool_plural(r->readings), r->columns, tool_plural(r->columns),
+                r->predicted_e6, r->residual);
     } else {
-        printf("%s: %zu coefficient%s from %zu reading%s, condition number %.3f, residual %.4f "
-               "(log units)",
-               output, r->components, tool_plural(r->components), r->readings,
-               tool_plural(r->readings), r->condition_number, r->residual);
+        fprintf(tool_results(),
+                "%s: %zu coefficient%s from %zu reading%s, condition number %.3f, residual %.4f "
+                "(log units)",
+                output, r->components, tool_plural(r->components), r->readings,
+                tool_plural(r->readings), r->condition_number, r->residual);
     }
     if (e->known) {
-        printf(", albedo at most %.2f", e->albedo);
+        fprintf(tool_results(), ", albedo at most %.2f", e->albedo);
     }
     if (r->outlying > 0) {
-        printf(", %zu value%s contradicted by the others", r->outlying, tool_plural(r->outlying));
+        fprintf(tool_results(), ", %zu value%s contradicted by the others", r->outlying,
+                tool_plural(r->outlying));
     }
-    putchar('\n');
+    fputc('\n', tool_results());
 }
 
 /* Says what was made, in a line or an object appended to `results`, and what is wrong with it.

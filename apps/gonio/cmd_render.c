@@ -209,8 +209,8 @@ static int report_one(const tool *t, const options *o, const scene *s, const cha
                                             image->height, "samples", s->how.samples));
     }
     if (!tool_quiet) {
-        printf("%s: %s, %d x %d pixels, %d samples\n", o->output, material, image->width,
-               image->height, s->how.samples);
+        fprintf(tool_results(), "%s: %s, %d x %d pixels, %d samples\n", o->output, material,
+                image->width, image->height, s->how.samples);
     }
     return 0;
 }
@@ -396,7 +396,7 @@ static int report_picture(const tool *t, const options *o, const picture *p,
         return tool_print_json(t, picture_json(o, p, paths));
     }
     if (!tool_quiet) {
-        printf("%s: %zu x %zu renderings\n", o->output, p->rows, p->columns);
+        fprintf(tool_results(), "%s: %zu x %zu renderings\n", o->output, p->rows, p->columns);
     }
     return 0;
 }

@@ -97,7 +97,7 @@ static int print_result(const tool *t, const options *o, const shown *s)
                                             "readings", o->readings, "deviation", o->deviation));
     }
     if (!tool_quiet) {
-        printf("%s: open it in a browser\n", o->output);
+        fprintf(tool_results(), "%s: open it in a browser\n", o->output);
     }
     return 0;
 }

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 int tool_threads = 0;
 int tool_json = 0;
@@ -177,6 +178,7 @@ static void end(tool *t)
 int tool_run(int argc, const char **argv, const tool_command_line *line)
 {
     tool t;
+    tool_keep_results_off_standard_output(false);
     int code = begin(&t, argc, argv, line);
     if (code < 0) {
         code = line->work(&t, line->options);
@@ -200,6 +202,19 @@ int tool_exit_code(gonio_status status)
     return status == GONIO_OK ? 0 : status == GONIO_ERROR_ARGUMENT ? EXIT_USAGE : EXIT_DATA;
 }
 
+/* Whether a file is where standard output goes; not a device that keeps nothing. */
+static bool is_standard_output(const char *path)
+{
+    struct stat file;
+    struct stat standard;
+    if (strcmp(path, "-") == 0) {
+        return true;
+    }
+    return stat(path, &file) == 0 && fstat(STDOUT_FILENO, &standard) == 0 &&
+           file.st_dev == standard.st_dev && file.st_ino == standard.st_ino &&
+           (!S_ISCHR(file.st_mode) || isatty(STDOUT_FILENO));
+}
+
 bool tool_check_output(const tool *t, const char *output, const char *const *inputs, size_t count)
 {
     struct stat out;
@@ -212,6 +227,9 @@ bool tool_check_output(const tool *t, const char *output, const char *const *inp
             in.st_ino == out.st_ino && S_ISREG(in.st_mode)) {
             return tool_refuse(t, "%s is an input: give another name for the output", output);
         }
+    }
+    if (is_standard_output(output)) {
+        tool_keep_results_off_standard_output(true);
     }
     return true;
 }

@@ -61,7 +61,8 @@ int tool_exit_code(gonio_status status);
 
 /* Checks of the command line. Each returns whether all is well, after a complaint if it is not. */
 
-/* An output is named and is none of the inputs (NULL: there is none). */
+/* An output is named and is none of the inputs (NULL: there is none). If it is standard output,
+ * results are printed to standard error from now on (tool_results). */
 bool tool_check_output(const tool *t, const char *output, const char *const *inputs, size_t count);
 
 /* An integer from `least` on. */

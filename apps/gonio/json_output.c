@@ -36,8 +36,8 @@ int tool_print_json(const tool *t, json_t *json)
         *kept_json = json;
         return 0;
     }
-    json_dumpf(json, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(10));
-    putchar('\n');
+    json_dumpf(json, tool_results(), JSON_INDENT(2) | JSON_REAL_PRECISION(10));
+    fputc('\n', tool_results());
     json_decref(json);
     return 0;
 }

@@ -12,7 +12,7 @@ json_t *tool_json_number(double value);
 /* An error by every metric: {"e6_percent": ..., ...} (gonio_metric_view.key). */
 json_t *tool_error_json(const gonio_error *error);
 
-/* Prints JSON to standard output and releases it; NULL, from a json_pack that failed, is an error.
+/* Prints JSON (tool_results) and releases it; NULL, from a json_pack that failed, is an error.
  * Returns an exit code. */
 int tool_print_json(const tool *t, json_t *json);
 

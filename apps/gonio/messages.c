@@ -8,6 +8,18 @@
 
 int tool_quiet = 0;
 
+static bool standard_output_is_taken = false;
+
+FILE *tool_results(void)
+{
+    return standard_output_is_taken ? stderr : stdout;
+}
+
+void tool_keep_results_off_standard_output(bool kept)
+{
+    standard_output_is_taken = kept;
+}
+
 /* Set by the first interrupt; the work then ends at its next progress report and tidies up. */
 static volatile sig_atomic_t interrupted = 0;
 

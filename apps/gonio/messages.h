@@ -5,6 +5,7 @@
 #include <gonio/context.h>
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 
 /* Interrupts end the work at its next progress report; a reader that has gone and a full disk are
  * errors of writing. */
@@ -12,6 +13,11 @@ void tool_catch_signals(void);
 
 /* Whether only errors are wanted. */
 extern int tool_quiet;
+
+/* Where a command prints its result: standard output, or standard error once an output file is
+ * standard output, so that the result does not get into the file. */
+FILE *tool_results(void);
+void tool_keep_results_off_standard_output(bool kept);
 
 /* What is written to standard error for a command. */
 typedef struct tool_messages {

@@ -39,16 +39,53 @@ static int create_beside(const char *path, char **temporary)
 /* Standard output goes where the shell sent it, also if that is a file with other things in it. */
 static bool is_standard_output(const char *path)
 {
-    return strcmp(path, "/dev/stdout") == 0 || strcmp(path, "/dev/fd/1") == 0;
+    static const char *const names[] = {"-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"};
+    bool is = false;
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+        is = is || strcmp(path, names[k]) == 0;
+    }
+    return is;
+}
+
+/* Whether writers cannot seek in what is open, or may not: standard output may be a file with
+ * something in it already. Devices like /dev/null take any offset. */
+static bool is_sequential(int descriptor)
+{
+    struct stat status;
+    return lseek(descriptor, 0, SEEK_CUR) < 0 ||
+           (fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode));
+}
+
+/* A file without a name; -1 if there can be none. */
+static int create_nameless(void)
+{
+    FILE *stream = tmpfile();
+    const int descriptor = stream != NULL ? fcntl(fileno(stream), F_DUPFD_CLOEXEC, 0) : -1;
+    if (stream != NULL) {
+        fclose(stream);
+    }
+    return descriptor;
+}
+
+/* What is written to standard output, a device or a pipe. */
+static void open_special(const char *path, gonio_i_output *output)
+{
+    output->descriptor = is_standard_output(path) ? fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0)
+                                                  : open(path, O_WRONLY | O_CLOEXEC);
+    if (output->descriptor >= 0 && is_sequential(output->descriptor)) {
+        output->final = output->descriptor;
+        output->descriptor = create_nameless();
+    }
 }
 
 static gonio_status open_target(gonio_context *context, const char *path, gonio_i_output *output)
 {
     struct stat status;
-    const bool exists = stat(path, &status) == 0;
-    const bool special = exists && !S_ISREG(status.st_mode); /* a device or a pipe */
+    const bool standard = is_standard_output(path);
+    const bool exists = !standard && stat(path, &status) == 0;
+    const bool special = standard || (exists && !S_ISREG(status.st_mode)); /* a device or a pipe */
     char *resolved = exists && !special ? realpath(path, NULL) : strdup(path);
-    *output = (gonio_i_output){.path = resolved, .descriptor = -1};
+    *output = (gonio_i_output){.path = resolved, .descriptor = -1, .final = -1};
     if (resolved == NULL) {
         return cannot_write(context, path);
     }
@@ -59,10 +96,8 @@ static gonio_status open_target(gonio_context *context, const char *path, gonio_
     if (exists && access(path, W_OK) != 0) {
         return cannot_write(context, path);
     }
-    if (is_standard_output(path)) {
-        output->descriptor = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0);
-    } else if (special) {
-        output->descriptor = open(path, O_WRONLY | O_CLOEXEC);
+    if (special) {
+        open_special(path, output);
     } else {
         output->descriptor = create_beside(resolved, &output->temporary);
     }
@@ -73,18 +108,21 @@ gonio_status gonio_i_output_open(gonio_context *context, const char *path, gonio
 {
     const gonio_status status = open_target(context, path, output);
     if (status != GONIO_OK) {
+        if (output->final >= 0) {
+            close(output->final);
+        }
         free(output->path);
-        *output = (gonio_i_output){.descriptor = -1};
+        *output = (gonio_i_output){.descriptor = -1, .final = -1};
     }
     return status;
 }
 
-gonio_status gonio_i_output_write(gonio_context *context, gonio_i_output *output, const void *data,
-                                  size_t size)
+static gonio_status write_all(gonio_context *context, const gonio_i_output *output, int descriptor,
+                              const void *data, size_t size)
 {
     const char *from = data;
     while (size > 0) {
-        const ssize_t written = write(output->descriptor, from, size);
+        const ssize_t written = write(descriptor, from, size);
         if (written < 0 && errno == EINTR) {
             continue;
         }
@@ -95,6 +133,12 @@ gonio_status gonio_i_output_write(gonio_context *context, gonio_i_output *output
         size -= (size_t)written;
     }
     return GONIO_OK;
+}
+
+gonio_status gonio_i_output_write(gonio_context *context, gonio_i_output *output, const void *data,
+                                  size_t size)
+{
+    return write_all(context, output, output->descriptor, data, size);
 }
 
 gonio_status gonio_i_output_write_at(gonio_context *context, gonio_i_output *output,
@@ -157,10 +201,31 @@ gonio_status gonio_i_output_flush(gonio_context *context, gonio_i_output *output
     return GONIO_OK;
 }
 
+/* Copies the nameless file, which is whole, to where it was meant for. */
+static gonio_status copy_to_final(gonio_context *context, gonio_i_output *output)
+{
+    char block[1 << 16];
+    gonio_status status = GONIO_OK;
+    off_t offset = 0;
+    ssize_t got = 1;
+    while (got > 0 && status == GONIO_OK) {
+        got = pread(output->descriptor, block, sizeof block, offset);
+        if (got < 0 && errno == EINTR) {
+            got = 1;
+            continue;
+        }
+        status = got < 0 ? cannot_write(context, output->path)
+                         : write_all(context, output, output->final, block, (size_t)got);
+        offset += got;
+    }
+    return status;
+}
+
 /* Flushes to disk before the rename, so that a crash cannot leave an empty file under the name. */
 static gonio_status put_in_place(gonio_context *context, gonio_i_output *output)
 {
-    const gonio_status status = gonio_i_output_flush(context, output);
+    const gonio_status status =
+        output->final >= 0 ? copy_to_final(context, output) : gonio_i_output_flush(context, output);
     if (status == GONIO_OK && output->temporary != NULL &&
         rename(output->temporary, output->path) != 0) {
         return cannot_write(context, output->path);
@@ -177,11 +242,14 @@ gonio_status gonio_i_output_close(gonio_context *context, gonio_i_output *output
     if (output->descriptor >= 0 && close(output->descriptor) != 0 && status == GONIO_OK) {
         status = cannot_write(context, output->path);
     }
+    if (output->final >= 0 && close(output->final) != 0 && status == GONIO_OK) {
+        status = cannot_write(context, output->path);
+    }
     if (status != GONIO_OK && output->temporary != NULL) {
         unlink(output->temporary);
     }
     free(output->temporary);
     free(output->path);
-    *output = (gonio_i_output){.descriptor = -1};
+    *output = (gonio_i_output){.descriptor = -1, .final = -1};
     return status;
 }

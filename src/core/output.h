@@ -1,5 +1,6 @@
 /* Output files that appear whole or not at all: written beside the target under another name, then
- * renamed over it. */
+ * renamed over it. What goes to a pipe or to standard output ("/dev/stdout", "-") is kept in a
+ * temporary file until it is whole, because writers seek. */
 #ifndef GONIO_OUTPUT_H
 #define GONIO_OUTPUT_H
 
@@ -9,9 +10,10 @@
 
 typedef struct gonio_i_output {
     char *path;      /* the target, links resolved */
-    char *temporary; /* what is written; NULL when writing to a device or pipe directly */
-    int descriptor;
-    bool flushed; /* all of it has reached the disk */
+    char *temporary; /* what is written; NULL when it is not a file beside the target */
+    int descriptor;  /* of what is written */
+    int final;       /* what the temporary file without a name is copied to; -1 without one */
+    bool flushed;    /* all of it has reached the disk */
 } gonio_i_output;
 
 /* Starts an output. Errors: _IO if the target is a folder, is write-protected or its folder cannot

@@ -69,7 +69,7 @@ static void write_tables(batch *all, size_t count)
     all->threads = teams > 0 ? (int)(threads / teams) : 1;
 #pragma omp parallel for ordered schedule(dynamic) num_threads((int)(teams > 0 ? teams : 1))
     for (size_t k = 0; k < count; k++) {
-        gonio_i_output output = {.descriptor = -1};
+        gonio_i_output output = {.descriptor = -1, .final = -1};
         gonio_status status;
 #pragma omp atomic read
         status = all->status;
