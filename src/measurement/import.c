@@ -227,7 +227,8 @@ gonio_status gonio_i_import_add(gonio_i_import *import, const gonio_i_row *row)
         gonio_i_import_leave_out(import, GONIO_I_BELOW_HORIZON);
         return GONIO_OK;
     }
-    if (!take_values(import, row, reading.degrees) && import->readings->options.values_needed) {
+    const bool needed = import->lenient || import->readings->options.values_needed;
+    if (!take_values(import, row, reading.degrees) && needed) {
         gonio_i_import_leave_out(import, GONIO_I_NOT_MEASURED);
         return GONIO_OK;
     }

@@ -45,9 +45,10 @@ typedef struct gonio_i_row {
 void gonio_i_import_begin(gonio_i_import *import, gonio_context *context, gonio_readings *readings,
                           const char *taken_as, const gonio_convention *stated);
 
-/* For the files of instruments and their programs: rows that repeat the values of the same
- * directions (theta_o = 0 for each azimuth) are left out, other repeats are accepted, and values
- * below zero, which are noise about a dark level, are taken as 0. All are counted. */
+/* For the files of instruments and their programs, which are no plans: rows without a value are left
+ * out, as are rows that repeat the values of the same directions (theta_o = 0 for each azimuth);
+ * other repeats are accepted, and values below zero, which are noise about a dark level, are taken
+ * as 0. All are counted. */
 void gonio_i_import_leniently(gonio_i_import *import);
 
 /* The channels, before the first row. wavelength[channels], in the convention's unit, or NULL.

@@ -1,5 +1,5 @@
-/* Readings of ALTA, pab-opto, ASTM E1392 and TracePro files: directions and values worked out by
- * hand, and files that are not what they should be. */
+/* Readings of ALTA, pab-opto, ASTM E1392, TracePro, Zemax and FRED files: directions and values
+ * worked out by hand, and files that are not what they should be. */
 #include "../support.h"
 
 #include <math.h>
@@ -169,6 +169,112 @@ static void test_tracepro(void **state)
     gonio_readings_free(&readings);
 }
 
+/* ---- Zemax ---- */
+
+#define ZEMAX_HEADER                                                                               \
+    "# a sheet\nSource  Measured\nSymmetry  PlaneSymmetrical\nSpectralContent  Monochrome\n"       \
+    "ScatterType  BRDF\nSampleRotation  1\n0\nAngleOfIncidence  2\n10 30\n"                        \
+    "ScatterAzimuth 3\n0 90\n180\nScatterRadial 2\n0 20\n"
+
+/* About the mirror direction of 30 degrees: 20 towards the normal is theta 10, away from it 50; at
+ * 90 degrees cos theta = cos 30 cos 20, and the difference of azimuths from the mirror's is
+ * atan2(sin 20, sin 30 cos 20). */
+static void test_zemax(void **state)
+{
+    (void)state;
+    gonio_readings *readings =
+        read_good(ZEMAX_HEADER "Monochrome\nDataBegin\nTIS 0.1\n1 2\n1 3\n1 4\n"
+                               "TIS 0.2\n5 6\n5 7\n5 0\nDataEnd\n",
+                  "a Zemax BSDF (angles about the mirror direction): angles in degrees, values in "
+                  "1/sr, 0 means not measured; 7 readings; left out: 1 not measured, 4 said again");
+    const double side = atan2(sin(M_PI / 9.0), 0.5 * cos(M_PI / 9.0)) * 180.0 / M_PI;
+    assert_reading(readings, 0, 10.0, 10.0, 180.0, 1.0);
+    assert_reading(readings, 1, 10.0, 10.0, 0.0, 2.0);
+    assert_reading(readings, 3, 10.0, 30.0, 180.0, 4.0);
+    assert_reading(readings, 4, 30.0, 30.0, 180.0, 5.0);
+    assert_reading(readings, 5, 30.0, 10.0, 180.0, 6.0);
+    const double theta = acos(cos(M_PI / 6.0) * cos(M_PI / 9.0)) * 180.0 / M_PI;
+    const gonio_pair p = gonio_readings_describe(readings)->pair[6];
+    assert_near(p.outgoing.theta * 180.0 / M_PI, theta);
+    assert_near(fabs(fabs(p.outgoing.phi - p.incident.phi) * 180.0 / M_PI - 180.0), side);
+    gonio_readings_free(&readings);
+}
+
+/* X, Y, Z of equal energy are colours; a rotation of the sample turns the light. */
+static void test_zemax_colours_and_rotation(void **state)
+{
+    (void)state;
+    gonio_readings *readings = read_good(
+        "Symmetry ASymmetrical4D\nScatterType BRDF\nSampleRotation 2\n0 90\nAngleOfIncidence 1\n"
+        "30\nScatterAzimuth 1\n0\nScatterRadial 1\n0\nTristimulusX\nDataBegin\nTIS 1\n0.2\nTIS "
+        "1\n0.3\nDataEnd\nTristimulusY\nDataBegin\nTIS 1\n0.2\nTIS 1\n0.3\nDataEnd\nTristimulusZ\n"
+        "DataBegin\nTIS 1\n0.2\nTIS 1\n0.3\nDataEnd\n",
+        "Zemax");
+    assert_true(gonio_readings_are_colours(readings));
+    assert_near(gonio_readings_value(readings, 0, 2), 0.2);
+    assert_reading(readings, 1, 30.0, 30.0, 180.0, 0.3);
+    assert_near(gonio_readings_describe(readings)->pair[1].incident.phi, M_PI / 2.0);
+    gonio_readings_free(&readings);
+}
+
+/* What gonio writes of a material is what the material is there. */
+static void test_zemax_round_trip(void **state)
+{
+    (void)state;
+    char path[256];
+    char *folder = support_folder();
+    gonio_material *material = NULL;
+    gonio_write_options how;
+    gonio_write_options_default(&how);
+    how.format = "zemax";
+    snprintf(path, sizeof path, "%s/x.bsdf", folder);
+    assert_int_equal(gonio_material_open(NULL, "atlas:gold-polished", &material), GONIO_OK);
+    assert_int_equal(gonio_material_write(NULL, material, path, &how), GONIO_OK);
+    gonio_readings *written = NULL;
+    gonio_readings *known = NULL;
+    assert_int_equal(gonio_readings_read(NULL, path, NULL, &written), GONIO_OK);
+    assert_int_equal(gonio_readings_read(NULL, path, NULL, &known), GONIO_OK);
+    assert_int_equal(gonio_measure_material(NULL, known, material, NULL), GONIO_OK);
+    const size_t count = gonio_readings_describe(written)->count;
+    double sum = 0.0;
+    double square = 0.0;
+    for (size_t k = 0; k < 3 * count; k++) {
+        const double is = log1p(1500.0 * gonio_readings_value(written, k / 3, k % 3));
+        const double was = log1p(1500.0 * gonio_readings_value(known, k / 3, k % 3));
+        sum += isnan(is - was) ? 0.0 : (is - was) * (is - was);
+        square += isnan(is - was) ? 0.0 : was * was;
+    }
+    assert_true(count > 5000);
+    assert_true(sqrt(sum / square) < 1e-4);
+    gonio_readings_free(&written);
+    gonio_readings_free(&known);
+    gonio_material_free(&material);
+    support_remove(folder);
+}
+
+/* ---- FRED ---- */
+
+static void test_fred(void **state)
+{
+    (void)state;
+    gonio_readings *readings =
+        read_good("type bsdf_data\nformat angles=deg bsdf=value scale=2\n!! a comment\n10\t0\n"
+                  "0 0 0.3\n0 90 0.3\n10 180 0.00001\n30 0 0.4\n95 0 1\n50 90\n20 90 0.5\n",
+                  "FRED text: angles in degrees, phi_o = phi_i on the mirror's side, values in "
+                  "1/sr, 0 means not measured; 3 readings; left out: 1 at or below the horizon, 1 "
+                  "not measured, 1 said again");
+    assert_reading(readings, 0, 10.0, 0.0, 0.0, 0.6);
+    assert_reading(readings, 1, 10.0, 30.0, 180.0, 0.8);
+    assert_reading(readings, 2, 50.0, 20.0, 180.0, 1.0);
+    gonio_readings_free(&readings);
+
+    readings = read_good("type bsdf_data\nformat angles=sin bsdf=log scale=1\n0.5 0\n"
+                         "0.5 180 -2\n",
+                         "FRED");
+    assert_reading(readings, 0, 30.0, 30.0, 0.0, 0.01);
+    gonio_readings_free(&readings);
+}
+
 /* ---- bad files ---- */
 
 static void test_bad_files(void **state)
@@ -203,6 +309,25 @@ static void test_bad_files(void **state)
         {"VARS theta_i,phi_i,theta_s,phi_s,4nm\n0,0,0.1,0,1\n", GONIO_ERROR_FORMAT, "no light"},
         {"Table_BSDF_Data\nx\n300 0.55 30 0 0.2\n", GONIO_ERROR_FORMAT, ":3: 5 numbers"},
         {"Table_BSDF_Data\nx\n", GONIO_ERROR_DATA, "no readings in it"},
+        {ZEMAX_HEADER "DataBegin\nTIS 0.1\n1 2\n1 3\n1 4\nTIS 0.2\n5 6\n", GONIO_ERROR_FORMAT,
+         "ends within a reading"},
+        {ZEMAX_HEADER "DataBegin\n1 2\n1 3\n1 4\n5 6\n5 7\n5 8 9 0 1 2 3 4 5 6 7 8\n",
+         GONIO_ERROR_FORMAT, "'1' where TIS is expected"},
+        {ZEMAX_HEADER, GONIO_ERROR_FORMAT, "0 tables of values"},
+        {"ScatterType BTDF\nAngleOfIncidence 1\n1\nScatterAzimuth 1\n1\n", GONIO_ERROR_DATA,
+         "ScatterType BTDF: transmitted light"},
+        {"AngleOfIncidence 99999\n1\nScatterAzimuth 1\n1\n", GONIO_ERROR_FORMAT,
+         "AngleOfIncidence 99999: a number of angles"},
+        {"AngleOfIncidence 1\n1\nScatterAzimuth 0\n1\n", GONIO_ERROR_FORMAT, "ScatterAzimuth 0"},
+        {"AngleOfIncidence 1\n1\nScatterAzimuth 1\n1\nDataBegin\nTIS 0\n1\n", GONIO_ERROR_FORMAT,
+         "DataBegin before the angles"},
+        {"SampleRotation 9\n1 2 3 4 5 6 7 8 9\nAngleOfIncidence 9\n1 2 3 4 5 6 7 8 9\n"
+         "ScatterAzimuth 9\n1 2 3 4 5 6 7 8 9\nScatterRadial 9\n1 2 3 4 5 6 7 8 9\nDataBegin\n1\n",
+         GONIO_ERROR_FORMAT, "of more values than the file has room for"},
+        {"type bsdf_data\n10 20 30\n", GONIO_ERROR_FORMAT,
+         ":2: a value before the first incidence"},
+        {"type bsdf_data\n10 20\n10 20 30 40\n", GONIO_ERROR_FORMAT, ":3: 2 numbers (an incid"},
+        {"type bsdf_data\nformat scale=0\n", GONIO_ERROR_FORMAT, "the scale is not a number"},
     };
     char *folder = support_folder();
     gonio_context *context = support_context();
@@ -228,6 +353,10 @@ int main(void)
         cmocka_unit_test(test_pab),
         cmocka_unit_test(test_astm),
         cmocka_unit_test(test_tracepro),
+        cmocka_unit_test(test_zemax),
+        cmocka_unit_test(test_zemax_colours_and_rotation),
+        cmocka_unit_test(test_zemax_round_trip),
+        cmocka_unit_test(test_fred),
         cmocka_unit_test(test_bad_files),
     };
     return cmocka_run_group_tests_name("formats with a row for each direction", tests, NULL, NULL);
