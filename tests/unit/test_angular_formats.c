@@ -275,6 +275,49 @@ static void test_fred(void **state)
     gonio_readings_free(&readings);
 }
 
+/* ---- columns of text ---- */
+
+/* Scatterworks' names: phi is the polar angle, signed, and theta the azimuth. */
+static void test_columns_with_names_in_a_comment(void **state)
+{
+    (void)state;
+    gonio_readings *readings =
+        read_good("# a panel, measured at 532 nm\n# phi_i theta_i phi_o theta_o brdf\n"
+                  "60.0 -180.0 -45.0 0.0 2.0e-03\n60.0 -180.0 60.0 0.0 5.0\n"
+                  "60.0 -180.0 89.0 0.0 1.0e-04\n60.0 -180.0 90.0 0.0 1.0\n",
+                  "columns of text (phi is the polar angle, theta the azimuth): angles in degrees, "
+                  "values in 1/sr, 0 means not measured; 2 readings; left out: 1 at or below the "
+                  "horizon, 1 not measured");
+    assert_near(gonio_readings_describe(readings)->wavelength[0], 532.0);
+    assert_reading(readings, 0, 60.0, 45.0, 0.0, 0.002);
+    assert_reading(readings, 1, 60.0, 60.0, 180.0, 5.0);
+    gonio_readings_free(&readings);
+
+    readings = read_good("# theta_i phi_i theta_r phi_r value\n30 10 40 100 0.5\n",
+                         "columns of text: angles");
+    assert_null(gonio_readings_describe(readings)->wavelength);
+    assert_reading(readings, 0, 30.0, 40.0, 90.0, 0.5);
+    gonio_readings_free(&readings);
+}
+
+static void test_in_plane_spectra(void **state)
+{
+    (void)state;
+    gonio_readings *readings = read_good(
+        " Incident_angle,Measure_angle, 390nm , 400nm \n10,-78,0.31415926536,0.1\n"
+        "10,30,0.2,0.62831853072\n10,-12,0,0\n",
+        "in-plane readings (OMS; positive on the mirror's side): angles in degrees, "
+        "reflectance factors (divided by pi), 0 means not measured; 2 readings; left out: "
+        "1 not measured");
+    const gonio_readings_view *view = gonio_readings_describe(readings);
+    assert_int_equal(view->channels, 2);
+    assert_near(view->wavelength[1], 400.0);
+    assert_reading(readings, 0, 10.0, 78.0, 0.0, 0.1);
+    assert_reading(readings, 1, 10.0, 30.0, 180.0, 0.2 / M_PI);
+    assert_near(gonio_readings_value(readings, 1, 1), 0.2);
+    gonio_readings_free(&readings);
+}
+
 /* ---- bad files ---- */
 
 static void test_bad_files(void **state)
@@ -327,6 +370,11 @@ static void test_bad_files(void **state)
         {"type bsdf_data\n10 20 30\n", GONIO_ERROR_FORMAT,
          ":2: a value before the first incidence"},
         {"type bsdf_data\n10 20\n10 20 30 40\n", GONIO_ERROR_FORMAT, ":3: 2 numbers (an incid"},
+        {"# theta_i phi_i theta_o phi_o brdf\n1 2 3 4\n", GONIO_ERROR_FORMAT,
+         ":2: a row of 5 numbers"},
+        {"# theta_i phi_i theta_o phi_o brdf\n1 2 3 4 bright\n", GONIO_ERROR_FORMAT, ":2: a row"},
+        {"Incident_angle,Measure_angle,390nm,390nm\n1,2,3,4\n", GONIO_ERROR_FORMAT,
+         "390 nm occurs twice"},
         {"type bsdf_data\nformat scale=0\n", GONIO_ERROR_FORMAT, "the scale is not a number"},
     };
     char *folder = support_folder();
@@ -357,6 +405,8 @@ int main(void)
         cmocka_unit_test(test_zemax_colours_and_rotation),
         cmocka_unit_test(test_zemax_round_trip),
         cmocka_unit_test(test_fred),
+        cmocka_unit_test(test_columns_with_names_in_a_comment),
+        cmocka_unit_test(test_in_plane_spectra),
         cmocka_unit_test(test_bad_files),
     };
     return cmocka_run_group_tests_name("formats with a row for each direction", tests, NULL, NULL);

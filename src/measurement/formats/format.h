@@ -41,7 +41,9 @@ typedef struct gonio_i_readings_format {
 /* The formats, in the order in which they are tried; CSV takes what nothing else does. */
 #define GONIO_I_READINGS_FORMATS(FORMAT)                                                           \
     FORMAT(scattered)                                                                              \
-    FORMAT(alta) FORMAT(pab) FORMAT(astm) FORMAT(tracepro) FORMAT(zemax) FORMAT(fred) FORMAT(csv)
+    FORMAT(alta)                                                                                   \
+    FORMAT(pab) FORMAT(astm) FORMAT(tracepro) FORMAT(zemax) FORMAT(fred) FORMAT(in_plane)          \
+        FORMAT(csv)
 
 #define GONIO_I_DECLARE_FORMAT(name) extern const gonio_i_readings_format gonio_i_readings_##name;
 GONIO_I_READINGS_FORMATS(GONIO_I_DECLARE_FORMAT)
