@@ -207,9 +207,11 @@ GONIO_API gonio_status gonio_readings_write(gonio_context *context, const gonio_
 GONIO_API gonio_status gonio_readings_find(gonio_context *context, const gonio_readings *readings,
                                            const gonio_readings *others, bool *same);
 
-/* Takes the values of a plan's directions from readings of the same material at more directions:
- * those with the same half/difference coordinates to 1e-4 radians. Errors: _DATA if there are none
- * at a direction; _MEMORY. */
+/* Takes the values of a plan's directions from readings of the same material at more directions: of
+ * the nearest reading that is at the same directions to 1e-4 radians; if there is none, of one at
+ * the same directions turned about the normal; or else of one at the reciprocal directions. What
+ * was read more than once there is averaged, with a note. Errors: _DATA if nothing was read at a
+ * direction; _MEMORY. */
 GONIO_API gonio_status gonio_readings_look_up(gonio_context *context, gonio_readings *plan,
                                               const gonio_readings *known);
 
@@ -233,9 +235,9 @@ static inline void gonio_instrument_options_default(gonio_instrument_options *op
 
 /* The simulated instrument: reads a known material at the directions of `readings` (a plan). R, G,
  * B become rho (1 + noise z) + floor z', clamped at 0, where z and z' are standard normal and
- * independent. A direction that occurs several times is read once. options may be
- * NULL. Errors: _DATA if the material has no data around a direction; _ARGUMENT for negative noise.
- */
+ * independent. A direction that occurs several times is read once. Where the material has no data
+ * around a direction, nothing is read (NaN), and a note says how often. options may be NULL.
+ * Errors: _DATA if it has data around none of the directions; _ARGUMENT for negative noise. */
 GONIO_API gonio_status gonio_measure(gonio_context *context, gonio_readings *readings,
                                      const gonio_table *table,
                                      const gonio_instrument_options *options);

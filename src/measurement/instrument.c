@@ -28,12 +28,23 @@ static uint64_t stream_of(const gonio_pair *pair)
     return stream;
 }
 
-static gonio_status no_data(gonio_context *context, const gonio_readings *readings, size_t reading)
+/* Says how many directions the material has no data at. */
+static gonio_status report_holes(gonio_context *context, const gonio_readings *readings,
+                                 size_t holes, size_t first)
 {
-    return gonio_i_fail(context, GONIO_ERROR_DATA,
-                        "%s:%zu: the material has no data around these directions; delete "
-                        "the line, or take another material (gonio info shows its share)",
-                        readings->path, readings->line[reading]);
+    if (holes == readings->count) {
+        return gonio_i_fail(context, GONIO_ERROR_DATA,
+                            "%s:%zu: the material has no data around these directions, nor around "
+                            "any other of the file (gonio info shows its share)",
+                            readings->path, readings->line[first]);
+    }
+    if (holes > 0) {
+        gonio_i_note(context,
+                     "%s: the material has no data around %zu of %zu directions (the first is line "
+                     "%zu): their values stay empty",
+                     readings->path, holes, readings->count, readings->line[first]);
+    }
+    return GONIO_OK;
 }
 
 /* What the instrument makes of a direction's true values. NaN stays. */
@@ -54,16 +65,18 @@ static void disturb(const gonio_readings *readings, size_t reading,
     }
 }
 
-static gonio_status read_one(gonio_context *context, gonio_readings *readings, size_t reading,
-                             const gonio_table *table, const gonio_instrument_options *options)
+/* Whether there are data. */
+static bool read_one(gonio_readings *readings, size_t reading, const gonio_table *table,
+                     const gonio_instrument_options *options)
 {
     const gonio_pair *pair = &readings->pair[reading];
     double *value = gonio_i_readings_values(readings, reading);
     if (!gonio_table_value(table, gonio_half_difference_from_pair(*pair), value)) {
-        return no_data(context, readings, reading);
+        value[0] = value[1] = value[2] = NAN;
+        return false;
     }
     disturb(readings, reading, options, value);
-    return GONIO_OK;
+    return true;
 }
 
 static gonio_status check(gonio_context *context, const gonio_instrument_options *options)
@@ -94,10 +107,15 @@ gonio_status gonio_measure(gonio_context *context, gonio_readings *readings,
     if (status == GONIO_OK) {
         status = gonio_i_readings_set_channels(context, readings, GONIO_CHANNELS, NULL);
     }
+    size_t holes = 0;
+    size_t first = 0;
     for (size_t k = 0; k < readings->count && status == GONIO_OK; k++) {
-        status = read_one(context, readings, k, table, &how);
+        if (!read_one(readings, k, table, &how)) {
+            first = holes == 0 ? k : first;
+            holes++;
+        }
     }
-    return status;
+    return status == GONIO_OK ? report_holes(context, readings, holes, first) : status;
 }
 
 /* By the material's own evaluation, in its own channels. */
@@ -112,6 +130,8 @@ static gonio_status evaluate(gonio_context *context, gonio_readings *readings,
         status = gonio_material_evaluate(context, material, readings->pair, readings->count,
                                          gonio_i_readings_values(readings, 0));
     }
+    size_t holes = 0;
+    size_t first = 0;
     for (size_t k = 0; k < readings->count && status == GONIO_OK; k++) {
         double *value = gonio_i_readings_values(readings, k);
         bool any = false;
@@ -119,9 +139,10 @@ static gonio_status evaluate(gonio_context *context, gonio_readings *readings,
             any = any || !isnan(value[c]);
         }
         disturb(readings, k, options, value);
-        status = any ? GONIO_OK : no_data(context, readings, k);
+        first = !any && holes == 0 ? k : first;
+        holes += !any;
     }
-    return status;
+    return status == GONIO_OK ? report_holes(context, readings, holes, first) : status;
 }
 
 /* Whether what was planned can be read in the material's channels: a plan that names R, G or B

@@ -7,38 +7,218 @@
 
 static const double SAME = 1e-4; /* radians */
 
-/* How far apart two directions are, for an isotropic and reciprocal material. */
-static double distance(gonio_half_difference a, gonio_half_difference b)
+/* How a known reading is one of the directions that are looked for, the better the smaller. */
+typedef enum likeness { EXACT, TURNED, RECIPROCAL, NONE } likeness;
+
+/* ---- how far apart two pairs of directions are ---- */
+
+static double turn_between(double a, double b)
 {
-    const double turn = fabs(a.phi_d - b.phi_d);
-    const double phi = fmin(turn, M_PI - turn) * sin(a.theta_d) * fmin(1.0, a.theta_h / SAME);
-    return fmax(fmax(fabs(a.theta_h - b.theta_h), fabs(a.theta_d - b.theta_d)), phi);
+    return fabs(remainder(a - b, 2.0 * M_PI));
 }
 
-/* The nearest reading; `count` if none is near. */
-static size_t find(const gonio_half_difference *known, size_t count, gonio_half_difference at)
+/* As they are. */
+static double distance(gonio_pair a, gonio_pair b)
 {
-    size_t nearest = count;
-    double least = SAME;
-    for (size_t k = 0; k < count; k++) {
-        const double here = distance(known[k], at);
-        if (here <= least) {
-            least = here;
-            nearest = k;
+    const double theta =
+        fmax(fabs(a.incident.theta - b.incident.theta), fabs(a.outgoing.theta - b.outgoing.theta));
+    const double incident =
+        turn_between(a.incident.phi, b.incident.phi) * sin(fmin(a.incident.theta, M_PI / 2.0));
+    const double outgoing =
+        turn_between(a.outgoing.phi, b.outgoing.phi) * sin(fmin(a.outgoing.theta, M_PI / 2.0));
+    return fmax(theta, fmax(incident, outgoing));
+}
+
+/* Of an isotropic material, turned about the normal as suits best: so that the direction which is
+ * nearer to the normal is off in azimuth. */
+static double distance_turned(gonio_pair a, gonio_pair b)
+{
+    const double theta =
+        fmax(fabs(a.incident.theta - b.incident.theta), fabs(a.outgoing.theta - b.outgoing.theta));
+    const double turn =
+        turn_between(a.outgoing.phi - a.incident.phi, b.outgoing.phi - b.incident.phi);
+    return fmax(theta, turn * sin(fmin(a.incident.theta, a.outgoing.theta)));
+}
+
+static likeness compare(gonio_pair a, gonio_pair b, double *apart)
+{
+    *apart = distance(a, b);
+    if (*apart <= SAME) {
+        return EXACT;
+    }
+    *apart = distance_turned(a, b);
+    if (*apart <= SAME) {
+        return TURNED;
+    }
+    *apart = distance_turned((gonio_pair){a.outgoing, a.incident}, b);
+    return *apart <= SAME ? RECIPROCAL : NONE;
+}
+
+/* ---- the nearest reading ---- */
+
+/* A known reading, to be found by its polar angles. */
+typedef struct place {
+    int64_t column; /* of the incident one: its strip, SAME wide */
+    double theta_o;
+    size_t reading;
+} place;
+
+static int64_t column_of(double theta)
+{
+    return (int64_t)floor(theta / SAME);
+}
+
+static int compare_places(const void *a, const void *b)
+{
+    const place *x = a;
+    const place *y = b;
+    const int column = (x->column > y->column) - (x->column < y->column);
+    const int theta = (x->theta_o > y->theta_o) - (x->theta_o < y->theta_o);
+    const int reading = (x->reading > y->reading) - (x->reading < y->reading);
+    return column != 0 ? column : theta != 0 ? theta : reading;
+}
+
+typedef struct known_places {
+    const gonio_readings *readings;
+    place *place; /* [readings->count], sorted */
+} known_places;
+
+static bool sort_places(gonio_context *context, const gonio_readings *known, known_places *k)
+{
+    *k = (known_places){known, gonio_i_allocate(context, known->count, sizeof *k->place)};
+    for (size_t n = 0; k->place != NULL && n < known->count; n++) {
+        const gonio_pair *pair = &known->pair[n];
+        k->place[n] = (place){column_of(pair->incident.theta), pair->outgoing.theta, n};
+    }
+    if (k->place != NULL) {
+        qsort(k->place, known->count, sizeof *k->place, compare_places);
+    }
+    return k->place != NULL;
+}
+
+/* The first place at or behind one. */
+static size_t lower_bound(const known_places *k, place at)
+{
+    size_t low = 0;
+    size_t high = k->readings->count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (compare_places(&k->place[middle], &at) < 0) {
+            low = middle + 1;
+        } else {
+            high = middle;
         }
     }
-    return nearest;
+    return low;
 }
 
-/* Of readings with the same channels. */
-static void copy(gonio_readings *plan, size_t row, const gonio_readings *known, size_t from)
+typedef struct best {
+    likeness like;
+    double apart;
+    size_t reading;
+} best;
+
+static void try_reading(const known_places *k, gonio_pair at, size_t reading, best *b)
 {
-    const size_t channels = known->channels;
-    const size_t size = channels * sizeof *known->value;
-    memcpy(plan->value + row * channels, known->value + from * channels, size);
-    if (known->deviation != NULL) {
-        memcpy(plan->deviation + row * channels, known->deviation + from * channels, size);
+    double apart = 0.0;
+    const likeness like = compare(at, k->readings->pair[reading], &apart);
+    const bool nearer = apart < b->apart || (apart == b->apart && reading < b->reading);
+    if (like < b->like || (like != NONE && like == b->like && nearer)) {
+        *b = (best){like, apart, reading};
     }
+}
+
+/* Tries the readings whose polar angles are near to two. */
+static void try_angles(const known_places *k, gonio_pair at, double theta_i, double theta_o,
+                       best *b)
+{
+    for (int64_t column = column_of(theta_i) - 1; column <= column_of(theta_i) + 1; column++) {
+        size_t n = lower_bound(k, (place){column, theta_o - SAME, 0});
+        while (n < k->readings->count && k->place[n].column == column &&
+               k->place[n].theta_o <= theta_o + SAME) {
+            try_reading(k, at, k->place[n].reading, b);
+            n++;
+        }
+    }
+}
+
+/* The nearest of those that are most alike; the first of equals; `count` if there is none. */
+static size_t find(const known_places *k, gonio_pair at)
+{
+    best b = {NONE, INFINITY, k->readings->count};
+    try_angles(k, at, at.incident.theta, at.outgoing.theta, &b);
+    if (b.like == NONE) {
+        try_angles(k, at, at.outgoing.theta, at.incident.theta, &b);
+    }
+    return b.reading;
+}
+
+gonio_status gonio_readings_find(gonio_context *context, const gonio_readings *readings,
+                                 const gonio_readings *others, bool *same)
+{
+    known_places k;
+    if (!sort_places(context, others, &k)) {
+        return GONIO_ERROR_MEMORY;
+    }
+    for (size_t n = 0; n < readings->count; n++) {
+        same[n] = find(&k, readings->pair[n]) < others->count;
+    }
+    free(k.place);
+    return GONIO_OK;
+}
+
+/* ---- taking values ---- */
+
+/* Readings of the same directions, linked: next[reading] is the following one plus one; 0 ends. */
+static size_t *link_repeats(gonio_context *context, const gonio_readings *known)
+{
+    size_t *next = gonio_i_allocate(context, known->count, sizeof *next);
+    for (size_t n = known->count; next != NULL && n-- > 0;) {
+        const size_t first = known->first_same[n];
+        if (first != n) {
+            next[n] = next[first];
+            next[first] = n + 1;
+        }
+    }
+    return next;
+}
+
+/* The mean of what was read there in one channel, and its deviation. Returns how many were. */
+static size_t average(const gonio_readings *known, const size_t *next, size_t first, size_t channel,
+                      double *value, double *deviation)
+{
+    double sum = 0.0;
+    double length = 0.0; /* of the deviations as a vector */
+    size_t count = 0;
+    for (size_t n = first + 1; n > 0; n = next[n - 1]) {
+        const size_t at = (n - 1) * known->channels + channel;
+        if (!isnan(known->value[at])) {
+            sum += known->value[at];
+            length = known->deviation != NULL ? hypot(length, known->deviation[at]) : NAN;
+            count++;
+        }
+    }
+    *value = count > 0 ? sum / (double)count : NAN;
+    *deviation = count > 0 ? length / (double)count : NAN;
+    return count;
+}
+
+/* Takes a direction's values, of readings with the same channels. Returns whether several were
+ * averaged. */
+static bool take_values(gonio_readings *plan, size_t row, const gonio_readings *known,
+                        const size_t *next, size_t from)
+{
+    const size_t first = known->first_same[from];
+    bool averaged = false;
+    for (size_t c = 0; c < known->channels; c++) {
+        const size_t at = row * known->channels + c;
+        double deviation = 0.0;
+        averaged = average(known, next, first, c, &plan->value[at], &deviation) > 1 || averaged;
+        if (known->deviation != NULL) {
+            plan->deviation[at] = deviation;
+        }
+    }
+    return averaged;
 }
 
 /* Room for values, and deviations if they are known, in the channels of other readings. */
@@ -55,47 +235,40 @@ static gonio_status take_channels(gonio_context *context, gonio_readings *plan,
     return plan->deviation != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
 }
 
-static gonio_half_difference *coordinates(gonio_context *context, const gonio_readings *readings)
+static gonio_status fill(gonio_context *context, gonio_readings *plan, const known_places *k,
+                         const size_t *next)
 {
-    gonio_half_difference *at = gonio_i_allocate(context, readings->count, sizeof *at);
-    for (size_t k = 0; at != NULL && k < readings->count; k++) {
-        at[k] = gonio_half_difference_from_pair(readings->pair[k]);
+    const gonio_readings *known = k->readings;
+    size_t averaged = 0;
+    for (size_t n = 0; n < plan->count; n++) {
+        const size_t from = find(k, plan->pair[n]);
+        if (from == known->count) {
+            return gonio_i_fail(context, GONIO_ERROR_DATA,
+                                "%s:%zu: %s has no reading at these directions; plan with "
+                                "--candidates to choose among those it has",
+                                plan->path, plan->line[n], known->path);
+        }
+        averaged += take_values(plan, n, known, next, from);
     }
-    return at;
-}
-
-gonio_status gonio_readings_find(gonio_context *context, const gonio_readings *readings,
-                                 const gonio_readings *others, bool *same)
-{
-    gonio_half_difference *at = coordinates(context, others);
-    for (size_t k = 0; at != NULL && k < readings->count; k++) {
-        const gonio_half_difference here = gonio_half_difference_from_pair(readings->pair[k]);
-        same[k] = find(at, others->count, here) < others->count;
+    if (averaged > 0) {
+        gonio_i_note(context, "%s: read more than once at %zu of %zu directions: means are taken",
+                     known->path, averaged, plan->count);
     }
-    const gonio_status status = at != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
-    free(at);
-    return status;
+    return GONIO_OK;
 }
 
 gonio_status gonio_readings_look_up(gonio_context *context, gonio_readings *plan,
                                     const gonio_readings *known)
 {
-    gonio_half_difference *at = coordinates(context, known);
-    gonio_status status = at == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    known_places k;
+    size_t *next = link_repeats(context, known);
+    gonio_status status = sort_places(context, known, &k) && next != NULL
+                              ? take_channels(context, plan, known)
+                              : GONIO_ERROR_MEMORY;
     if (status == GONIO_OK) {
-        status = take_channels(context, plan, known);
+        status = fill(context, plan, &k, next);
     }
-    for (size_t k = 0; k < plan->count && status == GONIO_OK; k++) {
-        const size_t from = find(at, known->count, gonio_half_difference_from_pair(plan->pair[k]));
-        if (from == known->count) {
-            status = gonio_i_fail(context, GONIO_ERROR_DATA,
-                                  "%s:%zu: %s has no reading at these directions; plan with "
-                                  "--candidates to choose among those it has",
-                                  plan->path, plan->line[k], known->path);
-        } else {
-            copy(plan, k, known, from);
-        }
-    }
-    free(at);
+    free(k.place);
+    free(next);
     return status;
 }

@@ -58,6 +58,83 @@ static void test_look_up(void **state)
     }
 }
 
+/* What a file says at each of its own directions. */
+static void assert_finds_itself(const double (*rows)[7], size_t count)
+{
+    gonio_readings *known = made_colours(rows, count);
+    gonio_readings *plan = made_colours(rows, count);
+    assert_int_equal(gonio_readings_look_up(NULL, plan, known), GONIO_OK);
+    for (size_t k = 0; k < count; k++) {
+        assert_close(gonio_readings_value(plan, k, 0), rows[k][4], 0.0);
+    }
+    gonio_readings_free(&plan);
+    gonio_readings_free(&known);
+}
+
+/* A direction's own line comes before one that is turned or reciprocal, however near that is. */
+static void test_own_lines_come_first(void **state)
+{
+    (void)state;
+    static const double reciprocal[][7] = {{44.9999906, 0, 0, 0, 0.147, 1, 1},
+                                           {0, 0, 44.9999906, 180.00002, 0.145, 1, 1},
+                                           {30, 0, 20, 180, 0.2, 1, 1}};
+    static const double turned[][7] = {{45, 0, 45, 180, 4.6, 1, 1},
+                                       {45, 30, 45, 210, 5.1, 1, 1},
+                                       {45, 180, 45, 0, 4.9, 1, 1},
+                                       {45, 0, 45, 180.001, 4.8, 1, 1}};
+    static const double between[][7] = {{30, 0, 50, 40, 1, 1, 1}, {50, 40, 30, 0, 2, 1, 1}};
+    assert_finds_itself(reciprocal, 3);
+    assert_finds_itself(turned, 4);
+    assert_finds_itself(between, 2);
+}
+
+/* Rounded in the fifth decimal of a degree; phi_d is anything near the mirror direction. */
+static void test_rounded_angles_are_found(void **state)
+{
+    (void)state;
+    static const double rows[][7] = {{79.999977, 0, 79.0472055, 180.00002, 1.2, 1.1, 1},
+                                     {45.000012, 0, 44.5, 180.00004, 0.9, 0.8, 0.7},
+                                     {45.000012, 0, 20.00002, 180.00004, 0.2, 0.15, 0.1},
+                                     {30, 10, 30.00001, 10.00001, 0.3, 1, 1},
+                                     {0.00001, 250, 60, 3, 0.4, 1, 1}};
+    static const double plan[][4] = {{79.99998, 0, 79.04721, 180},
+                                     {45.00001, 0, 44.5, 180},
+                                     {45.00001, 0, 20.00002, 180},
+                                     {30.00001, 0, 30, 0},
+                                     {0, 0, 60, 90}};
+    gonio_readings *known = made_colours(rows, 5);
+    gonio_readings *at = made_directions(plan, 5);
+    assert_int_equal(gonio_readings_look_up(NULL, at, known), GONIO_OK);
+    for (size_t k = 0; k < 5; k++) {
+        assert_close(gonio_readings_value(at, k, 0), rows[k][4], 0.0);
+    }
+    gonio_readings_free(&at);
+    gonio_readings_free(&known);
+}
+
+/* Repeats are averaged in each channel, where they were read. */
+static void test_repeats_are_averaged(void **state)
+{
+    (void)state;
+    static const double rows[][7] = {{45, 0, 30, 180, 0.151, 1, NAN},
+                                     {5, 0, 5, 180, 0.251, 2, 3},
+                                     {45, 0, 30, 180, 0.191, NAN, 4}};
+    static const double deviations[9] = {3, 1, NAN, 1, 1, 1, 4, NAN, 5};
+    gonio_readings *known = made_colours(rows, 3);
+    gonio_readings *plan = made_colours(rows, 3);
+    assert_int_equal(gonio_readings_set_deviations(NULL, known, deviations), GONIO_OK);
+    assert_int_equal(gonio_readings_look_up(NULL, plan, known), GONIO_OK);
+    for (size_t k = 0; k < 3; k += 2) {
+        assert_close(gonio_readings_value(plan, k, 0), 0.171, 1e-15);
+        assert_close(gonio_readings_value(plan, k, 1), 1.0, 0.0);
+        assert_close(gonio_readings_value(plan, k, 2), 4.0, 0.0);
+        assert_close(gonio_readings_describe(plan)->deviation[3 * k], 2.5, 1e-15);
+        assert_close(gonio_readings_describe(plan)->deviation[3 * k + 2], 5.0, 0.0);
+    }
+    gonio_readings_free(&plan);
+    gonio_readings_free(&known);
+}
+
 static void test_what_was_not_read_stays_so(void **state)
 {
     (void)state;
@@ -246,6 +323,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_look_up),
+        cmocka_unit_test(test_own_lines_come_first),
+        cmocka_unit_test(test_rounded_angles_are_found),
+        cmocka_unit_test(test_repeats_are_averaged),
         cmocka_unit_test(test_what_was_not_read_stays_so),
         cmocka_unit_test(test_spectra_are_looked_up_too),
         cmocka_unit_test(test_errors_between_readings),

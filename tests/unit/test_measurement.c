@@ -251,6 +251,11 @@ static void test_a_material_in_its_own_channels(void **state)
     gonio_material_free(&material);
     material = made_direct(2, wavelength, 1.0); /* 70 degrees are beyond */
     gonio_context *context = support_context();
+    assert_int_equal(gonio_measure_material(context, readings, material, NULL), GONIO_OK);
+    assert_true(gonio_readings_value(readings, 0, 0) > 0.0);
+    assert_true(isnan(gonio_readings_value(readings, 1, 0)));
+    gonio_material_free(&material);
+    material = made_direct(2, wavelength, 0.2); /* all are */
     assert_int_equal(gonio_measure_material(context, readings, material, NULL), GONIO_ERROR_DATA);
     assert_non_null(strstr(support_message(), "no data"));
     gonio_context_free(&context);
