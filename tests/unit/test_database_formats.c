@@ -1,0 +1,268 @@
+/* Readings of BRDF JSON, OpenMATERIAL and CUReT files: values worked out by hand, and files that
+ * are not what they should be. */
+#include "../support.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "made_readings.h"
+
+static void assert_near(double value, double expected)
+{
+    if (!(fabs(value - expected) <= 1e-9 * fmax(1.0, fabs(expected)))) {
+        fail_msg("%.17g where %.17g is expected", value, expected);
+    }
+}
+
+static gonio_readings *read_good(const char *text, const char *taken_as)
+{
+    char *folder = support_folder();
+    gonio_readings *readings = NULL;
+    assert_int_equal(made_readings(NULL, folder, "r.brdf", text, NULL, &readings), GONIO_OK);
+    const gonio_readings_view *view = gonio_readings_describe(readings);
+    assert_int_equal(view->notes, 1);
+    assert_non_null(strstr(view->note[0], taken_as));
+    support_remove(folder);
+    return readings;
+}
+
+/* ---- BRDF JSON ---- */
+
+#define ANGLES(theta_r)                                                                            \
+    "\"theta_i\":{\"unit\":\"deg\",\"values\":[30,30,30,30]},"                                     \
+    "\"phi_i\":{\"unit\":\"\u00B0\",\"values\":0},"                                                \
+    "\"theta_r\":{\"unit\":\"rad\",\"value\":[" theta_r "]},"                                      \
+    "\"phi_r\":{\"unit\":\"deg\",\"values\":[180,180,180,180]}"
+
+/* Lit by s and by p: the mean; two wavelengths in micrometres; expanded uncertainties, k = 2. */
+static void test_polarisations_wavelengths_and_uncertainties(void **state)
+{
+    (void)state;
+    gonio_readings *readings = read_good(
+        "{\"metadata\":{\"type\":\"BRDF\"},\"data\":{" ANGLES(
+            "0.5,0.5,0.5,0.5") ",\"wavelength_i\":{\"unit\":\"um\",\"values\":[0.65,0.65,0.55,0.55]"
+                               "},"
+                               "\"polarization_i\":{\"values\":[\"s\",\"p\",\"s\",\"p\"]},"
+                               "\"BRDF\":{\"unit\":\"sr^-1\",\"values\":[0.2,0.4,0.1,null],"
+                               "\"uncertainty\":{\"coverage_factor\":2,\"values\":[0.06,0.08,0.02,"
+                               "0.02]}}}}",
+        "BRDF JSON: angles in degrees, values in 1/sr, wavelengths in micrometres; 1 reading");
+    const gonio_readings_view *view = gonio_readings_describe(readings);
+    assert_int_equal(view->channels, 2);
+    assert_near(view->wavelength[0], 550.0);
+    assert_near(gonio_readings_value(readings, 0, 0), 0.1);
+    assert_near(gonio_readings_value(readings, 0, 1), 0.3);
+    assert_near(view->deviation[0], 0.01);
+    assert_near(view->deviation[1], 0.025); /* hypot(0.03, 0.04) / 2 */
+    assert_true(fabs(view->pair[0].outgoing.theta - 0.5) < 1e-8);
+    assert_near(view->pair[0].outgoing.phi, M_PI);
+    gonio_readings_free(&readings);
+}
+
+/* Detected as s and as p: the sum. */
+static void test_analysed_light_adds_up(void **state)
+{
+    (void)state;
+    gonio_readings *readings = read_good(
+        "{\"data\":{" ANGLES(
+            "0.5,0.5,0.6,0.6") ",\"polarization_r\":{\"values\":[\"s\",\"p\",\"s\",\"p\"]},"
+                               "\"BRDF\":{\"values\":[0.2,0.4,0.1,0.3]}}}",
+        "BRDF JSON");
+    assert_int_equal(gonio_readings_describe(readings)->count, 2);
+    assert_near(gonio_readings_value(readings, 0, 0), 0.6);
+    assert_near(gonio_readings_value(readings, 1, 0), 0.4);
+    gonio_readings_free(&readings);
+}
+
+/* ---- OpenMATERIAL ---- */
+
+static void test_open_material(void **state)
+{
+    (void)state;
+    gonio_readings *readings = read_good(
+        "{\"$schema\":\"material_brdf_schema.json\",\"brdf\":{\"lookupTable\":["
+        "[5.5e-07,0.5,0.25,3.141592653589793,0.3],[6.5e-07,0.5,0.25,3.141592653589793,0.4],"
+        "[5.5e-07,0.5,1.6,0,0.5]]}}",
+        "an OpenMATERIAL lookup table: angles in radians, values in 1/sr, wavelengths in metres; 1 "
+        "reading; left out: 1 at or below the horizon");
+    const gonio_readings_view *view = gonio_readings_describe(readings);
+    assert_near(view->wavelength[1], 650.0);
+    assert_true(fabs(view->pair[0].outgoing.theta - 0.25) < 1e-8);
+    assert_true(fabs(view->pair[0].outgoing.phi - M_PI) < 1e-8);
+    assert_near(gonio_readings_value(readings, 0, 1), 0.4);
+    gonio_readings_free(&readings);
+}
+
+/* ---- CUReT ---- */
+
+enum { PAIRS = 205 };
+
+static void write_text(const char *folder, const char *name, const char *text)
+{
+    char path[256];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    assert_int_equal(fclose(file), 0);
+}
+
+static char *make_table(size_t rows)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *stream = open_memstream(&text, &size);
+    for (size_t k = 0; k < rows; k++) {
+        fprintf(stream, "%zu %.6f 3.0 0.5 0.0\n", k + 1, 0.005 * (double)k);
+    }
+    fclose(stream);
+    return text;
+}
+
+static char *make_samples(void)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *stream = open_memstream(&text, &size);
+    for (int sample = 3; sample <= 7; sample += 4) {
+        fprintf(stream, "%d ", sample);
+        for (int k = 0; k < PAIRS; k++) {
+            fprintf(stream, " %.3f", k == 9 ? -0.002 : 0.1 * sample);
+        }
+        fprintf(stream, "\n");
+    }
+    fclose(stream);
+    return text;
+}
+
+static gonio_status read_sample(const char *table, int sample, gonio_readings **readings)
+{
+    char *folder = support_folder();
+    char *samples = make_samples();
+    gonio_context *context = support_context();
+    gonio_readings_options options;
+    gonio_readings_options_default(&options);
+    options.as.sample = sample;
+    if (table != NULL) {
+        write_text(folder, "table.txt", table);
+    }
+    const gonio_status status =
+        made_readings(context, folder, "abrdf.dat", samples, &options, readings);
+    gonio_context_free(&context);
+    free(samples);
+    support_remove(folder);
+    return status;
+}
+
+static void test_curet(void **state)
+{
+    (void)state;
+    char *table = make_table(PAIRS);
+    gonio_readings *readings = NULL;
+    assert_int_equal(read_sample(table, 0, &readings), GONIO_OK);
+    const gonio_readings_view *view = gonio_readings_describe(readings);
+    assert_int_equal(view->count, PAIRS);
+    assert_int_equal(view->notes, 2);
+    assert_non_null(strstr(view->note[0], "2 samples, of which the first is read; --as sample=N "
+                                          "reads another: 3, 7"));
+    assert_non_null(strstr(view->note[1], "1 value below zero taken as 0"));
+    assert_near(gonio_readings_value(readings, 0, 0), 0.3);
+    assert_near(gonio_readings_value(readings, 9, 0), 0.0);
+    assert_true(fabs(view->pair[10].outgoing.theta - 0.05) < 1e-8); /* the first angles: the view */
+    assert_true(fabs(view->pair[10].outgoing.phi - 3.0) < 1e-8);
+    assert_true(fabs(view->pair[10].incident.theta - 0.5) < 1e-8);
+    gonio_readings_free(&readings);
+
+    assert_int_equal(read_sample(table, 7, &readings), GONIO_OK);
+    assert_near(gonio_readings_value(readings, 0, 0), 0.7);
+    assert_int_equal(gonio_readings_describe(readings)->notes, 1);
+    gonio_readings_free(&readings);
+
+    assert_int_equal(read_sample(table, 4, &readings), GONIO_ERROR_DATA);
+    assert_non_null(strstr(support_message(), "no sample 4; there are 3, 7"));
+    assert_int_equal(read_sample(NULL, 7, &readings), GONIO_ERROR_IO);
+    assert_non_null(strstr(support_message(), "table.txt"));
+    free(table);
+    table = make_table(PAIRS - 1);
+    assert_int_equal(read_sample(table, 7, &readings), GONIO_ERROR_FORMAT);
+    assert_non_null(strstr(support_message(), "table.txt:205: the number 205"));
+    free(table);
+}
+
+/* ---- bad files ---- */
+
+static void test_bad_files(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text;
+        gonio_status status;
+        const char *message;
+    } cases[] = {
+        {"{\"BRDF\":", GONIO_ERROR_FORMAT, ":1: JSON: "},
+        {"{\"BRDF\":{}}", GONIO_ERROR_FORMAT, "no data.theta_i with values"},
+        {"{\"data\":{" ANGLES("1,1,1,1") "},\"BRDF\":[1]}", GONIO_ERROR_FORMAT,
+         "no data.BRDF with values"},
+        {"{\"data\":{" ANGLES("1,1,1,1") ",\"BRDF\":[1,2]}}", GONIO_ERROR_FORMAT,
+         "2 values of the BRDF, but 4 of theta_i"},
+        {"{\"data\":{" ANGLES("1,1,1") ",\"BRDF\":[1,2,3,4]}}", GONIO_ERROR_FORMAT,
+         "4 values of the BRDF, but 3 of theta_r"},
+        {"{\"data\":{" ANGLES("1,1,\"x\",1") ",\"BRDF\":[1,2,3,4]}}", GONIO_ERROR_FORMAT,
+         "entry 3: an angle is not a number"},
+        {"{\"data\":{" ANGLES("1,1,1,1") ",\"wavelength_i\":{\"unit\":\"inch\",\"values\":1},"
+                                         "\"BRDF\":[1,2,3,4]}}",
+         GONIO_ERROR_FORMAT, "the unit 'inch' of wavelengths"},
+        {"{\"data\":{\"theta_i\":{\"unit\":\"gon\",\"values\":1},\"BRDF\":[1]}}",
+         GONIO_ERROR_FORMAT, "the unit 'gon' is neither"},
+        {"{\"data\":{" ANGLES("1,1,1,1") ",\"BRDF\":[\"a\",\"b\",null,{}]}}", GONIO_ERROR_DATA,
+         "none of the 1 rows"},
+        {"{\"lookupTable\":1}", GONIO_ERROR_FORMAT, "no brdf.lookupTable"},
+        {"{\"brdf\":{\"lookupTable\":[[1,2,3,4]]}}", GONIO_ERROR_FORMAT,
+         "row 1 of lookupTable: wavelength"},
+        {"{\"brdf\":{\"lookupTable\":[]}}", GONIO_ERROR_DATA, "no readings in it"},
+    };
+    char *folder = support_folder();
+    gonio_context *context = support_context();
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        gonio_readings *readings = NULL;
+        const gonio_status status =
+            made_readings(context, folder, "bad.json", cases[k].text, NULL, &readings);
+        if (status != cases[k].status || strstr(support_message(), cases[k].message) == NULL) {
+            fail_msg("case %zu: status %d, '%s'; expected %d, '%s'", k, (int)status,
+                     support_message(), (int)cases[k].status, cases[k].message);
+        }
+        assert_null(readings);
+    }
+    gonio_context_free(&context);
+    support_remove(folder);
+}
+
+/* Brackets without end are refused before they fill the stack. */
+static void test_deep_json(void **state)
+{
+    (void)state;
+    enum { DEPTH = 200000 };
+    char *folder = support_folder();
+    char *text = malloc(DEPTH + 16);
+    gonio_readings *readings = NULL;
+    strcpy(text, "{\"BRDF\":");
+    memset(text + 8, '[', DEPTH);
+    text[8 + DEPTH] = '\0';
+    assert_int_equal(made_readings(NULL, folder, "deep.json", text, NULL, &readings),
+                     GONIO_ERROR_FORMAT);
+    free(text);
+    support_remove(folder);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_polarisations_wavelengths_and_uncertainties),
+        cmocka_unit_test(test_analysed_light_adds_up),
+        cmocka_unit_test(test_open_material),
+        cmocka_unit_test(test_curet),
+        cmocka_unit_test(test_bad_files),
+        cmocka_unit_test(test_deep_json),
+    };
+    return cmocka_run_group_tests_name("formats of databases and institutes", tests, NULL, NULL);
+}
