@@ -9,6 +9,7 @@
 #include "csv_reader.h"
 #include "number.h"
 #include "output.h"
+#include "text_encoding.h"
 #include "text_file.h"
 
 gonio_i_csv *gonio_i_csv_create(gonio_context *context)
@@ -230,6 +231,9 @@ gonio_status gonio_i_csv_read(gonio_context *context, const char *path, gonio_i_
     size_t size = 0;
     gonio_status status =
         made == NULL ? GONIO_ERROR_MEMORY : gonio_i_text_read(context, path, &text, &size);
+    if (status == GONIO_OK) {
+        status = gonio_i_text_make_plain(context, path, &text, &size);
+    }
     if (status == GONIO_OK) {
         status = read_table(context, path, text, size, made);
     }

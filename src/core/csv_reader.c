@@ -2,6 +2,7 @@
 #include "csv_reader.h"
 
 #include <ctype.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -87,48 +88,12 @@ static gonio_status split(gonio_i_csv_reader *r, const char *line, size_t length
     return parsed ? GONIO_OK : bad_line(r, "quotes that do not close or stand inside a cell");
 }
 
-/* ---- lines ---- */
-
-static bool is_blank(const char *line, size_t length)
-{
-    size_t k = 0;
-    while (k < length && isspace((unsigned char)line[k])) {
-        k++;
-    }
-    return k == length;
-}
-
-static bool take_comment(gonio_i_csv_reader *r, const char *line, size_t length)
-{
-    while (length > 0 && isspace((unsigned char)line[length - 1])) {
-        length--;
-    }
-    size_t skip = 1;
-    while (skip < length && line[skip] == ' ') {
-        skip++;
-    }
-    return gonio_i_comments_add_text(&r->comment, line + skip, length > skip ? length - skip : 0);
-}
-
 /* The next line that is neither a comment nor empty; *length is 0 at the end of the text. */
 static gonio_status find_line(gonio_i_csv_reader *r, const char **line, size_t *length)
 {
-    while (r->at < r->size) {
-        const char *end = memchr(r->text + r->at, '\n', r->size - r->at);
-        *line = r->text + r->at;
-        *length = end != NULL ? (size_t)(end - *line) + 1 : r->size - r->at;
-        r->at += *length;
-        r->line++;
-        if (**line == '#') {
-            if (!take_comment(r, *line, *length)) {
-                return out_of_memory(r);
-            }
-        } else if (!is_blank(*line, *length)) {
-            return GONIO_OK;
-        }
-    }
-    *length = 0;
-    return GONIO_OK;
+    const bool found = gonio_i_csv_lines_next(&r->lines, line, length);
+    r->line = r->lines.number;
+    return found ? GONIO_OK : out_of_memory(r);
 }
 
 /* ---- the column names ---- */
@@ -152,32 +117,58 @@ static char guess_delimiter(const char *line, size_t length)
     return best;
 }
 
+static int compare_names(const void *a, const void *b)
+{
+    return strcasecmp(**(char ***)a, **(char ***)b);
+}
+
+/* Columns without a name may be many. */
 static gonio_status check_names(const gonio_i_csv_reader *r)
 {
-    for (size_t k = 1; k < r->columns; k++) {
-        for (size_t j = 0; j < k; j++) {
-            if (strcasecmp(r->name[j], r->name[k]) == 0) {
-                return gonio_i_fail(r->context, GONIO_ERROR_FORMAT,
-                                    "%s:%zu: column '%s' occurs twice; rename one", r->path,
-                                    r->line, r->name[k]);
-            }
+    char ***sorted = gonio_i_allocate(r->context, r->columns + 1, sizeof *sorted);
+    if (sorted == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    for (size_t k = 0; k < r->columns; k++) {
+        sorted[k] = &r->name[k];
+    }
+    qsort(sorted, r->columns, sizeof *sorted, compare_names);
+    gonio_status status = GONIO_OK;
+    for (size_t k = 1; k < r->columns && status == GONIO_OK; k++) {
+        if (**sorted[k] != '\0' && compare_names(&sorted[k - 1], &sorted[k]) == 0) {
+            char **later = sorted[k] > sorted[k - 1] ? sorted[k] : sorted[k - 1];
+            status = gonio_i_fail(r->context, GONIO_ERROR_FORMAT,
+                                  "%s:%zu: column '%s' occurs twice; rename one", r->path, r->line,
+                                  *later);
         }
     }
-    return GONIO_OK;
+    free(sorted);
+    return status;
+}
+
+/* The line of column names, behind one that states the separator. */
+static gonio_status find_names(gonio_i_csv_reader *r, const char **line, size_t *length)
+{
+    gonio_status status = find_line(r, line, length);
+    r->delimiter = status == GONIO_OK ? gonio_i_csv_stated_separator(*line, *length) : '\0';
+    if (r->delimiter != '\0') {
+        return find_line(r, line, length);
+    }
+    r->delimiter = status == GONIO_OK ? guess_delimiter(*line, *length) : '\0';
+    return status;
 }
 
 static gonio_status read_names(gonio_i_csv_reader *r)
 {
     const char *line = NULL;
     size_t length = 0;
-    gonio_status status = find_line(r, &line, &length);
+    gonio_status status = find_names(r, &line, &length);
     if (status == GONIO_OK && length == 0) {
         return gonio_i_fail(r->context, GONIO_ERROR_FORMAT,
                             r->size == 0 ? "%s: the file is empty" : "%s: no line of column names",
                             r->path);
     }
     if (status == GONIO_OK) {
-        r->delimiter = guess_delimiter(line, length);
         csv_set_delim(r->parser, (unsigned char)r->delimiter);
         status = split(r, line, length);
     }
@@ -215,9 +206,8 @@ static gonio_status refuse_binary(const gonio_i_csv_reader *r)
 gonio_status gonio_i_csv_open(gonio_context *context, const char *path, const char *text,
                               size_t size, gonio_i_csv_reader *reader)
 {
-    static const char mark[] = "\xef\xbb\xbf";
     *reader = (gonio_i_csv_reader){.context = context, .path = path, .text = text, .size = size};
-    reader->at = size >= 3 && memcmp(text, mark, 3) == 0 ? 3 : 0;
+    gonio_i_csv_lines_begin(&reader->lines, text, size, &reader->comment);
     reader->parser = gonio_i_allocate(context, 1, sizeof *reader->parser);
     gonio_status status = GONIO_ERROR_MEMORY;
     if (reader->parser != NULL &&
@@ -231,21 +221,79 @@ gonio_status gonio_i_csv_open(gonio_context *context, const char *path, const ch
     return status;
 }
 
+/* Cells that are empty beyond the names are no cells, and names may be missing beyond the cells. */
+static gonio_status fit_cells(gonio_i_csv_reader *r)
+{
+    while (r->cells > r->columns && r->cell[r->cells - 1][0] == '\0') {
+        r->cells--;
+    }
+    const size_t found = r->cells;
+    while (r->cells < r->columns && r->name[r->cells][0] == '\0') {
+        if (!has_room(r)) {
+            return out_of_memory(r);
+        }
+        r->cell[r->cells] = r->name[r->cells];
+        r->cells++;
+    }
+    return r->cells == r->columns
+               ? GONIO_OK
+               : gonio_i_fail(r->context, GONIO_ERROR_FORMAT,
+                              "%s:%zu: %zu cells where the header names %zu columns", r->path,
+                              r->line, found, r->columns);
+}
+
 gonio_status gonio_i_csv_next(gonio_i_csv_reader *reader)
 {
+    if (reader->again) {
+        reader->again = false;
+        return GONIO_OK;
+    }
     const char *line = NULL;
     size_t length = 0;
     gonio_status status = find_line(reader, &line, &length);
     reader->cells = 0;
     if (status == GONIO_OK && length > 0) {
         status = split(reader, line, length);
-        if (status == GONIO_OK && reader->cells != reader->columns) {
-            return gonio_i_fail(reader->context, GONIO_ERROR_FORMAT,
-                                "%s:%zu: %zu cells where the header names %zu columns",
-                                reader->path, reader->line, reader->cells, reader->columns);
-        }
+        status = status == GONIO_OK ? fit_cells(reader) : status;
     }
     return status;
+}
+
+void gonio_i_csv_again(gonio_i_csv_reader *reader)
+{
+    reader->again = reader->cells > 0;
+}
+
+/* "name (unit)", or the name alone; where it ends. */
+static char *print_name(char *to, char *name, const char *unit)
+{
+    const bool bare = *unit == '\0' || strcmp(unit, "-") == 0;
+    const char *open = *unit == '(' || *unit == '[' ? "" : "(";
+    return to +
+           (bare ? sprintf(to, "%s", name)
+                 : sprintf(to, "%s %s%s%s", name, open, unit, *open != '\0' ? ")" : "")) +
+           1;
+}
+
+gonio_status gonio_i_csv_units_behind_names(gonio_i_csv_reader *reader)
+{
+    size_t size = 0;
+    for (size_t k = 0; k < reader->columns; k++) {
+        size += strlen(reader->name[k]) + strlen(reader->cell[k]) + sizeof " ()";
+    }
+    char *room = malloc(size + 1);
+    if (room == NULL) {
+        return out_of_memory(reader);
+    }
+    char *at = room;
+    for (size_t k = 0; k < reader->columns; k++) {
+        char *next = print_name(at, reader->name[k], reader->cell[k]);
+        reader->name[k] = at;
+        at = next;
+    }
+    free(reader->name_room);
+    reader->name_room = room;
+    return GONIO_OK;
 }
 
 void gonio_i_csv_close(gonio_i_csv_reader *reader)
@@ -283,7 +331,7 @@ bool gonio_i_csv_is_number(const char *cell, char delimiter, double *value)
 
 void gonio_i_csv_print_cell(FILE *stream, const char *cell, char delimiter)
 {
-    const bool plain = strchr(cell, delimiter) == NULL && strchr(cell, '"') == NULL &&
+    const bool plain = strchr(cell, delimiter) == NULL && strpbrk(cell, "\"\r\n") == NULL &&
                        cell[0] != ' ' && cell[0] != '#';
     if (plain) {
         fputs(cell, stream);

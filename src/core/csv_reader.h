@@ -1,27 +1,30 @@
 /* A table as text (CSV), on libcsv, row by row: `#` comment lines, a line of column names, then
- * rows. Commas, semicolons or tabs between cells, quotes, CRLF and a byte-order mark are
- * understood; with semicolons or tabs a decimal comma is too. No cell is kept: numbers go straight
- * to where they belong. */
+ * rows. Commas, semicolons or tabs between cells or what a first line like sep=; states, quotes,
+ * CRLF and a byte-order mark are understood; with semicolons or tabs a decimal comma is too. Empty
+ * rows, and empty cells beyond the names, are passed over. No cell is kept: numbers go straight to
+ * where they belong. */
 #ifndef GONIO_CSV_READER_H
 #define GONIO_CSV_READER_H
 
 #include <stdio.h>
 
 #include "comments.h"
+#include "csv_lines.h"
 
 typedef struct gonio_i_csv_reader {
     gonio_context *context;
     const char *path; /* for messages */
     const char *text; /* [size], the caller's */
     size_t size;
-    size_t at;   /* where the next line begins */
     size_t line; /* of the row read last, from 1 */
     size_t columns;
-    char **name;              /* [columns] */
+    char **name;              /* [columns]; "" where a column has none */
     size_t cells;             /* of the row read last: as many as columns; 0 behind the last row */
     char **cell;              /* until the next row is read */
     gonio_i_comments comment; /* so far */
     char delimiter;
+    gonio_i_csv_lines lines;
+    bool again;
     struct csv_parser *parser;
     char *room; /* what cells point into */
     size_t room_size;
@@ -39,6 +42,13 @@ gonio_status gonio_i_csv_open(gonio_context *context, const char *path, const ch
 /* Reads the next row; cells == 0 behind the last, when all comments are known. Errors: _FORMAT for
  * binary data, bad quotes, rows of other lengths than the header; the message names the line. */
 gonio_status gonio_i_csv_next(gonio_i_csv_reader *reader);
+
+/* The next call of _next finds the row read last once more, if there is one. */
+void gonio_i_csv_again(gonio_i_csv_reader *reader);
+
+/* The row read last holds units: they are put behind the names, "theta_i (deg)". Errors: _MEMORY.
+ */
+gonio_status gonio_i_csv_units_behind_names(gonio_i_csv_reader *reader);
 
 void gonio_i_csv_close(gonio_i_csv_reader *reader);
 

@@ -165,11 +165,13 @@ static bool take_angles(const gonio_i_import *in, const double from[4], double t
     return to[0] < 90.0 && to[2] < 90.0;
 }
 
+/* Azimuths in degrees may be any: encoders count turns. Of radians, that many are degrees. */
 static gonio_status check_angles(const gonio_i_import *in, const gonio_i_row *row)
 {
+    const double most_azimuth = in->how.angles == GONIO_RADIANS ? MOST_AZIMUTH : HUGE_VAL;
     for (int k = 0; k < 4; k++) {
         const bool polar = k % 2 == 0;
-        if (!isfinite(row->degrees[k]) || fabs(row->degrees[k]) > (polar ? 180.0 : MOST_AZIMUTH)) {
+        if (!isfinite(row->degrees[k]) || fabs(row->degrees[k]) > (polar ? 180.0 : most_azimuth)) {
             return refuse_angle(in, row, k);
         }
     }
@@ -227,11 +229,13 @@ gonio_status gonio_i_import_add(gonio_i_import *import, const gonio_i_row *row)
         gonio_i_import_leave_out(import, GONIO_I_BELOW_HORIZON);
         return GONIO_OK;
     }
-    const bool needed = import->lenient || import->readings->options.values_needed;
+    const bool needed =
+        import->lenient || (import->readings->options.values_needed && !import->keep_unmeasured);
     if (!take_values(import, row, reading.degrees) && needed) {
         gonio_i_import_leave_out(import, GONIO_I_NOT_MEASURED);
         return GONIO_OK;
     }
+    import->turned += row->degrees[0] < 0.0 || row->degrees[2] < 0.0;
     return gonio_i_readings_add(import->context, import->readings, &reading);
 }
 
@@ -312,11 +316,14 @@ static void print_left_out(const gonio_i_import *in, FILE *stream)
         fprintf(stream, "; %zu value%s below zero taken as 0", in->negative,
                 in->negative > 1 ? "s" : "");
     }
+    if (in->turned > 0) {
+        fprintf(stream, "; %zu with theta below zero (phi turned by 180)", in->turned);
+    }
 }
 
 static bool anything_changed(const gonio_i_import *in)
 {
-    size_t changed = in->negative;
+    size_t changed = in->negative + in->turned;
     for (int k = 0; k < GONIO_I_REASONS; k++) {
         changed += in->left_out[k];
     }

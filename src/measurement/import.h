@@ -26,10 +26,12 @@ typedef struct gonio_i_import {
     const char *taken_as; /* the format, for the note; with an article */
     bool quiet;           /* no note if nothing was left out or changed */
     bool lenient;         /* see gonio_i_import_leniently */
+    bool keep_unmeasured; /* rows without values stay: they are planned */
     double *value;        /* [channels] of a row */
     double *deviation;    /* [channels] */
     size_t left_out[GONIO_I_REASONS];
     size_t negative; /* values taken as 0 */
+    size_t turned;   /* rows with a theta below zero, of readings */
 } gonio_i_import;
 
 /* One row. Angles in degrees (gonio_i_import_degrees), values as the file has them. */

@@ -8,6 +8,7 @@
 
 #include "../core/number.h"
 #include "../core/output.h"
+#include "../core/text_encoding.h"
 #include "../core/text_file.h"
 #include "formats/format.h"
 
@@ -22,8 +23,10 @@ enum { FORMATS = sizeof formats / sizeof *formats };
 
 const char *gonio_i_readings_format_of(const gonio_i_file *file)
 {
+    char head[GONIO_I_HEAD + 1];
+    const size_t size = gonio_i_text_plain_head(file->head, file->head_size, head, sizeof head);
     for (int k = 0; k < FORMATS && file->size > 0; k++) {
-        if (formats[k]->probe(file->head, file->head_size)) {
+        if (formats[k]->probe(head, size)) {
             return formats[k]->name;
         }
     }
@@ -116,6 +119,9 @@ gonio_status gonio_readings_read(gonio_context *context, const char *path,
     gonio_status status = gonio_i_readings_new(context, path, options, &made);
     if (status == GONIO_OK) {
         status = gonio_i_text_read(context, path, &file.text, &file.size);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_text_make_plain(context, path, &file.text, &file.size);
     }
     if (status == GONIO_OK) {
         status = read_text(&file, made);

@@ -88,11 +88,8 @@ angle() { # THETA_I PHI_I THETA_O PHI_O PART
     table angle.csv "$header" "$first" "$1,$2,$3,$4,R,1,1,1"
     every_reader 1 "angle.csv:12: $5" angle.csv
 }
-angle 90 0 20 0 "theta_i_deg '90' is at or below the horizon"
-angle 20 0 120.5 0 "theta_o_deg '120.5' is at or below the horizon"
-angle -5 0 20 0 "theta_i_deg '-5' is negative: give 0 to 90"
-angle 5 361 20 0 "phi_i_deg '361' is outside -360 to 360"
-angle 5 0 20 -1e9 "phi_o_deg '-1e9' is outside -360 to 360"
+angle 181 0 20 0 'theta_i = 181 is no such angle in degrees'
+angle 20 0 -200.5 0 'theta_o = -200.5 is no such angle in degrees'
 angle ten 0 20 0 "theta_i_deg 'ten' is not a finite number"
 angle 10deg 0 20 0 "theta_i_deg '10deg' is not a finite number"
 angle '' 0 20 0 "theta_i_deg '' is not a finite number"
@@ -101,6 +98,27 @@ angle inf 0 20 0 "theta_i_deg 'inf' is not a finite number"
 angle 10 1e999 20 0 "phi_i_deg '1e999' is not a finite number"
 long=$(printf '%05000d' 1)
 angle "${long}x" 0 20 0 "theta_i_deg '000"
+
+# What is at or below the horizon is no reading; the other side and more than a turn can be read.
+beyond() { # THETA_I PHI_I THETA_O PHI_O PART
+    table angle.csv "$header" "$first" "$second" "$third" "$1,$2,$3,$4,R,1,1,1"
+    for command in 'info angle.csv' 'measure angle.csv atlas:white-linen -o beyond.csv' \
+        'reconstruct b.gonio angle.csv -o x.binary'; do
+        expect_ok $command
+        expect_true "$command: $5" grep -q -- "$5" "$root/work/stderr"
+    done
+}
+beyond 90 0 20 0 '3 readings; left out: 1 at or below the horizon'
+expect_true 'a row that was left out is not written' test "$(grep -c '^[0-9]' beyond.csv)" -eq 3
+beyond 20 0 120.5 0 '3 readings; left out: 1 at or below the horizon'
+beyond -5 0 20 0 '4 readings; 1 with theta below zero (phi turned by 180)'
+table turns.csv "$header" "$first" "$second" "$third" '5,361,20,-3599,R,1,1,1'
+expect_ok reconstruct b.gonio turns.csv -o turns.binary
+table once.csv "$header" "$first" "$second" "$third" '5,1,20,1,R,1,1,1'
+expect_ok reconstruct b.gonio once.csv -o once.binary
+expect_same turns.binary once.binary
+table low.csv "$header" '90,0,20,0,R,1,1,1'
+every_reader 1 'low.csv: none of the 1 rows is a reading above the horizon' low.csv
 
 # ---- channels and values ----
 

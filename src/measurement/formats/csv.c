@@ -5,29 +5,40 @@
 #include <string.h>
 
 #include "../../plan/plan_file.h"
+#include "../import.h"
 #include "../rules.h"
 #include "csv_columns.h"
+#include "csv_notes.h"
 #include "format.h"
 
 /* Column names between commas, semicolons or tabs, or none yet. What is wrong with them is for the
  * reader to say. */
 static bool probe(const char *text, size_t size)
 {
+    gonio_i_csv_lines lines;
+    const char *line = NULL;
     size_t length = 0;
-    const char *line = gonio_i_first_line(text, size, &length);
-    return line != NULL && (length == 0 || strcspn(line, ",;\t") < length ||
-                            memmem(line, length, "_deg", 4) != NULL);
+    if (memchr(text, '\0', size) != NULL) {
+        return false;
+    }
+    gonio_i_csv_lines_begin(&lines, text, size, NULL);
+    return gonio_i_csv_lines_next(&lines, &line, &length) &&
+           (length == 0 || strcspn(line, ",;\t") < length ||
+            memmem(line, length, "_deg", 4) != NULL);
 }
 
-/* ---- reading ---- */
+/* ---- cells ---- */
 
 typedef struct csv_source {
     gonio_context *context;
     gonio_i_csv_reader reader;
-    const gonio_i_csv_columns *columns;
+    gonio_i_csv_columns *columns;
     gonio_readings *readings;
-    double *value;     /* [channels] of a row */
-    double *deviation; /* [channels] */
+    gonio_i_import in;
+    double *value;             /* [channels] of a row */
+    double *deviation;         /* [channels] */
+    gonio_i_csv_others others; /* columns that are not read */
+    double difference;         /* of azimuths, degrees, of a row */
 } csv_source;
 
 static gonio_status bad_cell(const csv_source *s, size_t column, gonio_status status,
@@ -50,13 +61,15 @@ static double number_of(const csv_source *s, size_t column)
     return number ? value : NAN;
 }
 
-static gonio_status take_angle(const csv_source *s, size_t column, size_t index,
-                               gonio_i_reading *reading)
+static gonio_status take_angle(csv_source *s, size_t column, size_t index, gonio_i_row *row)
 {
-    gonio_status status = GONIO_OK;
-    reading->degrees[index] = number_of(s, column);
-    const char *problem = gonio_i_angle_problem((int)index, reading->degrees[index], &status);
-    return problem == NULL ? GONIO_OK : bad_cell(s, column, status, problem);
+    const double number = number_of(s, column);
+    const double degrees = gonio_i_import_degrees(&s->in, number);
+    if (!isfinite(number)) {
+        return bad_cell(s, column, GONIO_ERROR_FORMAT, "is not a finite number");
+    }
+    *(index == GONIO_I_AZIMUTH_DIFFERENCE ? &s->difference : &row->degrees[index]) = degrees;
+    return GONIO_OK;
 }
 
 enum { NO_CHANNEL = -2 };
@@ -80,14 +93,14 @@ static int channel_of(const gonio_readings *readings, const char *cell)
     return NO_CHANNEL;
 }
 
-static gonio_status take_planned(const csv_source *s, size_t column, gonio_i_reading *reading)
+static gonio_status take_planned(const csv_source *s, size_t column, gonio_i_row *row)
 {
     const char *cell = s->reader.cell[column];
     if (*cell == '\0') {
         return GONIO_OK;
     }
-    reading->planned = channel_of(s->readings, cell);
-    return reading->planned != NO_CHANNEL
+    row->planned = channel_of(s->readings, cell);
+    return row->planned != NO_CHANNEL
                ? GONIO_OK
                : bad_cell(s, column, GONIO_ERROR_FORMAT, "is no channel: R, G, B or all");
 }
@@ -103,64 +116,67 @@ static gonio_status take_value(const csv_source *s, size_t column, size_t channe
     return problem == NULL ? GONIO_OK : bad_cell(s, column, status, problem);
 }
 
+/* A share is made one of the value when that is known. */
 static gonio_status take_deviation(const csv_source *s, size_t column, size_t channel)
 {
     gonio_status status = GONIO_OK;
     if (is_missing(s->reader.cell[column])) {
         return GONIO_OK;
     }
-    s->deviation[channel] = number_of(s, column);
-    const char *problem = gonio_i_deviation_problem(s->deviation[channel], &status);
+    const double scale = s->columns->column[column].scale;
+    const double number = number_of(s, column);
+    const char *problem = gonio_i_deviation_problem(number, &status);
+    s->deviation[channel] = scale == 0.0 ? number : number * scale * fabs(s->value[channel]);
     return problem == NULL ? GONIO_OK : bad_cell(s, column, status, problem);
 }
 
-/* Takes the cells of one kind; angles first, then the channel, so that errors come in that order.
- */
-static gonio_status take_kind(const csv_source *s, gonio_i_column_kind kind,
-                              gonio_i_reading *reading)
+/* Values come before deviations (csv_columns.h). */
+static gonio_status take_cell(csv_source *s, size_t k, gonio_i_row *row)
 {
-    gonio_status status = GONIO_OK;
-    for (size_t k = 0; k < s->columns->count && status == GONIO_OK; k++) {
-        const gonio_i_csv_column *column = &s->columns->column[k];
-        if (column->kind != kind) {
-            continue;
-        }
-        switch (kind) {
-        case GONIO_I_ANGLE:
-            status = take_angle(s, k, column->index, reading);
-            break;
-        case GONIO_I_PLANNED:
-            status = take_planned(s, k, reading);
-            break;
-        case GONIO_I_VALUE:
-            status = take_value(s, k, column->index);
-            break;
-        case GONIO_I_DEVIATION:
-            status = take_deviation(s, k, column->index);
-            break;
-        case GONIO_I_OTHER:
-            break;
-        }
+    const gonio_i_csv_column *column = &s->columns->column[k];
+    switch (column->kind) {
+    case GONIO_I_ANGLE:
+        return take_angle(s, k, column->index, row);
+    case GONIO_I_PLANNED:
+        return take_planned(s, k, row);
+    case GONIO_I_VALUE:
+        return take_value(s, k, column->index);
+    case GONIO_I_DEVIATION:
+        return take_deviation(s, k, column->index);
+    case GONIO_I_OTHER:
+        break;
     }
-    return status;
+    return GONIO_OK;
 }
 
-static gonio_status take_row(const csv_source *s)
+/* ---- rows ---- */
+
+static void take_difference(const csv_source *s, gonio_i_row *row)
 {
-    gonio_i_reading reading = {.planned = GONIO_ALL_CHANNELS,
-                               .line = s->reader.line,
-                               .value = s->value,
-                               .deviation = s->columns->any_deviation ? s->deviation : NULL};
+    if (s->columns->difference_gives == 3) {
+        row->degrees[3] = row->degrees[1] + s->difference;
+    } else if (s->columns->difference_gives == 1) {
+        row->degrees[1] = row->degrees[3] - s->difference;
+    }
+}
+
+static gonio_status take_row(csv_source *s)
+{
+    gonio_i_row row = {.planned = GONIO_ALL_CHANNELS,
+                       .line = s->reader.line,
+                       .value = s->value,
+                       .deviation = s->columns->any_deviation ? s->deviation : NULL};
     for (size_t k = 0; k < s->columns->channels; k++) {
         s->value[k] = NAN;
         s->deviation[k] = NAN;
     }
     gonio_status status = GONIO_OK;
-    for (gonio_i_column_kind kind = GONIO_I_ANGLE; kind <= GONIO_I_DEVIATION && status == GONIO_OK;
-         kind++) {
-        status = take_kind(s, kind, &reading);
+    for (size_t k = 0; k < s->columns->reads && status == GONIO_OK; k++) {
+        status = take_cell(s, s->columns->read[k], &row);
     }
-    return status == GONIO_OK ? gonio_i_readings_add(s->context, s->readings, &reading) : status;
+    take_difference(s, &row);
+    gonio_i_csv_others_look(&s->others, &s->reader);
+    return status == GONIO_OK ? gonio_i_import_add(&s->in, &row) : status;
 }
 
 static gonio_status take_rows(csv_source *s)
@@ -172,6 +188,10 @@ static gonio_status take_rows(csv_source *s)
     if (s->value != NULL && s->deviation != NULL) {
         status = gonio_i_csv_next(&s->reader);
     }
+    if (status == GONIO_OK && s->reader.cells == 0) {
+        status = gonio_i_fail(s->context, GONIO_ERROR_DATA, "%s: no lines below the column names",
+                              s->reader.path);
+    }
     while (status == GONIO_OK && s->reader.cells > 0) {
         status = take_row(s);
         if (status == GONIO_OK) {
@@ -181,6 +201,71 @@ static gonio_status take_rows(csv_source *s)
     free(s->value);
     free(s->deviation);
     return status;
+}
+
+/* ---- what the file is taken for ---- */
+
+/* The convention that holds unless the user gives another. */
+static gonio_convention convention_of(const gonio_i_csv_columns *columns)
+{
+    gonio_convention stated = columns->stated;
+    stated.angles = stated.angles != 0 ? stated.angles : GONIO_DEGREES;
+    stated.values = stated.values != 0 ? stated.values : GONIO_VALUE_BRDF;
+    return stated;
+}
+
+static bool is_convention_given(const gonio_convention *as)
+{
+    return as->angles != 0 || as->values != 0 || as->mirror != 0 || as->wavelengths != 0 ||
+           as->zeros != 0;
+}
+
+/* Columns are known by wavelengths in nm from here on. */
+static void take_nanometres(gonio_i_csv_columns *columns, const gonio_readings *readings)
+{
+    for (size_t k = 0; k < columns->count && readings->wavelength != NULL; k++) {
+        gonio_i_csv_column *column = &columns->column[k];
+        if (column->kind == GONIO_I_VALUE || column->kind == GONIO_I_DEVIATION) {
+            column->wavelength = readings->wavelength[column->index];
+        }
+    }
+}
+
+/* Before the notes of the import, what they cannot know. */
+static gonio_status write_notes(csv_source *s)
+{
+    gonio_status status = GONIO_OK;
+    if (s->columns->unclear != NULL) {
+        status = gonio_i_readings_note(s->context, s->readings,
+                                       "the comment '%.60s' is not understood as a unit of values; "
+                                       "--as values=... says what they are",
+                                       s->columns->unclear);
+    }
+    return status == GONIO_OK ? gonio_i_csv_others_note(&s->others, &s->reader, s->readings)
+                              : status;
+}
+
+static gonio_status import_rows(csv_source *s, gonio_i_csv_kept *kept)
+{
+    const gonio_convention stated = convention_of(s->columns);
+    char taken_as[GONIO_I_TAKEN_ROOM];
+    gonio_i_csv_describe(&s->reader, s->columns, taken_as);
+    gonio_i_import_begin(&s->in, s->context, s->readings, taken_as, &stated);
+    s->in.quiet = s->columns->own && !is_convention_given(&s->readings->options.as);
+    s->in.keep_unmeasured = true;
+    kept->rewrite_angles = !s->columns->own_angles || s->in.how.angles != GONIO_DEGREES ||
+                           s->in.how.mirror == GONIO_MIRROR_0;
+    s->readings->keep_angles = kept->rewrite_angles;
+    gonio_status status =
+        gonio_i_import_channels(&s->in, s->columns->channels, s->columns->wavelength);
+    if (status == GONIO_OK) {
+        take_nanometres(s->columns, s->readings);
+        status = gonio_i_csv_others_begin(&s->others, s->context, s->columns);
+    }
+    status = status == GONIO_OK ? take_rows(s) : status;
+    status = status == GONIO_OK ? write_notes(s) : status;
+    gonio_i_csv_others_free(&s->others);
+    return gonio_i_import_end(&s->in, status);
 }
 
 /* The readings keep the text from here on. */
@@ -197,15 +282,13 @@ static gonio_i_csv_kept *keep(gonio_i_readings_file *file, gonio_readings *readi
 
 static gonio_status read_table(csv_source *s, gonio_i_csv_kept *kept)
 {
-    gonio_status status =
-        gonio_i_csv_columns_find(&s->reader, s->readings->options.values_needed, &kept->columns);
+    gonio_status status = gonio_i_csv_take_units(&s->reader);
     if (status == GONIO_OK) {
-        status = gonio_i_readings_begin(s->context, s->readings, kept->columns.channels,
-                                        kept->columns.wavelength);
+        status = gonio_i_csv_columns_find(&s->reader, &s->readings->options, &kept->columns);
     }
     if (status == GONIO_OK) {
         s->columns = &kept->columns;
-        status = take_rows(s);
+        status = import_rows(s, kept);
     }
     if (status == GONIO_OK && !gonio_i_comments_copy(&s->readings->comment, &s->reader.comment)) {
         return gonio_i_fail(s->context, GONIO_ERROR_MEMORY, "%s: out of memory", s->reader.path);

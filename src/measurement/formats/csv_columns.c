@@ -1,205 +1,442 @@
 /* The columns of readings as CSV: see csv_columns.h. */
 #include "csv_columns.h"
 
-#include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "../../plan/plan_file.h"
 #include "../rules.h"
 
-typedef enum family { COLOUR, WAVELENGTH, UNNAMED } family;
+/* What is on the way from names to columns. */
+typedef struct finder {
+    const gonio_i_csv_reader *r;
+    const gonio_readings_options *options;
+    gonio_i_csv_columns *c;
+    gonio_i_column_name *name; /* [columns] */
+    gonio_i_strength strongest;
+    gonio_i_family family; /* of the channels that are read */
+    int quantity;
+} finder;
 
-/* What a column's name says, if it is one of values or deviations. */
-typedef struct value_name {
-    family family;
-    size_t index;      /* of a colour; of unnamed channels their order counts */
-    double wavelength; /* nm */
-    bool deviation;
-} value_name;
-
-static bool parse_ending(const char *text, bool *deviation)
+static gonio_status refuse_two(const finder *f, const char *what, size_t a, size_t b)
 {
-    *deviation = strcasecmp(text, "_deviation_per_sr") == 0;
-    return *deviation || strcasecmp(text, "_per_sr") == 0;
+    return gonio_i_fail(f->r->context, GONIO_ERROR_FORMAT,
+                        "%s: two columns of %s, '%s' and '%s'; delete or rename one", f->r->path,
+                        what, f->r->name[a], f->r->name[b]);
 }
 
-static bool parse_colour(const char *name, value_name *v)
+/* A unit that one column states, against what others stated: *unit is 0 before any did. */
+static gonio_status agree(const finder *f, const char *what, const char *key, size_t k, int unit,
+                          int *stated, size_t *by)
 {
-    static const char letters[] = "RGB";
-    const char *letter = *name != '\0' ? strchr(letters, toupper((unsigned char)*name)) : NULL;
-    v->family = COLOUR;
-    v->index = letter != NULL ? (size_t)(letter - letters) : 0;
-    return letter != NULL && parse_ending(name + 1, &v->deviation);
-}
-
-static bool parse_wavelength(const char *name, value_name *v)
-{
-    char *end = NULL;
-    v->family = WAVELENGTH;
-    v->wavelength = strtod(name, &end);
-    return isdigit((unsigned char)*name) && v->wavelength > 0.0 && v->wavelength < 1e6 &&
-           strncasecmp(end, "nm", 2) == 0 && parse_ending(end + 2, &v->deviation);
-}
-
-static bool parse_unnamed(const char *name, value_name *v)
-{
-    v->family = UNNAMED;
-    return strncasecmp(name, "value", 5) == 0 &&
-           parse_ending(name + 5 + strspn(name + 5, "0123456789"), &v->deviation);
-}
-
-static bool parse_name(const char *name, value_name *v)
-{
-    *v = (value_name){0};
-    return parse_colour(name, v) || parse_wavelength(name, v) || parse_unnamed(name, v);
-}
-
-/* The names of the first columns of each family; NULL if there are none. */
-typedef struct families {
-    const char *first[3];
-} families;
-
-static families find_families(const gonio_i_csv_reader *r)
-{
-    families found = {{NULL}};
-    for (size_t k = 0; k < r->columns; k++) {
-        value_name v;
-        if (parse_name(r->name[k], &v) && !v.deviation && found.first[v.family] == NULL) {
-            found.first[v.family] = r->name[k];
-        }
+    if (unit != 0 && *stated != 0 && unit != *stated) {
+        return gonio_i_fail(f->r->context, GONIO_ERROR_FORMAT,
+                            "%s: the %s of columns '%s' and '%s' differ in their unit; give one, "
+                            "or say which by --as %s=...",
+                            f->r->path, what, f->r->name[*by], f->r->name[k], key);
     }
-    return found;
-}
-
-static gonio_status find_angles(const gonio_i_csv_reader *r, gonio_i_csv_columns *c)
-{
-    for (size_t angle = 0; angle < 4; angle++) {
-        size_t k = 0;
-        while (k < r->columns && strcasecmp(r->name[k], gonio_i_angle_names[angle]) != 0) {
-            k++;
-        }
-        if (k == r->columns) {
-            return gonio_i_fail(r->context, GONIO_ERROR_FORMAT,
-                                "%s: no column '%s'; theta_i_deg, phi_i_deg, theta_o_deg and "
-                                "phi_o_deg are needed",
-                                r->path, gonio_i_angle_names[angle]);
-        }
-        c->column[k] = (gonio_i_csv_column){.kind = GONIO_I_ANGLE, .index = angle};
-    }
+    *by = unit != 0 ? k : *by;
+    *stated = unit != 0 ? unit : *stated;
     return GONIO_OK;
 }
 
-static void add_value(gonio_i_csv_columns *c, size_t k, const value_name *v)
+/* What a comment "key: ..." says, in any letter case; NULL if it is another. */
+static const char *text_behind(const char *comment, const char *key)
 {
-    const size_t index = v->family == COLOUR ? v->index : c->channels++;
-    if (v->family == WAVELENGTH) {
-        c->wavelength[index] = v->wavelength;
-    }
-    c->column[k] = (gonio_i_csv_column){GONIO_I_VALUE, index, v->wavelength};
-    c->any_value = true;
+    const size_t length = strlen(key);
+    const bool same = strncasecmp(comment, key, length) == 0 && comment[length] == ':';
+    return same ? comment + length + 1 + strspn(comment + length + 1, " ") : NULL;
 }
 
-static void find_values(const gonio_i_csv_reader *r, family kept, gonio_i_csv_columns *c)
+/* What a comment with one of these keys says; the keys end with NULL. */
+static const char *comment_of(const finder *f, const char *const *keys)
 {
-    c->channels = kept == COLOUR ? GONIO_CHANNELS : 0;
-    for (size_t k = 0; k < r->columns; k++) {
-        value_name v;
-        if (parse_name(r->name[k], &v) && !v.deviation && v.family == kept) {
-            add_value(c, k, &v);
+    const char *text = NULL;
+    for (size_t k = 0; k < f->r->comment.count && text == NULL; k++) {
+        for (size_t j = 0; keys[j] != NULL && text == NULL; j++) {
+            text = text_behind(f->r->comment.line[k], keys[j]);
         }
     }
+    return text;
 }
 
-/* Deviations belong to the values of the same name; of others they are other columns. */
-static void find_deviations(const gonio_i_csv_reader *r, family kept, gonio_i_csv_columns *c)
+/* ---- angles ---- */
+
+/* The column of an angle; gonio's own name before others. */
+static gonio_status choose_angles(const finder *f, size_t chosen[GONIO_I_ANGLE_COLUMNS])
 {
-    size_t unnamed = 0;
-    for (size_t k = 0; k < r->columns; k++) {
-        value_name v;
-        if (!parse_name(r->name[k], &v) || !v.deviation || v.family != kept) {
+    const size_t none = f->r->columns;
+    for (size_t k = 0; k < none; k++) {
+        if (f->name[k].kind != GONIO_I_ANGLE) {
             continue;
         }
-        const size_t place = v.family == COLOUR ? v.index : unnamed++;
-        for (size_t j = 0; j < r->columns; j++) {
-            const gonio_i_csv_column *value = &c->column[j];
-            if (value->kind == GONIO_I_VALUE &&
-                (v.family == WAVELENGTH ? value->wavelength == v.wavelength
-                                        : value->index == place)) {
-                c->column[k] = (gonio_i_csv_column){GONIO_I_DEVIATION, value->index, v.wavelength};
-                c->any_deviation = true;
-            }
-        }
-    }
-}
-
-static gonio_status check_channels(const gonio_i_csv_reader *r, const families *found,
-                                   bool values_needed, const gonio_i_csv_columns *c)
-{
-    if (found->first[COLOUR] != NULL && found->first[WAVELENGTH] != NULL) {
-        return gonio_i_fail(r->context, GONIO_ERROR_FORMAT,
-                            "%s: columns of colours (%s) and of wavelengths (%s); delete one kind",
-                            r->path, found->first[COLOUR], found->first[WAVELENGTH]);
-    }
-    if (values_needed && !c->any_value) {
-        return gonio_i_fail(r->context, GONIO_ERROR_FORMAT,
-                            "%s: no column of values (R_per_sr, G_per_sr, B_per_sr, or "
-                            "400nm_per_sr ...): a plan that was not measured yet?",
-                            r->path);
-    }
-    for (size_t k = 0; k < c->channels && c->wavelength != NULL; k++) {
-        for (size_t j = 0; j < k; j++) {
-            if (c->wavelength[j] == c->wavelength[k]) {
-                return gonio_i_fail(r->context, GONIO_ERROR_FORMAT,
-                                    "%s: two columns of %g nm; delete one", r->path,
-                                    c->wavelength[k]);
-            }
+        size_t *at = &chosen[f->name[k].index];
+        if (*at == none || (f->name[k].own && !f->name[*at].own)) {
+            *at = k;
+        } else if (f->name[k].own == f->name[*at].own) {
+            return refuse_two(f, "the same angle", *at, k);
         }
     }
     return GONIO_OK;
 }
 
-/* The column of a name that says which channel was planned. */
-static void find_planned(const gonio_i_csv_reader *r, gonio_i_csv_columns *c)
+static gonio_status refuse_missing(const finder *f, size_t angle)
 {
-    for (size_t k = 0; k < r->columns; k++) {
-        if (strcasecmp(r->name[k], "channel") == 0) {
-            c->column[k].kind = GONIO_I_PLANNED;
-        }
-    }
+    return gonio_i_fail(f->r->context, GONIO_ERROR_FORMAT,
+                        "%s: no column '%s'; theta_i_deg, phi_i_deg, theta_o_deg and phi_o_deg "
+                        "are needed",
+                        f->r->path, gonio_i_angle_names[angle]);
 }
 
-static gonio_status find_columns(const gonio_i_csv_reader *r, bool values_needed,
-                                 gonio_i_csv_columns *c)
+static gonio_status check_angles(const finder *f, const size_t chosen[GONIO_I_ANGLE_COLUMNS])
 {
-    const families found = find_families(r);
-    const family kept = found.first[WAVELENGTH] != NULL ? WAVELENGTH
-                        : found.first[COLOUR] != NULL   ? COLOUR
-                        : found.first[UNNAMED] != NULL  ? UNNAMED
-                                                        : COLOUR;
-    if (kept == WAVELENGTH) {
-        c->wavelength = gonio_i_allocate(r->context, r->columns, sizeof *c->wavelength);
-        if (c->wavelength == NULL) {
-            return GONIO_ERROR_MEMORY;
+    for (size_t angle = 0; angle < 4; angle++) {
+        const bool replaced = angle % 2 == 1 && f->c->difference_gives != 0;
+        if (chosen[angle] == f->r->columns && !replaced) {
+            return refuse_missing(f, angle);
         }
     }
-    const gonio_status status = find_angles(r, c);
+    return GONIO_OK;
+}
+
+static gonio_status find_angles(const finder *f)
+{
+    static const char *const keys[] = {"angles", "angle unit", "angle units",
+                                       "unit",   "units",      NULL};
+    const size_t none = f->r->columns;
+    size_t chosen[GONIO_I_ANGLE_COLUMNS] = {none, none, none, none, none};
+    size_t by = 0;
+    gonio_status status = choose_angles(f, chosen);
+    if (chosen[GONIO_I_AZIMUTH_DIFFERENCE] != none) {
+        f->c->difference_gives = chosen[3] == none ? 3 : chosen[1] == none ? 1 : 0;
+    }
+    status = status == GONIO_OK ? check_angles(f, chosen) : status;
+    f->c->own_angles = f->c->difference_gives == 0;
+    for (size_t angle = 0; angle < GONIO_I_ANGLE_COLUMNS && status == GONIO_OK; angle++) {
+        const size_t k = chosen[angle];
+        if (k == none || (angle == GONIO_I_AZIMUTH_DIFFERENCE && f->c->difference_gives == 0)) {
+            continue;
+        }
+        f->c->column[k] = (gonio_i_csv_column){.kind = GONIO_I_ANGLE, .index = angle};
+        f->c->own_angles = f->c->own_angles && f->name[k].own;
+        if (f->options->as.angles == GONIO_AS_STATED) {
+            status = agree(f, "angles", "angles", k, f->name[k].unit, &f->c->stated.angles, &by);
+        }
+    }
+    const char *comment = comment_of(f, keys);
+    if (f->c->stated.angles == 0 && comment != NULL) {
+        f->c->stated.angles = gonio_i_angle_unit_in(comment);
+    }
+    return status;
+}
+
+/* ---- values ---- */
+
+/* The first certain column of a family; the number of columns if there is none. */
+static size_t first_certain(const finder *f, gonio_i_family family)
+{
+    size_t k = 0;
+    while (k < f->r->columns && !(f->name[k].kind == GONIO_I_VALUE && f->name[k].family == family &&
+                                  f->name[k].strength == GONIO_I_CERTAIN)) {
+        k++;
+    }
+    return k;
+}
+
+/* Wavelengths before colours, and these before values of neither. */
+static int rank(gonio_i_family family)
+{
+    return family == GONIO_I_WAVELENGTH ? 2 : family == GONIO_I_COLOUR ? 1 : 0;
+}
+
+/* Which columns are those of values: the surest of them say their family and quantity. */
+static gonio_status choose_family(finder *f)
+{
+    const size_t colour = first_certain(f, GONIO_I_COLOUR);
+    const size_t wavelength = first_certain(f, GONIO_I_WAVELENGTH);
+    if (colour < f->r->columns && wavelength < f->r->columns) {
+        return gonio_i_fail(f->r->context, GONIO_ERROR_FORMAT,
+                            "%s: columns of colours (%s) and of wavelengths (%s); delete one kind",
+                            f->r->path, f->r->name[colour], f->r->name[wavelength]);
+    }
+    f->family = GONIO_I_COLOUR;
+    for (size_t k = 0; k < f->r->columns; k++) {
+        const gonio_i_column_name *n = &f->name[k];
+        const bool surer = n->strength > f->strongest ||
+                           (n->strength == f->strongest && rank(n->family) > rank(f->family));
+        if (n->kind == GONIO_I_VALUE && surer) {
+            f->strongest = n->strength;
+            f->family = n->family;
+            f->quantity = n->quantity;
+        }
+    }
+    return GONIO_OK;
+}
+
+static bool is_chosen(const finder *f, const gonio_i_column_name *n)
+{
+    return n->kind == GONIO_I_VALUE && n->family == f->family && n->quantity == f->quantity &&
+           (n->strength > GONIO_I_BARE || f->strongest == GONIO_I_BARE);
+}
+
+static gonio_status add_value(const finder *f, size_t k, size_t *unit_by, size_t *wave_by)
+{
+    gonio_i_csv_columns *c = f->c;
+    const gonio_i_column_name *n = &f->name[k];
+    const size_t index = n->family == GONIO_I_COLOUR ? n->index : c->channels++;
+    gonio_status status = GONIO_OK;
+    if (n->family == GONIO_I_WAVELENGTH) {
+        c->wavelength[index] = n->wavelength;
+    }
+    c->column[k] = (gonio_i_csv_column){GONIO_I_VALUE, index, n->wavelength, 0.0};
+    c->any_value = true;
+    c->own = c->own && n->own;
+    if (f->options->as.values == GONIO_AS_STATED) {
+        status = agree(f, "values", "values", k, n->unit, &c->stated.values, unit_by);
+    }
+    if (status == GONIO_OK && f->options->as.wavelengths == GONIO_AS_STATED) {
+        status = agree(f, "wavelengths", "wavelengths", k, n->wavelength_unit,
+                       &c->stated.wavelengths, wave_by);
+    }
+    return status;
+}
+
+static gonio_status find_values(const finder *f)
+{
+    static const char *const keys[] = {"values", "unit", "units", "value unit", "quantity", NULL};
+    gonio_i_csv_columns *c = f->c;
+    gonio_status status = GONIO_OK;
+    size_t unit_by = 0;
+    size_t wave_by = 0;
+    c->channels = f->family == GONIO_I_COLOUR ? GONIO_CHANNELS : 0;
+    for (size_t k = 0; k < f->r->columns && status == GONIO_OK; k++) {
+        if (is_chosen(f, &f->name[k])) {
+            status = add_value(f, k, &unit_by, &wave_by);
+        }
+    }
+    const char *comment = comment_of(f, keys);
+    if (c->stated.values == 0 && comment != NULL) {
+        c->stated.values = gonio_i_value_kind_in(comment);
+        const bool clear = c->stated.values != 0 || gonio_i_angle_unit_in(comment) != 0;
+        c->unclear = clear ? NULL : comment;
+    }
+    return status;
+}
+
+/* ---- channels by what names them ---- */
+
+typedef struct keyed {
+    double key; /* colour, wavelength or number */
+    size_t column;
+} keyed;
+
+typedef struct key_list {
+    size_t count;
+    keyed *item; /* [count], ascending */
+} key_list;
+
+static double key_of(const gonio_i_column_name *n)
+{
+    return n->family == GONIO_I_WAVELENGTH ? n->wavelength : (double)n->index;
+}
+
+static int compare_keys(const void *a, const void *b)
+{
+    const keyed *x = a;
+    const keyed *y = b;
+    const int order = (x->key > y->key) - (x->key < y->key);
+    return order != 0 ? order : (x->column > y->column) - (x->column < y->column);
+}
+
+static gonio_status list_values(const finder *f, key_list *list)
+{
+    list->count = 0;
+    list->item = gonio_i_allocate(f->r->context, f->r->columns, sizeof *list->item);
+    if (list->item == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    for (size_t k = 0; k < f->r->columns; k++) {
+        if (f->c->column[k].kind == GONIO_I_VALUE) {
+            list->item[list->count++] = (keyed){key_of(&f->name[k]), k};
+        }
+    }
+    qsort(list->item, list->count, sizeof *list->item, compare_keys);
+    return GONIO_OK;
+}
+
+static gonio_status refuse_twice(const finder *f, const key_list *list)
+{
+    for (size_t k = 1; k < list->count; k++) {
+        const keyed *a = &list->item[k - 1];
+        if (a->key == list->item[k].key) {
+            char what[64] = "values";
+            if (f->family == GONIO_I_WAVELENGTH) {
+                snprintf(what, sizeof what, "%.10g %s", a->key,
+                         f->c->stated.wavelengths == GONIO_MICROMETRES ? "um" : "nm");
+            } else if (f->family == GONIO_I_COLOUR) {
+                snprintf(what, sizeof what, "%c", "RGB"[(int)a->key]);
+            }
+            return refuse_two(f, what, a->column, list->item[k].column);
+        }
+    }
+    return GONIO_OK;
+}
+
+static int compare_to_key(const void *key, const void *item)
+{
+    const double wanted = *(const double *)key;
+    const double has = ((const keyed *)item)->key;
+    return (wanted > has) - (wanted < has);
+}
+
+/* The column of values that a deviation belongs to; the number of columns if there is none. A
+ * deviation of no channel is that of the only one. */
+static size_t value_of(const finder *f, const key_list *list, const gonio_i_column_name *n)
+{
+    const double key = key_of(n);
+    const bool same = n->family == f->family &&
+                      (n->quantity == 0 || f->quantity == 0 || n->quantity == f->quantity);
+    const bool only = list->count == 1 && n->family == GONIO_I_UNNAMED && n->index == 0 &&
+                      (n->quantity == 0 || n->quantity == f->quantity);
+    const keyed *found = only ? list->item
+                         : same && list->count > 0
+                             ? bsearch(&key, list->item, list->count, sizeof(keyed), compare_to_key)
+                             : NULL;
+    return found != NULL ? found->column : f->r->columns;
+}
+
+static void add_deviation(const finder *f, size_t k, size_t value, bool *taken)
+{
+    const gonio_i_column_name *n = &f->name[k];
+    gonio_i_csv_columns *c = f->c;
+    const bool percent = n->unit == GONIO_VALUE_PERCENT;
+    const bool relative = n->relative || (percent && c->stated.values != GONIO_VALUE_PERCENT);
+    c->column[k] =
+        (gonio_i_csv_column){GONIO_I_DEVIATION, c->column[value].index, c->column[value].wavelength,
+                             !relative ? 0.0
+                             : percent ? 0.01
+                                       : 1.0};
+    c->any_deviation = true;
+    c->own = c->own && n->own;
+    taken[c->column[value].index] = true;
+}
+
+/* Deviations belong to the values of the same name; of others they are not read. */
+static gonio_status find_deviations(const finder *f)
+{
+    key_list list;
+    bool *taken = gonio_i_allocate(f->r->context, f->c->channels + 1, sizeof *taken);
+    gonio_status status = taken != NULL ? list_values(f, &list) : GONIO_ERROR_MEMORY;
     if (status != GONIO_OK) {
+        free(taken);
         return status;
     }
-    find_values(r, kept, c);
-    find_deviations(r, kept, c);
-    find_planned(r, c);
-    return check_channels(r, &found, values_needed, c);
+    status = refuse_twice(f, &list);
+    for (size_t k = 0; k < f->r->columns && status == GONIO_OK; k++) {
+        const size_t value =
+            f->name[k].kind == GONIO_I_DEVIATION ? value_of(f, &list, &f->name[k]) : f->r->columns;
+        if (value < f->r->columns && !taken[f->c->column[value].index]) {
+            add_deviation(f, k, value, taken);
+        }
+    }
+    free(list.item);
+    free(taken);
+    return status;
 }
 
-gonio_status gonio_i_csv_columns_find(const gonio_i_csv_reader *reader, bool values_needed,
+/* ---- all ---- */
+
+/* A column that is not read, but has a number in the row that was read; NULL if there is none. */
+static const char *number_not_read(const finder *f)
+{
+    double value = 0.0;
+    for (size_t k = 0; k < f->r->cells; k++) {
+        if (f->c->column[k].kind == GONIO_I_OTHER && f->r->name[k][0] != '\0' &&
+            strcasecmp(f->r->name[k], "expected_e6_percent") != 0 &&
+            gonio_i_csv_is_number(f->r->cell[k], f->r->delimiter, &value)) {
+            return f->r->name[k];
+        }
+    }
+    return NULL;
+}
+
+static gonio_status refuse_no_values(const finder *f)
+{
+    const char *number = number_not_read(f);
+    return number != NULL
+               ? gonio_i_fail(f->r->context, GONIO_ERROR_FORMAT,
+                              "%s: no column of values: '%s' is not understood; name values "
+                              "R_per_sr, G_per_sr, B_per_sr, 400nm_per_sr ... or value_per_sr",
+                              f->r->path, number)
+               : gonio_i_fail(f->r->context, GONIO_ERROR_FORMAT,
+                              "%s: no column of values (R_per_sr, G_per_sr, B_per_sr, or "
+                              "400nm_per_sr ...): a plan that was not measured yet?",
+                              f->r->path);
+}
+
+static void find_planned(const finder *f)
+{
+    for (size_t k = 0; k < f->r->columns; k++) {
+        if (f->name[k].kind == GONIO_I_PLANNED) {
+            f->c->column[k].kind = GONIO_I_PLANNED;
+        }
+    }
+}
+
+/* Angles first, then the channel, so that errors come in that order. */
+static gonio_status order_columns(const finder *f)
+{
+    gonio_i_csv_columns *c = f->c;
+    c->read = gonio_i_allocate(f->r->context, c->count, sizeof *c->read);
+    for (gonio_i_column_kind kind = GONIO_I_ANGLE; c->read != NULL && kind <= GONIO_I_DEVIATION;
+         kind++) {
+        for (size_t k = 0; k < c->count; k++) {
+            if (c->column[k].kind == kind) {
+                c->read[c->reads++] = k;
+            }
+        }
+    }
+    return c->read != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
+}
+
+static gonio_status choose_columns(finder *f)
+{
+    gonio_status status = find_angles(f);
+    if (status == GONIO_OK) {
+        status = choose_family(f);
+    }
+    if (status == GONIO_OK && f->strongest != 0 && f->family == GONIO_I_WAVELENGTH) {
+        f->c->wavelength = gonio_i_allocate(f->r->context, f->c->count, sizeof(double));
+        status = f->c->wavelength != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
+    }
+    f->c->own = f->c->own_angles;
+    if (status == GONIO_OK) {
+        status = find_values(f);
+    }
+    if (status == GONIO_OK) {
+        status = find_deviations(f);
+    }
+    find_planned(f);
+    if (status == GONIO_OK && f->options->values_needed && !f->c->any_value) {
+        status = refuse_no_values(f);
+    }
+    return status == GONIO_OK ? order_columns(f) : status;
+}
+
+gonio_status gonio_i_csv_columns_find(const gonio_i_csv_reader *reader,
+                                      const gonio_readings_options *options,
                                       gonio_i_csv_columns *columns)
 {
     *columns = (gonio_i_csv_columns){.count = reader->columns};
+    finder f = {.r = reader, .options = options, .c = columns};
     columns->column = gonio_i_allocate(reader->context, reader->columns, sizeof *columns->column);
-    const gonio_status status =
-        columns->column != NULL ? find_columns(reader, values_needed, columns) : GONIO_ERROR_MEMORY;
+    f.name = gonio_i_allocate(reader->context, reader->columns, sizeof *f.name);
+    gonio_status status = columns->column != NULL && f.name != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
+    for (size_t k = 0; k < reader->columns && status == GONIO_OK; k++) {
+        f.name[k] = gonio_i_column_name_of(reader->name[k]);
+    }
+    status = status == GONIO_OK ? choose_columns(&f) : status;
+    free(f.name);
     if (status != GONIO_OK) {
         gonio_i_csv_columns_free(columns);
     }
@@ -210,8 +447,37 @@ void gonio_i_csv_columns_free(gonio_i_csv_columns *columns)
 {
     free(columns->column);
     free(columns->wavelength);
+    free(columns->read);
     *columns = (gonio_i_csv_columns){0};
 }
+
+/* ---- a line of units ---- */
+
+/* Whether a row is one of units: an angle's among them, and no numbers but 1 of what has none. */
+static bool is_unit_row(const gonio_i_csv_reader *r)
+{
+    bool angle = false;
+    for (size_t k = 0; k < r->cells; k++) {
+        double number = 0.0;
+        if (gonio_i_csv_is_number(r->cell[k], r->delimiter, &number) && number != 1.0) {
+            return false;
+        }
+        angle = angle || gonio_i_angle_unit_in(r->cell[k]) != 0;
+    }
+    return angle;
+}
+
+gonio_status gonio_i_csv_take_units(gonio_i_csv_reader *reader)
+{
+    gonio_status status = gonio_i_csv_next(reader);
+    if (status == GONIO_OK && is_unit_row(reader)) {
+        return gonio_i_csv_units_behind_names(reader);
+    }
+    gonio_i_csv_again(reader);
+    return status;
+}
+
+/* ---- names ---- */
 
 void gonio_i_csv_name_channel(const gonio_readings *readings, int channel,
                               char name[GONIO_I_NAME_ROOM])

@@ -1,39 +1,47 @@
-/* Readings as CSV: what each column holds, by its name; what is kept of a file; writing. */
+/* Readings as CSV: which column holds what; what is kept of a file; writing. */
 #ifndef GONIO_CSV_COLUMNS_H
 #define GONIO_CSV_COLUMNS_H
 
 #include "../../core/csv_reader.h"
 #include "../readings.h"
-
-typedef enum gonio_i_column_kind {
-    GONIO_I_OTHER = 0,
-    GONIO_I_ANGLE,
-    GONIO_I_PLANNED,
-    GONIO_I_VALUE,
-    GONIO_I_DEVIATION
-} gonio_i_column_kind;
+#include "csv_names.h"
 
 typedef struct gonio_i_csv_column {
-    gonio_i_column_kind kind;
-    size_t index;      /* of an angle; of a value's channel in the file */
-    double wavelength; /* of a value or deviation, nm; 0: a colour or an unnamed channel */
+    gonio_i_column_kind kind; /* OTHER: not read */
+    size_t index;      /* of an angle (gonio_i_column_name); of a value's channel in the file */
+    double wavelength; /* of a value or deviation, as the name has it; 0: none */
+    double scale;      /* of a deviation that is relative: to a share of the value; 0: it is not */
 } gonio_i_csv_column;
 
 typedef struct gonio_i_csv_columns {
     size_t count;
     gonio_i_csv_column *column; /* [count] */
+    size_t reads;
+    size_t *read; /* [reads]: the columns that are read; angles, channel, values, deviations */
     size_t channels;
-    double *wavelength; /* [channels]; NULL: colours or unnamed channels */
+    double *wavelength; /* [channels], as the names have them; NULL: colours or unnamed channels */
+    gonio_convention stated; /* by names, units and comments; 0 where nothing states it */
+    const char *unclear;     /* a comment on values that is not understood; belongs to the reader */
+    size_t difference_gives; /* the azimuth that a difference replaces, 1 or 3; 0: there is none */
+    bool own_angles;         /* named as gonio does */
+    bool own;                /* all are */
     bool any_value;
     bool any_deviation;
 } gonio_i_csv_columns;
 
-/* From the reader's column names. Errors: _FORMAT for angles that are not there, no
- * values where they are needed, columns of more than one kind of channels. */
-gonio_status gonio_i_csv_columns_find(const gonio_i_csv_reader *reader, bool values_needed,
+/* From the reader's column names and comments, and what the options say of units. Errors: _FORMAT
+ * for angles that are not there, no values where they are needed (the message names a column that
+ * has a number in the reader's row), columns of more than one kind of channels, two columns of the
+ * same, columns that differ in their units. */
+gonio_status gonio_i_csv_columns_find(const gonio_i_csv_reader *reader,
+                                      const gonio_readings_options *options,
                                       gonio_i_csv_columns *columns);
 
 void gonio_i_csv_columns_free(gonio_i_csv_columns *columns);
+
+/* Reads the line of units that may follow the names, and puts units behind names: "theta_i (deg)".
+ * The next row is the first of numbers then. */
+gonio_status gonio_i_csv_take_units(gonio_i_csv_reader *reader);
 
 /* A planned channel as a cell has it: all; R, G or B; 400nm; or its number from 1. */
 void gonio_i_csv_name_channel(const gonio_readings *readings, int channel,
@@ -44,6 +52,7 @@ typedef struct gonio_i_csv_kept {
     char *text;
     size_t size;
     gonio_i_csv_columns columns;
+    bool rewrite_angles; /* they are not gonio's in the file */
 } gonio_i_csv_kept;
 
 void gonio_i_csv_kept_free(void *kept);

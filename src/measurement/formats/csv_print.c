@@ -107,18 +107,49 @@ static void print_names(printer *p, char *const *old)
     end_line(p);
 }
 
+static bool has_note(const gonio_i_comments *comments, const char *note)
+{
+    bool found = false;
+    for (size_t k = 0; k < comments->count && !found; k++) {
+        const char *line = comments->line[k];
+        found = strncmp(line, "note: ", 6) == 0 && strcmp(line + 6, note) == 0;
+    }
+    return found;
+}
+
+/* The reader's notes, once each. */
+static bool add_notes(gonio_i_comments *all, const gonio_i_comments *note)
+{
+    bool done = true;
+    for (size_t k = 0; k < note->count && done; k++) {
+        done = has_note(all, note->line[k]) || gonio_i_comments_add(all, "note: %s", note->line[k]);
+    }
+    return done;
+}
+
+/* What is written has gonio's units, whatever the file said of its own. */
+static void drop_units(gonio_i_comments *all)
+{
+    static const char *const keys[] = {"unit",        "units",      "values",     "angles",
+                                       "angle units", "angle unit", "value unit", "quantity"};
+    for (size_t k = 0; k < sizeof keys / sizeof *keys; k++) {
+        gonio_i_comments_drop(all, keys[k]);
+    }
+}
+
 /* The title, what the comments say of the plan, the reader's notes, and who writes the file. */
 static bool print_comments(const printer *p, const char *command)
 {
+    const gonio_i_csv_kept *kept = gonio_i_csv_kept_of(p->readings);
     gonio_i_comments all = {0};
-    const gonio_i_comments *note = &p->readings->note;
     bool done = gonio_i_comments_copy(&all, &p->readings->comment);
     gonio_i_comments_drop(&all, "program");
     gonio_i_comments_drop(&all, "command");
-    for (size_t k = 0; k < note->count && done; k++) {
-        done = gonio_i_comments_add(&all, "note: %s", note->line[k]);
+    if (kept != NULL && !kept->columns.own) {
+        drop_units(&all);
     }
-    done = done && gonio_i_comments_add(&all, "program: gonio %s", gonio_version()) &&
+    done = done && add_notes(&all, &p->readings->note) &&
+           gonio_i_comments_add(&all, "program: gonio %s", gonio_version()) &&
            (command == NULL || gonio_i_comments_add(&all, "command: %s", command));
     for (size_t k = 0; k < all.count; k++) {
         const bool title = k == 0 && strcmp(all.line[k], "gonio plan") == 0;
@@ -135,6 +166,15 @@ static void add_column(printer *p, gonio_i_column_kind kind, size_t index)
     p->column[p->columns++] = (printed_column){kind, index};
 }
 
+static bool has_column(const printer *p, gonio_i_column_kind kind, size_t index)
+{
+    size_t k = 0;
+    while (k < p->columns && !(p->column[k].kind == kind && p->column[k].index == index)) {
+        k++;
+    }
+    return k < p->columns;
+}
+
 /* The channel that a column of values or deviations of the file that was read still holds;
  * p->readings->channels if there is none. */
 static size_t channel_now(const printer *p, const gonio_i_csv_columns *old,
@@ -147,19 +187,39 @@ static size_t channel_now(const printer *p, const gonio_i_csv_columns *old,
         const bool same = old->wavelength == NULL && old->channels == r->channels;
         return same ? column->index : r->channels;
     }
+    if (column->index < r->channels && r->wavelength[column->index] == column->wavelength) {
+        return column->index;
+    }
     while (k < r->channels && r->wavelength[k] != column->wavelength) {
         k++;
     }
     return k;
 }
 
+/* Where the file has its first angle, if angles are written anew. */
+static void add_old_angle(printer *p, bool rewrite, size_t k)
+{
+    if (!rewrite) {
+        add_column(p, GONIO_I_OTHER, k);
+        return;
+    }
+    for (size_t angle = 0; angle < 4 && !has_column(p, GONIO_I_ANGLE, angle); angle++) {
+        add_column(p, GONIO_I_ANGLE, angle);
+    }
+}
+
 /* The columns of the file that was read: as they were, but values and deviations are those of now,
  * and dropped where there are none. */
-static void add_old_columns(printer *p, const gonio_i_csv_columns *old)
+static void add_old_columns(printer *p, const gonio_i_csv_kept *kept)
 {
+    const gonio_i_csv_columns *old = &kept->columns;
     for (size_t k = 0; k < old->count; k++) {
         const gonio_i_csv_column *column = &old->column[k];
         const bool deviation = column->kind == GONIO_I_DEVIATION;
+        if (column->kind == GONIO_I_ANGLE) {
+            add_old_angle(p, kept->rewrite_angles, k);
+            continue;
+        }
         if (column->kind != GONIO_I_VALUE && !deviation) {
             add_column(p, GONIO_I_OTHER, k);
             continue;
@@ -171,22 +231,25 @@ static void add_old_columns(printer *p, const gonio_i_csv_columns *old)
     }
 }
 
-static bool has_column(const printer *p, gonio_i_column_kind kind, size_t index)
+static gonio_status add_missing_columns(gonio_context *context, printer *p,
+                                        gonio_i_column_kind kind)
 {
-    size_t k = 0;
-    while (k < p->columns && !(p->column[k].kind == kind && p->column[k].index == index)) {
-        k++;
+    bool *there = gonio_i_allocate(context, p->readings->channels, sizeof *there);
+    if (there == NULL) {
+        return GONIO_ERROR_MEMORY;
     }
-    return k < p->columns;
-}
-
-static void add_missing_columns(printer *p, gonio_i_column_kind kind)
-{
+    for (size_t k = 0; k < p->columns; k++) {
+        if (p->column[k].kind == kind) {
+            there[p->column[k].index] = true;
+        }
+    }
     for (size_t k = 0; k < p->readings->channels; k++) {
-        if (!has_column(p, kind, k)) {
+        if (!there[k]) {
             add_column(p, kind, k);
         }
     }
+    free(there);
+    return GONIO_OK;
 }
 
 /* Angles, and what was planned if it is not all channels everywhere. */
@@ -205,10 +268,9 @@ static void add_directions(printer *p)
     }
 }
 
-static gonio_status choose_columns(gonio_context *context, printer *p,
-                                   const gonio_i_csv_columns *old)
+static gonio_status choose_columns(gonio_context *context, printer *p, const gonio_i_csv_kept *old)
 {
-    const size_t most = (old != NULL ? old->count : 5) + 2 * p->readings->channels;
+    const size_t most = (old != NULL ? old->columns.count : 0) + 5 + 2 * p->readings->channels;
     p->column = gonio_i_allocate(context, most, sizeof *p->column);
     if (p->column == NULL) {
         return GONIO_ERROR_MEMORY;
@@ -218,14 +280,39 @@ static gonio_status choose_columns(gonio_context *context, printer *p,
     } else {
         add_directions(p);
     }
-    add_missing_columns(p, GONIO_I_VALUE);
-    if (p->readings->deviation != NULL) {
-        add_missing_columns(p, GONIO_I_DEVIATION);
+    gonio_status status = add_missing_columns(context, p, GONIO_I_VALUE);
+    if (status == GONIO_OK && p->readings->deviation != NULL) {
+        status = add_missing_columns(context, p, GONIO_I_DEVIATION);
     }
-    return GONIO_OK;
+    return status;
 }
 
 /* ---- with and without a file that was read ---- */
+
+/* The row of the old file that a reading comes from: rows that are no readings were left out. */
+static gonio_status find_row(gonio_i_csv_reader *old, size_t line)
+{
+    gonio_status status = gonio_i_csv_next(old);
+    while (status == GONIO_OK && old->cells > 0 && old->line < line) {
+        status = gonio_i_csv_next(old);
+    }
+    return status;
+}
+
+static gonio_status print_rows_over(printer *p, gonio_i_csv_reader *old)
+{
+    gonio_status status = gonio_i_csv_take_units(old);
+    if (status == GONIO_OK) {
+        print_names(p, old->name);
+    }
+    for (size_t k = 0; k < p->readings->count && status == GONIO_OK; k++) {
+        status = find_row(old, p->readings->line[k]);
+        if (status == GONIO_OK) {
+            print_row(p, k, old->cell);
+        }
+    }
+    return status;
+}
 
 static gonio_status print_over(gonio_context *context, printer *p, const gonio_i_csv_kept *kept,
                                const char *command)
@@ -237,19 +324,11 @@ static gonio_status print_over(gonio_context *context, printer *p, const gonio_i
         return status;
     }
     p->delimiter = old.delimiter;
-    status = choose_columns(context, p, &kept->columns);
+    status = choose_columns(context, p, kept);
     if (status == GONIO_OK) {
         status = print_comments(p, command) ? GONIO_OK : GONIO_ERROR_MEMORY;
     }
-    if (status == GONIO_OK) {
-        print_names(p, old.name);
-    }
-    for (size_t k = 0; k < p->readings->count && status == GONIO_OK; k++) {
-        status = gonio_i_csv_next(&old);
-        if (status == GONIO_OK) {
-            print_row(p, k, old.cell);
-        }
-    }
+    status = status == GONIO_OK ? print_rows_over(p, &old) : status;
     gonio_i_csv_close(&old);
     return status;
 }
