@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "convention.h"
+#include "horizon.h"
 
 enum { DIGITS = 9 };
 
@@ -268,36 +269,54 @@ static void move(gonio_readings *r, size_t from, size_t to)
     memmove(r->given[to], r->given[from], sizeof *r->given);
 }
 
-/* Takes out readings that say again what the first of their directions says. */
-static gonio_status drop_repeats(gonio_i_import *in)
+/* Takes out the readings that are marked, and counts them. */
+static void take_out(gonio_i_import *in, const bool *marked, gonio_i_reason reason)
 {
     gonio_readings *r = in->readings;
-    const gonio_status status = gonio_i_readings_group(in->context, r);
-    if (status != GONIO_OK) {
-        return status;
-    }
-    bool *repeated = gonio_i_allocate(in->context, r->count, sizeof *repeated);
-    if (repeated == NULL) {
-        return GONIO_ERROR_MEMORY;
-    }
-    for (size_t k = 0; k < r->count; k++) {
-        repeated[k] = r->first_same[k] != k && same_values(r, k, r->first_same[k]);
-        in->left_out[GONIO_I_REPEATED] += repeated[k];
-    }
     size_t kept = 0;
     for (size_t k = 0; k < r->count; k++) {
-        if (!repeated[k]) {
+        in->left_out[reason] += marked[k];
+        if (!marked[k]) {
             move(r, k, kept++);
         }
     }
     r->count = kept;
-    free(repeated);
-    return GONIO_OK;
+}
+
+/* Marks readings that say again what the first of their directions says. */
+static gonio_status find_repeats(gonio_context *context, gonio_readings *r, bool *repeated)
+{
+    const gonio_status status = gonio_i_readings_group(context, r);
+    for (size_t k = 0; k < r->count && status == GONIO_OK; k++) {
+        repeated[k] = r->first_same[k] != k && same_values(r, k, r->first_same[k]);
+    }
+    return status;
+}
+
+static gonio_status drop_useless(gonio_i_import *in)
+{
+    bool *marked = gonio_i_allocate(in->context, in->readings->count, sizeof *marked);
+    if (marked == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    gonio_status status = find_repeats(in->context, in->readings, marked);
+    if (status == GONIO_OK) {
+        take_out(in, marked, GONIO_I_REPEATED);
+    }
+    if (status == GONIO_OK && in->how.zeros == GONIO_ZEROS_MISSING) {
+        status = gonio_i_horizon_find(in->context, in->readings, marked);
+        if (status == GONIO_OK) {
+            take_out(in, marked, GONIO_I_LOST);
+        }
+    }
+    free(marked);
+    return status;
 }
 
 static const char *const reasons[GONIO_I_REASONS] = {
     [GONIO_I_BELOW_HORIZON] = "at or below the horizon",
     [GONIO_I_NOT_MEASURED] = "not measured",
+    [GONIO_I_LOST] = "too low or too high near the horizon",
     [GONIO_I_REPEATED] = "said again of the same directions",
     [GONIO_I_EXTRAPOLATED] = "extrapolated",
     [GONIO_I_TRANSMITTED] = "transmitted light",
@@ -369,7 +388,7 @@ gonio_status gonio_i_import_end(gonio_i_import *import, gonio_status status)
         status = refuse_nothing(import);
     }
     if (status == GONIO_OK && import->lenient) {
-        status = drop_repeats(import);
+        status = drop_useless(import);
     }
     if (status == GONIO_OK && (!import->quiet || anything_changed(import))) {
         status = write_note(import);

@@ -14,7 +14,8 @@ typedef enum gonio_i_reason {
     GONIO_I_BELOW_HORIZON,
     GONIO_I_NOT_MEASURED, /* no value, or 0 where 0 means that */
     GONIO_I_REPEATED,     /* the same directions and values */
-    GONIO_I_EXTRAPOLATED, /* the file says that the value was made up, or that it is too low */
+    GONIO_I_LOST,         /* cut off near the horizon, or stray light there (horizon.h) */
+    GONIO_I_EXTRAPOLATED, /* the file says that the value was made up */
     GONIO_I_TRANSMITTED,
     GONIO_I_REASONS
 } gonio_i_reason;
@@ -47,10 +48,11 @@ typedef struct gonio_i_row {
 void gonio_i_import_begin(gonio_i_import *import, gonio_context *context, gonio_readings *readings,
                           const char *taken_as, const gonio_convention *stated);
 
-/* For the files of instruments and their programs, which are no plans: rows without a value are left
- * out, as are rows that repeat the values of the same directions (theta_o = 0 for each azimuth);
- * other repeats are accepted, and values below zero, which are noise about a dark level, are taken
- * as 0. All are counted. */
+/* For the files of instruments and their programs, which are no plans: rows without a value are
+ * left out, as are rows that repeat the values of the same directions (theta_o = 0 for each
+ * azimuth); other repeats are accepted, and values below zero, which are noise about a dark level,
+ * are taken as 0. Where 0 means not measured, readings lost near the horizon are left out too. All
+ * are counted. */
 void gonio_i_import_leniently(gonio_i_import *import);
 
 /* The channels, before the first row. wavelength[channels], in the convention's unit, or NULL.

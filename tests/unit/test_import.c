@@ -178,6 +178,48 @@ static void test_repeats_and_noise(void **state)
     gonio_readings_free(&readings);
 }
 
+/* A fan at 50 degrees: shadowed from 80 on at the mirror's side, stray light at the other. Where 0
+ * is a value, nothing is judged. */
+static void test_what_is_lost_near_the_horizon(void **state)
+{
+    (void)state;
+    static const char fan[] =
+        "type bsdf_data\n50 0\n0 0 0.01\n10 0 0.01\n20 0 0.011\n30 0 0.012\n"
+        "40 0 0.02\n60 0 0.03\n70 0 0.045\n75 0 0.06\n80 0 0.002\n85 0 1e-7\n"
+        "10 180 0.01\n20 180 0.01\n30 180 0.0099\n70 180 0.009\n75 180 0.008\n"
+        "80 180 0.0001\n85 180 0.5\n";
+    gonio_readings_options options;
+    gonio_readings_options_default(&options);
+    char *folder = support_folder();
+    gonio_readings *readings = NULL;
+    assert_int_equal(made_readings(NULL, folder, "r.txt", fan, &options, &readings), GONIO_OK);
+    assert_int_equal(gonio_readings_describe(readings)->count, 13);
+    assert_non_null(strstr(gonio_readings_describe(readings)->note[0],
+                           "left out: 4 too low or too high near the horizon"));
+    gonio_readings_free(&readings);
+    options.as.zeros = GONIO_ZEROS_DARK;
+    assert_int_equal(made_readings(NULL, folder, "r.txt", fan, &options, &readings), GONIO_OK);
+    assert_int_equal(gonio_readings_describe(readings)->count, 17);
+    gonio_readings_free(&readings);
+    support_remove(folder);
+}
+
+/* A narrow peak towards grazing is no shadow. */
+static void test_a_peak_near_the_horizon_stays(void **state)
+{
+    (void)state;
+    static const char fan[] =
+        "type bsdf_data\n70 0\n0 0 0.01\n10 0 0.01\n20 0 0.01\n30 0 0.01\n"
+        "40 0 0.011\n50 0 0.012\n60 0 0.014\n68 0 1\n70 0 50\n72 0 10\n75 0 1\n"
+        "78 0 0.05\n80 0 0.03\n85 0 0.025\n";
+    char *folder = support_folder();
+    gonio_readings *readings = NULL;
+    assert_int_equal(made_readings(NULL, folder, "r.txt", fan, NULL, &readings), GONIO_OK);
+    assert_int_equal(gonio_readings_describe(readings)->count, 14);
+    gonio_readings_free(&readings);
+    support_remove(folder);
+}
+
 /* ---- about the mirror direction ---- */
 
 static void test_directions_about_the_mirror(void **state)
@@ -218,6 +260,8 @@ int main(void)
         cmocka_unit_test(test_sides_turns_and_the_horizon),
         cmocka_unit_test(test_zeros),
         cmocka_unit_test(test_repeats_and_noise),
+        cmocka_unit_test(test_what_is_lost_near_the_horizon),
+        cmocka_unit_test(test_a_peak_near_the_horizon_stays),
         cmocka_unit_test(test_directions_about_the_mirror),
     };
     return cmocka_run_group_tests_name("from the conventions of files to readings", tests, NULL,
