@@ -191,7 +191,8 @@ GONIO_API void gonio_table_free(gonio_table **table);
 GONIO_API const double *gonio_table_values(const gonio_table *table);
 
 /* The BRDF at any directions, trilinear between bin centres in (sqrt theta_h, theta_d, phi_d),
- * phi_d periodic, bins without data left out and the weights of the others scaled up. Returns
+ * phi_d periodic, bins without data left out and the weights of the others scaled up. Within the
+ * first bin of theta_h or theta_d it fades into the mean over phi_d, which means nothing at 0. Returns
  * false, and rho = 0, if either direction is at or below the horizon or none of the bins around has
  * data. */
 GONIO_API bool gonio_table_value(const gonio_table *table, gonio_half_difference coordinates,

@@ -389,9 +389,9 @@ gonio_half_difference gonio_i_row_coordinates(const gonio_basis_view *view, size
 }
 
 int gonio_i_rows_around(const gonio_basis *basis, gonio_half_difference at, int channel,
-                        gonio_i_row_weight around[GONIO_I_TRILINEAR])
+                        gonio_i_row_weight around[GONIO_I_MOST_POINTS])
 {
-    gonio_i_cell_weight cells[GONIO_I_TRILINEAR];
+    gonio_i_cell_weight cells[GONIO_I_MOST_POINTS];
     const int points = gonio_i_cells_around(basis->representation, at, cells);
     for (int k = 0; k < points; k++) {
         const size_t position = gonio_basis_position(basis, cells[k].cell);
@@ -415,7 +415,7 @@ bool gonio_basis_row_at(const gonio_basis *basis, gonio_half_difference coordina
 void gonio_i_basis_row_at(const gonio_basis *basis, gonio_half_difference coordinates, int channel,
                           size_t components, double *mean, double *row)
 {
-    gonio_i_row_weight around[GONIO_I_TRILINEAR];
+    gonio_i_row_weight around[GONIO_I_MOST_POINTS];
     const int points = gonio_i_rows_around(basis, coordinates, channel, around);
     *mean = 0.0;
     memset(row, 0, components * sizeof *row);

@@ -119,7 +119,7 @@ typedef struct gonio_i_row_weight {
 
 /* The rows that a reading in one channel at a direction sees; returns how many. */
 int gonio_i_rows_around(const gonio_basis *basis, gonio_half_difference at, int channel,
-                        gonio_i_row_weight around[GONIO_I_TRILINEAR]);
+                        gonio_i_row_weight around[GONIO_I_MOST_POINTS]);
 
 /* Finds the cell that stands for each one of the grid: part of _finish, of use before. */
 gonio_status gonio_i_basis_map_cells(gonio_context *context, gonio_basis *basis);

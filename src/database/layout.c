@@ -9,12 +9,12 @@ static const struct {
     const char *name;
     int phi_bins; /* of a cell */
     int middle;   /* which of them stands for the cell */
-    int points;   /* of an interpolation, between these bins */
-    void (*interpolate)(gonio_half_difference at, gonio_i_stencil *stencil);
+    /* Between these bins; returns of how many. */
+    int (*interpolate)(gonio_half_difference at, gonio_i_stencil *stencil);
 } representations[] = {
-    [GONIO_BIVARIATE] = {"bivariate", GONIO_PHI_D_BINS, 0, GONIO_I_BILINEAR, gonio_i_bilinear},
-    [GONIO_FULL] = {"full", 1, 0, GONIO_I_TRILINEAR, gonio_i_trilinear},
-    [GONIO_SECTORED] = {"sectored", GONIO_SECTOR_BINS, GONIO_SECTOR_BINS / 2, GONIO_I_TRILINEAR,
+    [GONIO_BIVARIATE] = {"bivariate", GONIO_PHI_D_BINS, 0, gonio_i_bilinear},
+    [GONIO_FULL] = {"full", 1, 0, gonio_i_trilinear},
+    [GONIO_SECTORED] = {"sectored", GONIO_SECTOR_BINS, GONIO_SECTOR_BINS / 2,
                         gonio_i_trilinear_sectors},
 };
 
@@ -138,11 +138,10 @@ gonio_half_difference gonio_i_cell_direction(gonio_representation representation
 }
 
 int gonio_i_cells_around(gonio_representation representation, gonio_half_difference at,
-                         gonio_i_cell_weight around[GONIO_I_TRILINEAR])
+                         gonio_i_cell_weight around[GONIO_I_MOST_POINTS])
 {
-    gonio_i_stencil stencil[GONIO_I_TRILINEAR];
-    const int points = representations[representation].points;
-    representations[representation].interpolate(at, stencil);
+    gonio_i_stencil stencil[GONIO_I_MOST_POINTS];
+    const int points = representations[representation].interpolate(at, stencil);
     for (int k = 0; k < points; k++) {
         around[k] = (gonio_i_cell_weight){gonio_cell_of_bin(representation, stencil[k].bin),
                                           stencil[k].weight};

@@ -104,6 +104,6 @@ typedef struct gonio_i_cell_weight {
 /* The cells around a direction, linear between their centres (grid.h); returns how many. Cells of
  * the grid: not all of them need to have rows. */
 int gonio_i_cells_around(gonio_representation representation, gonio_half_difference at,
-                         gonio_i_cell_weight around[GONIO_I_TRILINEAR]);
+                         gonio_i_cell_weight around[GONIO_I_MOST_POINTS]);
 
 #endif

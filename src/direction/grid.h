@@ -14,7 +14,11 @@ bool gonio_i_is_bin(gonio_bin bin);
  * bins: cosines[theta_d][phi_d]. */
 void gonio_i_slab_cosines(int theta_h, double *cosines);
 
-enum { GONIO_I_BILINEAR = 4, GONIO_I_TRILINEAR = 8 };
+enum {
+    GONIO_I_BILINEAR = 4,
+    GONIO_I_TRILINEAR = 8,
+    GONIO_I_MOST_POINTS = GONIO_I_TRILINEAR + GONIO_I_BILINEAR * GONIO_SECTORS
+};
 
 typedef struct gonio_i_stencil {
     gonio_bin bin;
@@ -23,13 +27,17 @@ typedef struct gonio_i_stencil {
 
 /* The bins around a point, linear in sqrt(theta_h), theta_d and (trilinear) phi_d, which is
  * periodic with period pi; constant beyond the first and the last centre. Bilinear: phi_d = 0 in
- * every bin. */
-void gonio_i_bilinear(gonio_half_difference coordinates, gonio_i_stencil stencil[GONIO_I_BILINEAR]);
-void gonio_i_trilinear(gonio_half_difference coordinates,
-                       gonio_i_stencil stencil[GONIO_I_TRILINEAR]);
+ * every bin. Each returns how many there are.
+ *
+ * Where theta_h or theta_d is 0 there is no phi_d. From the first centre of either on towards 0
+ * what is trilinear becomes the mean over 12 phi_d, so that rounding of phi_d does not matter. The
+ * first 8 points are the usual ones; the others have the same theta_h and theta_d. */
+int gonio_i_bilinear(gonio_half_difference coordinates, gonio_i_stencil stencil[GONIO_I_BILINEAR]);
+int gonio_i_trilinear(gonio_half_difference coordinates,
+                      gonio_i_stencil stencil[GONIO_I_MOST_POINTS]);
 
 /* The same between the centres of sectors of phi_d; the bins are those in the middle of them. */
-void gonio_i_trilinear_sectors(gonio_half_difference coordinates,
-                               gonio_i_stencil stencil[GONIO_I_TRILINEAR]);
+int gonio_i_trilinear_sectors(gonio_half_difference coordinates,
+                              gonio_i_stencil stencil[GONIO_I_MOST_POINTS]);
 
 #endif

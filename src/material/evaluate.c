@@ -116,7 +116,7 @@ static gonio_status look_up(gonio_context *context, const gonio_material *materi
     gonio_status status = GONIO_ERROR_MEMORY;
     if (places != NULL && w.buffer[0] != NULL && w.buffer[1] != NULL) {
         for (size_t k = 0; k < count; k++) {
-            gonio_i_stencil stencil[GONIO_I_TRILINEAR];
+            gonio_i_stencil stencil[GONIO_I_MOST_POINTS];
             places[k].index = k;
             places[k].at = gonio_half_difference_from_pair(pairs[k]);
             gonio_i_trilinear(places[k].at, stencil);

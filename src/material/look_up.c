@@ -6,7 +6,7 @@ static const double *bin_values(const double *const *slab, gonio_bin bin)
     return slab[bin.theta_h] + (size_t)bin.theta_d * GONIO_PHI_D_BINS + (size_t)bin.phi_d;
 }
 
-void gonio_i_stencil_slabs(const gonio_i_stencil stencil[GONIO_I_TRILINEAR], int *first, int *last)
+void gonio_i_stencil_slabs(const gonio_i_stencil *stencil, int *first, int *last)
 {
     *first = stencil[0].bin.theta_h;
     *last = stencil[0].bin.theta_h;
@@ -27,10 +27,10 @@ bool gonio_i_look_up(const double *const slab[GONIO_THETA_H_BINS],
     if (cosine_i <= 0.0 || cosine_o <= 0.0) {
         return false;
     }
-    gonio_i_stencil stencil[GONIO_I_TRILINEAR];
-    gonio_i_trilinear(coordinates, stencil);
+    gonio_i_stencil stencil[GONIO_I_MOST_POINTS];
+    const int points = gonio_i_trilinear(coordinates, stencil);
     double total = 0.0;
-    for (int k = 0; k < GONIO_I_TRILINEAR; k++) {
+    for (int k = 0; k < points; k++) {
         const double *value = bin_values(slab, stencil[k].bin);
         if (value[0] >= 0.0) {
             total += stencil[k].weight;

@@ -6,8 +6,8 @@
 
 #include "../direction/grid.h"
 
-/* The first and the last slab that a stencil has bins in. */
-void gonio_i_stencil_slabs(const gonio_i_stencil stencil[GONIO_I_TRILINEAR], int *first, int *last);
+/* The first and the last slab that a trilinear stencil has bins in. */
+void gonio_i_stencil_slabs(const gonio_i_stencil *stencil, int *first, int *last);
 
 /* As gonio_table_value, from the slabs in which the point's stencil has bins; the others may be
  * NULL. Weights of bins without data go to the others. */

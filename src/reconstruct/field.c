@@ -13,7 +13,7 @@
 double gonio_i_field_at(const gonio_basis *basis, const double *field, int channel,
                         gonio_half_difference at)
 {
-    gonio_i_row_weight around[GONIO_I_TRILINEAR];
+    gonio_i_row_weight around[GONIO_I_MOST_POINTS];
     const int points = gonio_i_rows_around(basis, at, channel, around);
     double value = 0.0;
     for (int k = 0; k < points; k++) {

@@ -243,11 +243,11 @@ void gonio_i_surface_value(const gonio_i_surface *surface, const gonio_i_meeting
             return;
         }
     }
-    gonio_i_stencil stencil[GONIO_I_TRILINEAR];
-    gonio_i_trilinear(meeting->at, stencil);
+    gonio_i_stencil stencil[GONIO_I_MOST_POINTS];
+    const int points = gonio_i_trilinear(meeting->at, stencil);
     double total = 0.0;
     rho[0] = rho[1] = rho[2] = 0.0;
-    for (int k = 0; k < GONIO_I_TRILINEAR; k++) {
+    for (int k = 0; k < points; k++) {
         const float *bin = surface->bin[gonio_bin_index(stencil[k].bin)];
         const double weight = stencil[k].weight * (double)bin[3];
         for (int channel = 0; channel < GONIO_CHANNELS; channel++) {

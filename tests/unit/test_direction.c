@@ -185,7 +185,7 @@ static void test_interpolation_is_exact_for_linear_functions(void **state)
     gonio_i_random_seed(&random, 5, 0);
     for (int k = 0; k < PAIRS; k++) {
         gonio_half_difference c = random_inside(&random);
-        gonio_i_stencil stencil[GONIO_I_TRILINEAR];
+        gonio_i_stencil stencil[GONIO_I_MOST_POINTS];
         double weight = 0.0;
         double value = 0.0;
         gonio_i_trilinear(c, stencil);
@@ -215,9 +215,9 @@ static void test_interpolation_at_the_edges(void **state)
 {
     (void)state;
     const gonio_half_difference points[] = {
-        {0.0, 0.0, 0.0}, {M_PI / 2.0, M_PI / 2.0, M_PI - 1e-9}, {0.0, M_PI / 2.0, 0.0}};
+        {5e-5, 0.01, 0.0}, {M_PI / 2.0, M_PI / 2.0, M_PI - 1e-9}, {5e-5, M_PI / 2.0, 0.0}};
     for (size_t k = 0; k < sizeof points / sizeof *points; k++) {
-        gonio_i_stencil stencil[GONIO_I_TRILINEAR];
+        gonio_i_stencil stencil[GONIO_I_MOST_POINTS];
         double first = 0.0;
         double last = 0.0;
         gonio_i_trilinear(points[k], stencil);
@@ -233,6 +233,35 @@ static void test_interpolation_at_the_edges(void **state)
     }
 }
 
+/* Where phi_d means nothing it does not matter, and it comes to matter without a jump. */
+static void test_interpolation_at_the_poles(void **state)
+{
+    (void)state;
+    static const gonio_half_difference poles[] = {
+        {0.0, 0.8, 0.0}, {0.6, 0.0, 0.0}, {0.0, 0.0, 0.0}};
+    for (size_t k = 0; k < 3 * GONIO_SECTORS; k++) {
+        gonio_half_difference c = poles[k / GONIO_SECTORS];
+        gonio_i_stencil stencil[GONIO_I_MOST_POINTS];
+        double sum[2][2] = {{0.0}};
+        c.phi_d = 0.1 + (double)(k % GONIO_SECTORS) * M_PI / GONIO_SECTORS;
+        for (int near = 0; near < 2; near++) {
+            c.theta_h = near == 1 && poles[k / GONIO_SECTORS].theta_h == 0.0 ? 1e-9 : c.theta_h;
+            c.theta_d = near == 1 && poles[k / GONIO_SECTORS].theta_d == 0.0 ? 1e-9 : c.theta_d;
+            const int points = gonio_i_trilinear(c, stencil);
+            for (int j = 0; j < points; j++) {
+                sum[near][0] += stencil[j].weight;
+                sum[near][1] +=
+                    stencil[j].weight * cos(2.0 * gonio_bin_centre(stencil[j].bin).phi_d);
+            }
+            assert_close(sum[near][0], 1.0, 1e-14);
+            assert_close(sum[near][1], 0.0, near == 1 ? 1e-4 : 1e-14);
+        }
+    }
+    gonio_i_stencil stencil[GONIO_I_MOST_POINTS];
+    const gonio_half_difference first = gonio_bin_centre((gonio_bin){0, 0, 7});
+    assert_int_equal(gonio_i_trilinear(first, stencil), GONIO_I_TRILINEAR);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -244,6 +273,7 @@ int main(void)
         cmocka_unit_test(test_every_bin),
         cmocka_unit_test(test_bins_at_the_edges),
         cmocka_unit_test(test_interpolation_is_exact_for_linear_functions),
+        cmocka_unit_test(test_interpolation_at_the_poles),
         cmocka_unit_test(test_interpolation_at_the_edges),
     };
     return cmocka_run_group_tests_name("direction", tests, NULL, NULL);

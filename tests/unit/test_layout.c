@@ -94,7 +94,7 @@ static void test_directions_of_cells(void **state)
                 gonio_cosines(at, &incident, &outgoing);
                 assert_true(incident > 0.0 && outgoing > 0.0);
             }
-            gonio_i_cell_weight around[GONIO_I_TRILINEAR];
+            gonio_i_cell_weight around[GONIO_I_MOST_POINTS];
             const int points = gonio_i_cells_around(representation, at, around);
             double all = 0.0;
             double here = 0.0;

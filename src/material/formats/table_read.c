@@ -25,12 +25,12 @@ static void release(void *self)
 
 static void evaluate_pair(const table *t, gonio_pair pair, double *values)
 {
-    gonio_i_stencil stencil[GONIO_I_TRILINEAR];
-    gonio_i_trilinear(gonio_half_difference_from_pair(pair), stencil);
+    gonio_i_stencil stencil[GONIO_I_MOST_POINTS];
+    const int points = gonio_i_trilinear(gonio_half_difference_from_pair(pair), stencil);
     for (size_t c = 0; c < t->channels; c++) {
         double sum = 0.0;
         double total = 0.0;
-        for (int k = 0; k < GONIO_I_TRILINEAR; k++) {
+        for (int k = 0; k < points; k++) {
             const size_t bin = (size_t)gonio_bin_index(stencil[k].bin);
             const double here = (double)t->value[bin * t->channels + c];
             sum += here >= 0.0 ? stencil[k].weight * here : 0.0;
