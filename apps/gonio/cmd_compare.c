@@ -1,11 +1,10 @@
-/* gonio compare: how far BRDFs are from a reference. */
+/* gonio compare: how far materials or readings are from a reference, which is either. */
 #include "command_line.h"
 #include "inputs.h"
 #include "json_output.h"
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <sys/stat.h>
 
 typedef struct options {
     const char *leave_out;
@@ -68,186 +67,245 @@ static void print_comparison(const char *path, const gonio_comparison *c,
     }
 }
 
-/* `seen` is NULL without --render. */
-static gonio_status compare_one(tool *t, const gonio_material *reference,
-                                const gonio_reference *seen, const char *path, const options *o,
-                                json_t *results)
+/* ---- two materials ---- */
+
+/* What is compared with. */
+typedef struct comparing {
+    const options *o;
+    tool_input reference;
+    gonio_reference *seen; /* the rendered reference; NULL without --render */
+    tool_input used;       /* readings of --leave-out; none without */
+    bool left_out_said;
+    json_t *results;
+} comparing;
+
+static gonio_status compare_materials(tool *t, comparing *c, const tool_input *other)
 {
-    gonio_material *other = NULL;
     gonio_comparison comparison;
     gonio_image_error error;
-    const gonio_image_error *rendered = seen != NULL ? &error : NULL;
-    gonio_status status = tool_open_material(t, path, &other);
-    if (status == GONIO_OK) {
-        status = gonio_compare(t->context, reference, other, &comparison);
+    const gonio_image_error *rendered = c->seen != NULL ? &error : NULL;
+    gonio_status status =
+        gonio_compare(t->context, c->reference.material, other->material, &comparison);
+    if (status == GONIO_OK && c->seen != NULL) {
+        status = gonio_reference_compare(t->context, c->seen, other->material, &error);
     }
-    if (status == GONIO_OK && seen != NULL) {
-        status = gonio_reference_compare(t->context, seen, other, &error);
-    }
-    gonio_material_free(&other);
     if (status == GONIO_OK && tool_json) {
-        json_array_append_new(results, comparison_json(path, &comparison, rendered));
+        json_array_append_new(c->results, comparison_json(other->path, &comparison, rendered));
     } else if (status == GONIO_OK) {
-        print_comparison(path, &comparison, rendered, o);
+        print_comparison(other->path, &comparison, rendered, c->o);
     }
     return status;
 }
 
-/* ---- readings ---- */
+/* ---- where readings are among the two ---- */
 
-static const gonio_readings_options any_values = {.size = sizeof any_values,
-                                                  .values_needed = true,
-                                                  .average_repeats = true,
-                                                  .negative_to_zero = true};
+/* Values of the reference and of the other at the same directions, in the same channels. */
+typedef struct paired {
+    gonio_readings *reference;
+    gonio_readings *other;
+    bool *left_out; /* [count] */
+    size_t left_out_count;
+} paired;
 
-/* The other's values at the directions of the reference. */
-static gonio_status read_like(tool *t, const char *reference, const char *path,
-                              gonio_readings **other)
+static void free_paired(paired *p)
 {
-    gonio_readings *known = NULL;
-    gonio_status status = tool_read_readings(t, path, &any_values, &known);
+    gonio_readings_free(&p->reference);
+    gonio_readings_free(&p->other);
+    free(p->left_out);
+}
+
+/* Values of a material or of readings at the directions of readings. */
+static gonio_status take_values(tool *t, const tool_input *from, gonio_readings *at)
+{
+    return from->readings != NULL ? gonio_readings_look_up(t->context, at, from->readings)
+                                  : gonio_measure_material(t->context, at, from->material, NULL);
+}
+
+/* At the directions of the reference if it is readings, of the other if not. */
+static gonio_status pair_values(tool *t, const comparing *c, const tool_input *other, paired *p)
+{
+    const bool known = c->reference.readings != NULL;
+    const gonio_readings *at = known ? c->reference.readings : other->readings;
+    gonio_status status = gonio_readings_copy(t->context, at, &p->reference);
     if (status == GONIO_OK) {
-        status = tool_read_readings(t, reference, &any_values, other);
+        status = gonio_readings_copy(t->context, at, &p->other);
     }
     if (status == GONIO_OK) {
-        status = gonio_readings_look_up(t->context, *other, known);
+        status =
+            known ? take_values(t, other, p->other) : take_values(t, &c->reference, p->reference);
     }
-    gonio_readings_free(&known);
+    return status == GONIO_OK ? gonio_readings_share_channels(t->context, p->reference, p->other)
+                              : status;
+}
+
+/* How many of the used directions are among the readings; says so unless all of them are. */
+static gonio_status check_used(tool *t, comparing *c, const gonio_readings *readings)
+{
+    const gonio_readings_view *used = gonio_readings_describe(c->used.readings);
+    bool *found = calloc(used->count, sizeof *found);
+    size_t count = 0;
+    const gonio_status status =
+        found != NULL ? gonio_readings_find(t->context, c->used.readings, readings, found)
+                      : GONIO_ERROR_MEMORY;
+    for (size_t k = 0; k < used->count && status == GONIO_OK; k++) {
+        count += found[k];
+    }
+    if (status == GONIO_OK && count < used->count && !c->left_out_said) {
+        char text[512];
+        snprintf(text, sizeof text,
+                 "--leave-out: %zu of %zu directions of %s are among the readings", count,
+                 used->count, c->used.path);
+        tool_say(&t->messages, count == 0 ? GONIO_MESSAGE_WARNING : GONIO_MESSAGE_NOTE, text);
+        c->left_out_said = true;
+    }
+    free(found);
     return status;
 }
 
-static gonio_status compare_readings(tool *t, const char *reference_path,
-                                     const gonio_readings *reference, const char *path,
-                                     const bool *left_out, json_t *results)
+/* Which of the readings do not count, for they were used to make the others. */
+static gonio_status find_left_out(tool *t, comparing *c, paired *p)
 {
-    gonio_readings *other = NULL;
+    const size_t count = gonio_readings_describe(p->reference)->count;
+    p->left_out = calloc(count, sizeof *p->left_out);
+    if (p->left_out == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    if (c->used.readings == NULL) {
+        return GONIO_OK;
+    }
+    gonio_status status =
+        gonio_readings_find(t->context, p->reference, c->used.readings, p->left_out);
+    for (size_t k = 0; k < count; k++) {
+        p->left_out_count += p->left_out[k];
+    }
+    return status == GONIO_OK ? check_used(t, c, p->reference) : status;
+}
+
+static void report_readings(const comparing *c, const char *path, const paired *p,
+                            const gonio_error *error, size_t compared)
+{
+    const size_t missing =
+        gonio_readings_describe(p->reference)->count - p->left_out_count - compared;
+    if (tool_json) {
+        json_array_append_new(
+            c->results, json_pack("{s:s, s:I, s:I, s:I, s:o}", "file", path, "readings",
+                                  (json_int_t)compared, "left_out", (json_int_t)p->left_out_count,
+                                  "missing", (json_int_t)missing, "all", tool_error_json(error)));
+        return;
+    }
+    print_row(path, error, NULL);
+    printf("  %zu readings compared", compared);
+    if (missing > 0) {
+        printf(", %zu without a value in both", missing);
+    }
+    putchar('\n');
+}
+
+static gonio_status compare_readings(tool *t, comparing *c, const tool_input *other)
+{
+    paired p = {0};
     gonio_error error;
     size_t compared = 0;
-    gonio_status status = read_like(t, reference_path, path, &other);
+    gonio_status status = pair_values(t, c, other, &p);
     if (status == GONIO_OK) {
-        status = gonio_compare_readings(t->context, reference, other, left_out, &error, &compared);
+        status = find_left_out(t, c, &p);
     }
-    gonio_readings_free(&other);
-    if (status == GONIO_OK && tool_json) {
-        json_array_append_new(results,
-                              json_pack("{s:s, s:I, s:o}", "file", path, "readings",
-                                        (json_int_t)compared, "all", tool_error_json(&error)));
-    } else if (status == GONIO_OK) {
-        print_row(path, &error, NULL);
-        printf("  %zu readings compared\n", compared);
+    if (status == GONIO_OK) {
+        status =
+            gonio_compare_readings(t->context, p.reference, p.other, p.left_out, &error, &compared);
     }
+    if (status == GONIO_OK) {
+        report_readings(c, other->path, &p, &error, compared);
+    }
+    free_paired(&p);
     return status;
 }
 
-/* Which of the reference's readings were used to make the others. */
-static gonio_status find_left_out(tool *t, const gonio_readings *reference, const char *used_path,
-                                  bool **left_out)
+/* ---- any two ---- */
+
+/* Repeats have one value, so that readings do not differ from themselves. */
+static gonio_status open_input(tool *t, const char *path, tool_input *input)
 {
-    gonio_readings *used = NULL;
+    const gonio_status status = tool_open_input(t, path, input);
+    return status == GONIO_OK && input->readings != NULL
+               ? gonio_readings_average_repeats(t->context, input->readings)
+               : status;
+}
+
+static gonio_status compare_one(tool *t, comparing *c, const char *path)
+{
+    tool_input other = {0};
+    gonio_status status = open_input(t, path, &other);
+    if (status == GONIO_OK && c->seen != NULL && other.material == NULL) {
+        tool_refuse(t, "--render needs whole materials, but %s is a readings file", path);
+        status = GONIO_ERROR_ARGUMENT;
+    }
+    if (status == GONIO_OK && c->used.readings != NULL && c->reference.readings == NULL &&
+        other.readings == NULL) {
+        tool_refuse(t, "--leave-out needs readings, but %s is not a readings file", path);
+        status = GONIO_ERROR_ARGUMENT;
+    }
+    if (status == GONIO_OK) {
+        status = c->reference.readings != NULL || other.readings != NULL
+                     ? compare_readings(t, c, &other)
+                     : compare_materials(t, c, &other);
+    }
+    tool_close_input(&other);
+    return status;
+}
+
+/* What is needed of the reference and of --leave-out before anything is compared. */
+static gonio_status prepare(tool *t, comparing *c, const char *path)
+{
     const gonio_readings_options directions = {
         .size = sizeof directions, .average_repeats = true, .negative_to_zero = true};
-    *left_out = calloc(gonio_readings_describe(reference)->count, sizeof **left_out);
-    gonio_status status = *left_out == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
-    if (status == GONIO_OK && used_path != NULL) {
-        status = tool_read_readings(t, used_path, &directions, &used);
+    gonio_status status = open_input(t, path, &c->reference);
+    if (status == GONIO_OK && c->o->render && c->reference.material == NULL) {
+        tool_refuse(t, "--render needs whole materials, but %s is a readings file", path);
+        return GONIO_ERROR_ARGUMENT;
     }
-    if (status == GONIO_OK && used != NULL) {
-        status = gonio_readings_find(t->context, reference, used, *left_out);
+    if (status == GONIO_OK && c->o->leave_out != NULL) {
+        c->used.path = c->o->leave_out;
+        status = tool_read_readings(t, c->o->leave_out, &directions, &c->used.readings);
     }
-    gonio_readings_free(&used);
+    if (status == GONIO_OK && c->o->render) {
+        status = gonio_reference_create(t->context, c->reference.material, NULL, &c->seen);
+    }
     return status;
 }
 
-static gonio_status compare_all_readings(tool *t, const options *o, const char **paths,
-                                         size_t count, json_t *results)
+static int compare_all(tool *t, comparing *c, const char **paths, size_t count)
 {
-    gonio_readings *reference = NULL;
-    bool *left_out = NULL;
-    gonio_status status = tool_read_readings(t, paths[0], &any_values, &reference);
-    if (status == GONIO_OK) {
-        status = find_left_out(t, reference, o->leave_out, &left_out);
+    gonio_status status = prepare(t, c, paths[0]);
+    if (status == GONIO_OK && !tool_json) {
+        print_headings(c->o->render);
     }
     for (size_t k = 1; k < count && status == GONIO_OK; k++) {
-        status = compare_readings(t, paths[0], reference, paths[k], left_out, results);
+        status = compare_one(t, c, paths[k]);
     }
-    free(left_out);
-    gonio_readings_free(&reference);
-    return status;
-}
-
-/* ---- tables ---- */
-
-static gonio_status compare_all_tables(tool *t, const options *o, const char **paths, size_t count,
-                                       json_t *results)
-{
-    gonio_material *reference = NULL;
-    gonio_reference *seen = NULL;
-    gonio_status status = tool_open_material(t, paths[0], &reference);
-    if (status == GONIO_OK && o->render) {
-        status = gonio_reference_create(t->context, reference, NULL, &seen);
-    }
-    for (size_t k = 1; k < count && status == GONIO_OK; k++) {
-        status = compare_one(t, reference, seen, paths[k], o, results);
-    }
-    gonio_reference_free(&seen);
-    gonio_material_free(&reference);
-    return status;
-}
-
-static bool is_pipe(const char *path)
-{
-    struct stat status;
-    return stat(path, &status) == 0 && !S_ISREG(status.st_mode);
-}
-
-static bool check(const tool *t, const options *o, const char *reference, bool readings)
-{
-    if (readings && is_pipe(reference)) {
-        return tool_refuse(t, "%s: REFERENCE is read more than once: give a file, not a pipe",
-                           reference);
-    }
-    if (o->leave_out != NULL && !readings) {
-        return tool_refuse(t, "--leave-out needs readings, but %s is not a readings file",
-                           reference);
-    }
-    if (o->render && readings) {
-        return tool_refuse(t, "--render needs whole materials, but %s is a readings file",
-                           reference);
-    }
-    return true;
+    gonio_reference_free(&c->seen);
+    tool_close_input(&c->used);
+    tool_close_input(&c->reference);
+    return tool_exit_code(status);
 }
 
 static int run(tool *t, void *given)
 {
-    const options *o = given;
+    comparing c = {.o = given};
     size_t count = 0;
     const char **arguments = tool_arguments(t, &count);
-    gonio_kind kind = GONIO_KIND_UNKNOWN;
     if (count < 2) {
         tool_refuse(t, "REFERENCE and at least one OTHER are needed");
         return EXIT_USAGE;
     }
-    gonio_status status = gonio_file_expect(t->context, arguments[0],
-                                            GONIO_KIND_MATERIAL | GONIO_KIND_READINGS, &kind);
-    if (status != GONIO_OK) {
-        return tool_exit_code(status);
-    }
-    const bool readings = kind == GONIO_KIND_READINGS;
-    if (!check(t, o, arguments[0], readings)) {
-        return EXIT_USAGE;
-    }
-    json_t *results = json_array();
-    if (!tool_json) {
-        print_headings(o->render);
-    }
-    status = readings ? compare_all_readings(t, o, arguments, count, results)
-                      : compare_all_tables(t, o, arguments, count, results);
-    if (status == GONIO_OK && tool_json) {
+    c.results = json_array();
+    const int code = compare_all(t, &c, arguments, count);
+    if (code == 0 && tool_json) {
         return tool_print_json(
-            t, json_pack("{s:s, s:o}", "reference", arguments[0], "comparisons", results));
+            t, json_pack("{s:s, s:o}", "reference", arguments[0], "comparisons", c.results));
     }
-    json_decref(results);
-    return tool_exit_code(status);
+    json_decref(c.results);
+    return code;
 }
 
 /* What the errors are; to be released with free(). */

@@ -4,8 +4,6 @@
 #include "json_output.h"
 
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 typedef struct options {
     const char *output;
@@ -32,42 +30,17 @@ static int report(const tool *t, const options *o, const gonio_readings *reading
     return 0;
 }
 
-/* Takes the values from readings that were made at more directions. */
-static gonio_status look_up(const tool *t, const char *path, gonio_readings *plan)
-{
-    const gonio_readings_options any = {.size = sizeof any,
-                                        .values_needed = true,
-                                        .average_repeats = true,
-                                        .negative_to_zero = true};
-    gonio_readings *known = NULL;
-    gonio_status status = tool_read_readings(t, path, &any, &known);
-    if (status == GONIO_OK) {
-        status = gonio_readings_look_up(t->context, plan, known);
-    }
-    gonio_readings_free(&known);
-    return status;
-}
-
-/* Reads the material of a path, whose name goes to *name, to be released with free(). */
-static gonio_status read_material(const tool *t, const options *o, const char *path,
-                                  gonio_readings *plan, char **name)
+/* Reads a material, whose name goes to *name. */
+static gonio_status read_material(const tool *t, const options *o, const gonio_material *material,
+                                  gonio_readings *plan, const char **name)
 {
     const gonio_instrument_options instrument = {.size = sizeof instrument,
                                                  .noise = o->noise / 100.0,
                                                  .floor = o->floor,
                                                  .seed = (uint64_t)o->seed,
                                                  .outliers = o->outliers / 100.0};
-    gonio_material *material = NULL;
-    gonio_status status = tool_open_material(t, path, &material);
-    if (status == GONIO_OK) {
-        status = gonio_measure_material(t->context, plan, material, &instrument);
-    }
-    if (status == GONIO_OK) {
-        *name = strdup(gonio_material_name(material));
-        status = *name != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
-    }
-    gonio_material_free(&material);
-    return status;
+    *name = gonio_material_name(material);
+    return gonio_measure_material(t->context, plan, material, &instrument);
 }
 
 static int measure(const tool *t, const options *o, const char *plan, const char *path)
@@ -75,23 +48,22 @@ static int measure(const tool *t, const options *o, const char *plan, const char
     const gonio_readings_options how = {
         .size = sizeof how, .values_needed = false, .negative_to_zero = true};
     gonio_readings *readings = NULL;
-    char *name = NULL;
-    gonio_kind kind = GONIO_KIND_UNKNOWN;
+    tool_input known = {0};
+    const char *name = path;
     gonio_status status = tool_read_readings(t, plan, &how, &readings);
     if (status == GONIO_OK) {
-        status =
-            gonio_file_expect(t->context, path, GONIO_KIND_MATERIAL | GONIO_KIND_READINGS, &kind);
+        status = tool_open_input(t, path, &known);
     }
     if (status == GONIO_OK) {
-        status = kind == GONIO_KIND_READINGS ? look_up(t, path, readings)
-                                             : read_material(t, o, path, readings, &name);
+        status = known.readings != NULL
+                     ? gonio_readings_look_up(t->context, readings, known.readings)
+                     : read_material(t, o, known.material, readings, &name);
     }
     if (status == GONIO_OK) {
         status = gonio_readings_write(t->context, readings, t->command_line, o->output);
     }
-    const int code = status == GONIO_OK ? report(t, o, readings, name != NULL ? name : path)
-                                        : tool_exit_code(status);
-    free(name);
+    const int code = status == GONIO_OK ? report(t, o, readings, name) : tool_exit_code(status);
+    tool_close_input(&known);
     gonio_readings_free(&readings);
     return code;
 }

@@ -10,19 +10,60 @@ gonio_status tool_open_material(const tool *t, const char *path, gonio_material 
     return status == GONIO_OK ? gonio_material_open(t->context, path, material) : status;
 }
 
+const gonio_readings_options tool_any_values = {.size = sizeof tool_any_values,
+                                                .values_needed = true,
+                                                .average_repeats = true,
+                                                .negative_to_zero = true};
+
+static gonio_status take_convention(const tool *t, gonio_readings_options *how)
+{
+    return tool_as != NULL ? gonio_convention_parse(t->context, tool_as, &how->as) : GONIO_OK;
+}
+
 gonio_status tool_read_readings(const tool *t, const char *path,
                                 const gonio_readings_options *options, gonio_readings **readings)
 {
     gonio_readings_options how = *options;
     gonio_kind kind = GONIO_KIND_UNKNOWN;
-    gonio_status status = GONIO_OK;
-    if (tool_as != NULL) {
-        status = gonio_convention_parse(t->context, tool_as, &how.as);
-    }
+    gonio_status status = take_convention(t, &how);
     if (status == GONIO_OK && how.as.format == NULL) {
         status = gonio_file_expect(t->context, path, GONIO_KIND_READINGS, &kind);
     }
     return status == GONIO_OK ? gonio_readings_read(t->context, path, &how, readings) : status;
+}
+
+/* A file of a format that the user names is readings, unless it is a material. */
+static gonio_status find_kind(const tool *t, const char *path, gonio_kind *kind)
+{
+    gonio_readings_options how = tool_any_values;
+    gonio_status status = take_convention(t, &how);
+    if (status == GONIO_OK && how.as.format != NULL) {
+        status = gonio_file_kind(t->context, path, kind, NULL);
+        *kind = *kind == GONIO_KIND_MATERIAL ? *kind : GONIO_KIND_READINGS;
+        return status;
+    }
+    return status == GONIO_OK ? gonio_file_expect(t->context, path,
+                                                  GONIO_KIND_MATERIAL | GONIO_KIND_READINGS, kind)
+                              : status;
+}
+
+gonio_status tool_open_input(const tool *t, const char *path, tool_input *input)
+{
+    gonio_kind kind = GONIO_KIND_UNKNOWN;
+    *input = (tool_input){.path = path};
+    const gonio_status status = find_kind(t, path, &kind);
+    if (status != GONIO_OK) {
+        return status;
+    }
+    return kind == GONIO_KIND_READINGS
+               ? tool_read_readings(t, path, &tool_any_values, &input->readings)
+               : gonio_material_open(t->context, path, &input->material);
+}
+
+void tool_close_input(tool_input *input)
+{
+    gonio_material_free(&input->material);
+    gonio_readings_free(&input->readings);
 }
 
 gonio_status tool_read_mesh(const tool *t, const char *path, gonio_mesh **mesh)

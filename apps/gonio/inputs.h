@@ -24,6 +24,20 @@ gonio_status tool_open_material(const tool *t, const char *path, gonio_material 
 gonio_status tool_read_readings(const tool *t, const char *path,
                                 const gonio_readings_options *options, gonio_readings **readings);
 
+/* Any values: repeats and negative ones are accepted. */
+extern const gonio_readings_options tool_any_values;
+
+/* A material or readings: the other is NULL. */
+typedef struct tool_input {
+    const char *path; /* the caller's */
+    gonio_material *material;
+    gonio_readings *readings;
+} tool_input;
+
+/* Opens what a file is; it is read once, so that it may be a pipe. To be closed in any case. */
+gonio_status tool_open_input(const tool *t, const char *path, tool_input *input);
+void tool_close_input(tool_input *input);
+
 /* As gonio_mesh_read, after gonio_file_expect. */
 gonio_status tool_read_mesh(const tool *t, const char *path, gonio_mesh **mesh);
 

@@ -23,9 +23,10 @@ GONIO_API gonio_status gonio_compare(gonio_context *context, const gonio_materia
                                      const gonio_material *other, gonio_comparison *comparison);
 
 /* The same errors over readings: of reference reading k and of reading k of the other, which is at
- * the same directions (gonio_readings_look_up), in all channels that both have. left_out[count], or
- * NULL: readings that do not count, for they were used. Errors: _MISMATCH (other numbers of
- * readings or channels), _DATA (nothing to compare). *compared: how many readings count. */
+ * the same directions (gonio_readings_look_up, gonio_measure_material) and in the same channels
+ * (gonio_readings_share_channels), wherever both have a value. left_out[count], or NULL: readings
+ * that do not count, for they were used. Errors: _MISMATCH (other numbers of readings or channels,
+ * other wavelengths), _DATA (nothing to compare). *compared: how many readings count. */
 GONIO_API gonio_status gonio_compare_readings(gonio_context *context,
                                               const gonio_readings *reference,
                                               const gonio_readings *other, const bool *left_out,

@@ -118,6 +118,10 @@ GONIO_API gonio_status gonio_readings_create_from_plan(gonio_context *context,
                                                        const gonio_plan *plan,
                                                        gonio_readings **readings);
 
+/* A copy of readings, without the comments and other columns of their file. Errors: _MEMORY. */
+GONIO_API gonio_status gonio_readings_copy(gonio_context *context, const gonio_readings *readings,
+                                           gonio_readings **copy);
+
 GONIO_API void gonio_readings_free(gonio_readings **readings);
 
 /* ---- what is in them ---- */
@@ -214,6 +218,19 @@ GONIO_API gonio_status gonio_readings_find(gonio_context *context, const gonio_r
  * direction; _MEMORY. */
 GONIO_API gonio_status gonio_readings_look_up(gonio_context *context, gonio_readings *plan,
                                               const gonio_readings *known);
+
+/* Replaces what was read more than once, at the same angles and in the same channel, by its mean in
+ * each of these readings, with a note. Errors: _MEMORY. */
+GONIO_API gonio_status gonio_readings_average_repeats(gonio_context *context,
+                                                      gonio_readings *readings);
+
+/* Brings two readings into channels that can be compared. Spectra: b at the wavelengths of a,
+ * linear between its own, NaN beyond them. If they are of different kinds, both as colours: spectra
+ * under equal energy, a single channel as grey. Deviations are dropped where values change. Errors:
+ * _MISMATCH (no wavelength in common; several channels that are neither colours nor wavelengths),
+ * _MEMORY. */
+GONIO_API gonio_status gonio_readings_share_channels(gonio_context *context, gonio_readings *a,
+                                                     gonio_readings *b);
 
 /* ---- the simulated instrument ---- */
 

@@ -40,16 +40,28 @@ static void add_pair(gonio_pair pair, double rho, double other, pairs *p)
     p->count++;
 }
 
+static bool same_wavelengths(const gonio_readings_view *a, const gonio_readings_view *b)
+{
+    bool same = (a->wavelength == NULL) == (b->wavelength == NULL);
+    for (size_t c = 0; same && a->wavelength != NULL && c < a->channels; c++) {
+        same = a->wavelength[c] == b->wavelength[c];
+    }
+    return same;
+}
+
 static gonio_status check(gonio_context *context, const gonio_readings *reference,
                           const gonio_readings *other)
 {
     const gonio_readings_view *a = gonio_readings_describe(reference);
     const gonio_readings_view *b = gonio_readings_describe(other);
-    if (a->count != b->count || a->channels != b->channels ||
-        (a->wavelength == NULL) != (b->wavelength == NULL)) {
+    if (a->count != b->count || a->channels != b->channels) {
         return gonio_i_fail(context, GONIO_ERROR_MISMATCH,
                             "%s has %zu readings in %zu channels, %s has %zu in %zu", a->path,
                             a->count, a->channels, b->path, b->count, b->channels);
+    }
+    if (!same_wavelengths(a, b)) {
+        return gonio_i_fail(context, GONIO_ERROR_MISMATCH, "%s and %s have other wavelengths",
+                            a->path, b->path);
     }
     return GONIO_OK;
 }
@@ -73,12 +85,25 @@ static size_t add_channel(const gonio_readings *reference, const gonio_readings 
     return p->count;
 }
 
-/* How many are not left out. */
-static size_t count_readings(size_t readings, const bool *left_out)
+/* Whether both have a value in some channel. */
+static bool is_compared(const gonio_readings *reference, const gonio_readings *other, size_t k)
+{
+    const size_t channels = gonio_readings_describe(reference)->channels;
+    bool any = false;
+    for (size_t c = 0; c < channels; c++) {
+        any = any || (!isnan(gonio_readings_value(reference, k, c)) &&
+                      !isnan(gonio_readings_value(other, k, c)));
+    }
+    return any;
+}
+
+/* How many are not left out and have values in both. */
+static size_t count_readings(const gonio_readings *reference, const gonio_readings *other,
+                             const bool *left_out)
 {
     size_t count = 0;
-    for (size_t k = 0; k < readings; k++) {
-        count += left_out == NULL || !left_out[k];
+    for (size_t k = 0; k < gonio_readings_describe(reference)->count; k++) {
+        count += (left_out == NULL || !left_out[k]) && is_compared(reference, other, k);
     }
     return count;
 }
@@ -106,7 +131,7 @@ gonio_status gonio_compare_readings(gonio_context *context, const gonio_readings
         return gonio_i_fail(context, GONIO_ERROR_DATA,
                             "%s: no readings to compare, or all of them are zero", view->path);
     }
-    *compared = count_readings(view->count, left_out);
+    *compared = count_readings(reference, other, left_out);
     *error = gonio_i_error_of(&sums, (double)values);
     return GONIO_OK;
 }

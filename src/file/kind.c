@@ -126,6 +126,9 @@ static void print_other(FILE *stream, unsigned wanted, const kind_row *is, const
             between = " or ";
         }
     }
+    if (is->kind == GONIO_KIND_READINGS && (wanted & GONIO_KIND_MATERIAL) != 0) {
+        fputs("; gonio reconstruct makes a material of readings", stream);
+    }
 }
 
 /* "not a material that gonio reads (MERL ...), nor readings (CSV, ...), judged by its content". */

@@ -272,3 +272,53 @@ gonio_status gonio_readings_look_up(gonio_context *context, gonio_readings *plan
     free(next);
     return status;
 }
+
+/* The means of the values that readings have at one direction. Returns whether several were
+ * averaged. */
+static bool average_direction(const gonio_readings *readings, const size_t *next, size_t first,
+                              double *mean, double *deviation)
+{
+    bool averaged = false;
+    for (size_t c = 0; c < readings->channels; c++) {
+        averaged = average(readings, next, first, c, &mean[c], &deviation[c]) > 1 || averaged;
+    }
+    return averaged;
+}
+
+/* Puts means where there are values. */
+static void spread(gonio_readings *readings, const size_t *next, size_t first, const double *mean,
+                   const double *deviation)
+{
+    for (size_t n = first + 1; n > 0; n = next[n - 1]) {
+        const size_t at = (n - 1) * readings->channels;
+        for (size_t c = 0; c < readings->channels; c++) {
+            const bool read = !isnan(readings->value[at + c]);
+            readings->value[at + c] = read ? mean[c] : NAN;
+            if (readings->deviation != NULL && read) {
+                readings->deviation[at + c] = deviation[c];
+            }
+        }
+    }
+}
+
+gonio_status gonio_readings_average_repeats(gonio_context *context, gonio_readings *readings)
+{
+    size_t *next = link_repeats(context, readings);
+    double *mean = gonio_i_allocate(context, 2 * readings->channels, sizeof *mean);
+    const gonio_status status = next != NULL && mean != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
+    size_t averaged = 0;
+    for (size_t n = 0; n < readings->count && status == GONIO_OK; n++) {
+        if (next[n] > 0 && readings->first_same[n] == n &&
+            average_direction(readings, next, n, mean, mean + readings->channels)) {
+            spread(readings, next, n, mean, mean + readings->channels);
+            averaged++;
+        }
+    }
+    if (averaged > 0) {
+        gonio_i_note(context, "%s: read more than once at %zu direction%s: means are taken",
+                     readings->path, averaged, averaged == 1 ? "" : "s");
+    }
+    free(next);
+    free(mean);
+    return status;
+}

@@ -507,6 +507,53 @@ gonio_status gonio_readings_create_from_plan(gonio_context *context, const gonio
     return GONIO_OK;
 }
 
+/* ---- a copy ---- */
+
+/* NULL for NULL; *done becomes false when out of memory. */
+static void *copy_array(gonio_context *context, const void *from, size_t count, size_t size,
+                        bool *done)
+{
+    void *to = from != NULL ? gonio_i_allocate(context, count, size) : NULL;
+    if (to != NULL) {
+        memcpy(to, from, count * size);
+    }
+    *done = *done && (from == NULL || to != NULL);
+    return to;
+}
+
+gonio_status gonio_readings_copy(gonio_context *context, const gonio_readings *readings,
+                                 gonio_readings **copy)
+{
+    const gonio_readings *r = readings;
+    const size_t values = r->count * r->channels;
+    gonio_readings *made = NULL;
+    bool done = true;
+    const gonio_status status = gonio_i_readings_new(context, r->path, &r->options, &made);
+    if (status != GONIO_OK) {
+        return status;
+    }
+    made->count = r->count;
+    made->room = r->count;
+    made->channels = r->channels;
+    made->pair = copy_array(context, r->pair, r->count, sizeof *r->pair, &done);
+    made->planned = copy_array(context, r->planned, r->count, sizeof *r->planned, &done);
+    made->line = copy_array(context, r->line, r->count, sizeof *r->line, &done);
+    made->value = copy_array(context, r->value, values, sizeof *r->value, &done);
+    made->deviation = copy_array(context, r->deviation, values, sizeof *r->deviation, &done);
+    made->wavelength =
+        copy_array(context, r->wavelength, r->channels, sizeof *r->wavelength, &done);
+    made->first_same = copy_array(context, r->first_same, r->count, sizeof *r->first_same, &done);
+    if (!done) {
+        gonio_readings_free(&made);
+        return GONIO_ERROR_MEMORY;
+    }
+    made->basis = r->basis;
+    made->components = r->components;
+    gonio_i_readings_update_view(made);
+    *copy = made;
+    return GONIO_OK;
+}
+
 /* ---- changing them ---- */
 
 gonio_status gonio_readings_set_values(gonio_context *context, gonio_readings *readings,

@@ -135,6 +135,30 @@ static void test_repeats_are_averaged(void **state)
     gonio_readings_free(&known);
 }
 
+/* In place, and only where something was read; a copy does not follow. */
+static void test_repeats_become_their_mean(void **state)
+{
+    (void)state;
+    static const double rows[][7] = {
+        {45, 0, 30, 180, 0.2, 1, NAN}, {5, 0, 5, 180, 0.251, 2, 3}, {45, 0, 30, 180, 0.4, NAN, 4}};
+    static const double means[3][3] = {{0.3, 1, NAN}, {0.251, 2, 3}, {0.3, NAN, 4}};
+    gonio_readings *readings = made_colours(rows, 3);
+    gonio_readings *copy = NULL;
+    assert_int_equal(gonio_readings_copy(NULL, readings, &copy), GONIO_OK);
+    assert_int_equal(gonio_readings_average_repeats(NULL, readings), GONIO_OK);
+    for (size_t k = 0; k < 9; k++) {
+        const double value = gonio_readings_value(readings, k / 3, k % 3);
+        const double mean = means[k / 3][k % 3];
+        assert_true(isnan(mean) ? isnan(value) : fabs(value - mean) < 1e-15);
+    }
+    assert_close(gonio_readings_value(copy, 0, 0), 0.2, 0.0);
+    assert_string_equal(gonio_readings_describe(copy)->path,
+                        gonio_readings_describe(readings)->path);
+    assert_int_equal(gonio_readings_describe(copy)->line[2], 3);
+    gonio_readings_free(&copy);
+    gonio_readings_free(&readings);
+}
+
 static void test_what_was_not_read_stays_so(void **state)
 {
     (void)state;
@@ -214,6 +238,64 @@ static void test_errors_between_readings(void **state)
     }
     gonio_readings_free(&a);
     gonio_readings_free(&b);
+}
+
+/* Brings b into the channels of a, or both into colours, and frees both. */
+static gonio_status share(gonio_readings *a, gonio_readings *b, double *first, double *second)
+{
+    const gonio_status status = gonio_readings_share_channels(NULL, a, b);
+    for (size_t c = 0; c < 3 && status == GONIO_OK; c++) {
+        first[c] = gonio_readings_value(a, 0, c);
+        second[c] = gonio_readings_value(b, 0, c);
+    }
+    gonio_readings_free(&a);
+    gonio_readings_free(&b);
+    return status;
+}
+
+static void test_channels_in_common(void **state)
+{
+    (void)state;
+    static const double colours[] = {30, 0, 50, 40, 0.1, 0.2, 0.3};
+    static const double flat[] = {30, 0, 50, 40, 0.2, 0.2, 0.2};
+    static const double spectrum[] = {30, 0, 50, 40, 0.3, 0.1};
+    static const double grey[] = {30, 0, 50, 40, 0.4};
+    static const double here[] = {450, 550, 700};
+    static const double there[] = {600, 400};
+    static const double far[] = {900, 1000};
+    double a[3];
+    double b[3];
+    /* Linear between 0.1 at 400 nm and 0.3 at 600 nm, and nothing beyond. */
+    assert_int_equal(share(made_spectra(flat, 1, 3, here, true),
+                           made_spectra(spectrum, 1, 2, there, true), a, b),
+                     GONIO_OK);
+    assert_close(a[0], 0.2, 0.0);
+    assert_close(b[0], 0.15, 1e-15);
+    assert_close(b[1], 0.25, 1e-15);
+    assert_true(isnan(b[2]));
+    /* A flat spectrum is white, a single channel grey. */
+    assert_int_equal(
+        share(made_spectra(colours, 1, 3, NULL, true), made_spectra(flat, 1, 3, here, true), a, b),
+        GONIO_OK);
+    assert_int_equal(
+        share(made_spectra(grey, 1, 1, NULL, true), made_spectra(colours, 1, 3, NULL, true), b, a),
+        GONIO_OK);
+    for (size_t c = 0; c < 3; c++) {
+        assert_close(a[c], colours[4 + c], 0.0);
+        assert_close(b[c], 0.4, 0.0);
+    }
+    assert_int_equal(
+        share(made_spectra(flat, 1, 3, here, true), made_spectra(colours, 1, 3, NULL, true), b, a),
+        GONIO_OK);
+    for (size_t c = 0; c < 3; c++) {
+        assert_close(b[c], 0.2, 1e-12);
+    }
+    assert_int_equal(
+        share(made_spectra(flat, 1, 3, here, true), made_spectra(spectrum, 1, 2, far, true), a, b),
+        GONIO_ERROR_MISMATCH);
+    assert_int_equal(share(made_spectra(spectrum, 1, 2, NULL, true),
+                           made_spectra(colours, 1, 3, NULL, true), a, b),
+                     GONIO_ERROR_MISMATCH);
 }
 
 static void test_readings_that_cannot_be_compared(void **state)
@@ -326,9 +408,11 @@ int main(void)
         cmocka_unit_test(test_own_lines_come_first),
         cmocka_unit_test(test_rounded_angles_are_found),
         cmocka_unit_test(test_repeats_are_averaged),
+        cmocka_unit_test(test_repeats_become_their_mean),
         cmocka_unit_test(test_what_was_not_read_stays_so),
         cmocka_unit_test(test_spectra_are_looked_up_too),
         cmocka_unit_test(test_errors_between_readings),
+        cmocka_unit_test(test_channels_in_common),
         cmocka_unit_test(test_readings_that_cannot_be_compared),
         cmocka_unit_test(test_spectra_as_colours),
     };
