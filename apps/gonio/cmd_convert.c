@@ -1,5 +1,8 @@
-/* gonio convert: any material to any format that materials are written in, an older basis to one of
- * today. */
+/* gonio convert: any material to any format that materials are written in, readings to CSV or BRDF
+ * JSON, an older basis to one of today. */
+#include <string.h>
+#include <strings.h>
+
 #include "command_line.h"
 #include "inputs.h"
 #include "json_output.h"
@@ -39,6 +42,40 @@ static int convert_basis(tool *t, const char *input, const char *format, const c
                : tool_exit_code(status);
 }
 
+/* Whether a name is one that readings are written by. */
+static bool names_readings(const char *output)
+{
+    static const char *const extensions[] = {".csv", ".json", ".brdf"};
+    const char *dot = strrchr(output, '.');
+    bool found = false;
+    for (size_t k = 0; dot != NULL && k < sizeof extensions / sizeof *extensions; k++) {
+        found = found || strcasecmp(dot, extensions[k]) == 0;
+    }
+    return found;
+}
+
+static int convert_readings(tool *t, const char *input, const char *output)
+{
+    const gonio_readings_options any = {
+        .size = sizeof any, .average_repeats = true, .negative_to_zero = true};
+    gonio_readings *readings = NULL;
+    if (!names_readings(output)) {
+        tool_refuse(t,
+                    "%s: these are readings; 'gonio reconstruct' makes a material of them. OUT can "
+                    "be .csv, or .json or .brdf (BRDF JSON)",
+                    input);
+        return EXIT_DATA;
+    }
+    gonio_status status = tool_read_readings(t, input, &any, &readings);
+    if (status == GONIO_OK) {
+        status = gonio_readings_write(t->context, readings, t->command_line, output);
+    }
+    gonio_readings_free(&readings);
+    return status == GONIO_OK && tool_json
+               ? tool_print_json(t, json_pack("{s:s, s:s}", "output", output, "readings", input))
+               : tool_exit_code(status);
+}
+
 static int run(tool *t, void *given)
 {
     const write_options *o = given;
@@ -58,6 +95,9 @@ static int run(tool *t, void *given)
     if (status != GONIO_OK) {
         return tool_exit_code(status);
     }
+    if (kind == GONIO_KIND_READINGS || tool_as != NULL) {
+        return convert_readings(t, arguments[0], arguments[1]);
+    }
     return kind == GONIO_KIND_BASIS ? convert_basis(t, arguments[0], format, arguments[1])
                                     : convert_material(t, o, &how, arguments[0], arguments[1]);
 }
@@ -65,7 +105,7 @@ static int run(tool *t, void *given)
 int cmd_convert(int argc, const char **argv)
 {
     write_options o = {0};
-    const struct poptOption table[] = {WRITE_OPTIONS(&o), TOOL_OPTIONS};
+    const struct poptOption table[] = {WRITE_OPTIONS(&o), TOOL_READINGS_OPTIONS, TOOL_OPTIONS};
     const tool_command_line line = {
         .table = table,
         .usage = "[OPTION...] IN OUT",
@@ -76,6 +116,9 @@ int cmd_convert(int argc, const char **argv)
             "OUT becomes an RGL .bsdf, for Mitsuba 3 and pbrt-v4, if its name ends in .bsdf; a "
             "table of all channels in HDF5 (.h5); BSDF-XML (.xml), for Radiance; readings on a "
             "grid (.csv); a MERL .binary table otherwise.\n"
+            "If IN is readings, in any format that gonio reads, OUT becomes CSV (.csv) or BRDF "
+            "JSON "
+            "(.json, .brdf).\n"
             "If IN is a basis of an older gonio (HDF5), OUT becomes the same basis in today's "
             "format.",
         .work = run,

@@ -14,7 +14,7 @@ typedef struct tool_command {
 /* The commands, each in its file, as help lists them. */
 #define TOOL_COMMANDS(COMMAND)                                                                     \
     COMMAND(info, "what a file is: materials, bases, plans, readings, meshes, images")             \
-    COMMAND(convert, "a material to a MERL table")                                                 \
+    COMMAND(convert, "materials and readings to other formats")                                    \
     COMMAND(learn, "a basis from measured materials")                                              \
     COMMAND(plan, "where to measure")                                                              \
     COMMAND(measure, "a simulated instrument reads a known material")                              \

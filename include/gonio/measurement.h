@@ -200,8 +200,10 @@ GONIO_API gonio_status gonio_readings_read(gonio_context *context, const char *p
                                            const gonio_readings_options *options,
                                            gonio_readings **readings);
 
-/* Writes readings as CSV, with the other columns and the comments of the file that they came from.
- * command may be NULL. Whole or not at all. Errors: _IO, _MEMORY. */
+/* Writes readings: as BRDF JSON if the path ends in .json or .brdf, otherwise as CSV, with the
+ * other columns of the CSV file that they came from; and with the comments of their file. JSON
+ * keeps every digit, CSV 10 of values. command may be NULL. Whole or not at all. Errors: _IO,
+ * _MEMORY. */
 GONIO_API gonio_status gonio_readings_write(gonio_context *context, const gonio_readings *readings,
                                             const char *command, const char *path);
 

@@ -155,7 +155,7 @@ static bool take_angles(const gonio_i_import *in, const double from[4], double t
 {
     memcpy(to, from, 4 * sizeof *to);
     if (in->how.mirror == GONIO_MIRROR_0) {
-        to[3] += 180.0;
+        to[3] += to[3] < 180.0 ? 180.0 : -180.0;
     }
     fold(&to[0], &to[1]);
     fold(&to[2], &to[3]);

@@ -38,7 +38,19 @@ static int compare_numbers(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* The different wavelengths, ascending; 1 of 0 where the table has none. */
+/* The numbers 0 .. channels - 1. */
+static gonio_status count_channels(const gonio_i_long_table *table, double **number, size_t *count)
+{
+    double *all = gonio_i_allocate(table->context, table->numbered, sizeof *all);
+    for (size_t k = 0; all != NULL && k < table->numbered; k++) {
+        all[k] = (double)k;
+    }
+    *number = all;
+    *count = table->numbered;
+    return all != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
+}
+
+/* The different wavelengths, ascending. */
 static gonio_status find_wavelengths(const gonio_i_long_table *table, double **wavelength,
                                      size_t *count)
 {
@@ -196,15 +208,15 @@ gonio_status gonio_i_long_table_import(gonio_i_long_table *table, gonio_i_import
     if (table->count == 0) {
         return gonio_i_import_channels(import, 1, NULL);
     }
-    gonio_status status = find_wavelengths(table, &wavelength, &channels);
+    gonio_status status = table->numbered > 0 ? count_channels(table, &wavelength, &channels)
+                                              : find_wavelengths(table, &wavelength, &channels);
     if (status == GONIO_OK && channels > MOST_WAVELENGTHS) {
         status = gonio_i_fail(import->context, GONIO_ERROR_FORMAT,
                               "%s: %zu wavelengths; 1 to %d are expected", import->readings->path,
                               channels, MOST_WAVELENGTHS);
     }
     if (status == GONIO_OK) {
-        const bool named = channels > 1 || wavelength[0] != 0.0;
-        status = gonio_i_import_channels(import, channels, named ? wavelength : NULL);
+        status = gonio_i_import_channels(import, channels, table->numbered > 0 ? NULL : wavelength);
     }
     if (status == GONIO_OK) {
         status = import_rows(table, wavelength, channels, import);

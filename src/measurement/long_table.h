@@ -8,7 +8,7 @@
 
 typedef struct gonio_i_long_row {
     double degrees[4]; /* as in gonio_i_row */
-    double wavelength; /* in the convention's unit; 0: the table has none */
+    double wavelength; /* in the convention's unit; or the number of a channel, from 0 */
     double value;
     double deviation; /* NaN: not known */
     size_t line;
@@ -20,12 +20,13 @@ typedef struct gonio_i_long_table {
     size_t room;
     gonio_i_long_row *row; /* [count] */
     bool any_deviation;
+    size_t numbered; /* channels without wavelengths, which rows number; 0: wavelengths */
 } gonio_i_long_table;
 
 /* A table begins zero-initialised but for its context. Errors: _MEMORY. */
 gonio_status gonio_i_long_table_add(gonio_i_long_table *table, const gonio_i_long_row *row);
 
-/* Says the channels of the import (wavelengths ascending, or one without a name) and adds its rows.
+/* Says the channels of the import (numbered ones, or wavelengths ascending) and adds its rows.
  * The deviation of a mean of m values is the root of the sum of their squares, over m. Errors: as
  * of the import; _FORMAT for more than 4096 wavelengths; _MEMORY. */
 gonio_status gonio_i_long_table_import(gonio_i_long_table *table, gonio_i_import *import);

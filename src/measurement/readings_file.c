@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "../core/number.h"
 #include "../core/output.h"
@@ -137,6 +138,27 @@ gonio_status gonio_readings_read(gonio_context *context, const char *path,
 
 /* ---- writing ---- */
 
+static bool has_extension(const char *path, const gonio_i_readings_format *format)
+{
+    const char *slash = strrchr(path, '/');
+    const char *dot = strrchr(slash != NULL ? slash : path, '.');
+    bool found = false;
+    for (int k = 0; k < 2 && dot != NULL && format->extensions[k] != NULL; k++) {
+        found = found || strcasecmp(format->extensions[k], dot) == 0;
+    }
+    return found;
+}
+
+static const gonio_i_readings_format *format_to_write(const char *path)
+{
+    for (int k = 0; k < FORMATS; k++) {
+        if (formats[k]->print != NULL && has_extension(path, formats[k])) {
+            return formats[k];
+        }
+    }
+    return &gonio_i_readings_csv;
+}
+
 static gonio_status print_text(gonio_context *context, const gonio_readings *readings,
                                const char *command, const char *path, char **text, size_t *size)
 {
@@ -145,7 +167,7 @@ static gonio_status print_text(gonio_context *context, const gonio_readings *rea
     const bool ready = stream != NULL && gonio_i_plain_numbers_begin(&plain);
     gonio_status status = GONIO_ERROR_MEMORY;
     if (ready) {
-        status = gonio_i_readings_csv.print(context, readings, command, stream);
+        status = format_to_write(path)->print(context, readings, command, stream);
         gonio_i_plain_numbers_end(&plain);
     }
     const bool whole = stream != NULL && fclose(stream) == 0;

@@ -74,6 +74,61 @@ static void test_analysed_light_adds_up(void **state)
     gonio_readings_free(&readings);
 }
 
+/* Values of another sensor in each channel; NaN where nothing was read. */
+static void round_trip(const double *wavelength, size_t channels, bool deviations)
+{
+    enum { COUNT = 3, MOST = 4 };
+    static const gonio_pair pair[COUNT] = {
+        {{0.1, 0.0}, {0.2, 3.0}}, {{0.3, 1.0}, {1.1, 2.0}}, {{1.0 / 3.0, 6.0}, {0.0, 0.0}}};
+    double value[COUNT * MOST];
+    double deviation[COUNT * MOST];
+    for (size_t k = 0; k < COUNT * channels; k++) {
+        const bool missing = k == 1 && channels > 1;
+        value[k] = missing ? NAN : 1.0 / (3.0 + (double)k);
+        deviation[k] = missing ? NAN : 1e-3 / (7.0 + (double)k);
+    }
+    const gonio_readings_arrays arrays = {.size = sizeof arrays,
+                                          .count = COUNT,
+                                          .channels = channels,
+                                          .pair = pair,
+                                          .wavelength = wavelength,
+                                          .value = value,
+                                          .deviation = deviations ? deviation : NULL};
+    char path[256];
+    char *folder = support_folder();
+    gonio_readings *made = NULL;
+    gonio_readings *back = NULL;
+    snprintf(path, sizeof path, "%s/r.json", folder);
+    assert_int_equal(gonio_readings_create(NULL, &arrays, NULL, &made), GONIO_OK);
+    assert_int_equal(gonio_readings_write(NULL, made, "a \"command\"", path), GONIO_OK);
+    assert_int_equal(gonio_readings_read(NULL, path, NULL, &back), GONIO_OK);
+    const gonio_readings_view *view = gonio_readings_describe(back);
+    assert_int_equal(view->count, COUNT);
+    assert_int_equal(view->channels, channels);
+    assert_int_equal(view->wavelength != NULL, wavelength != NULL);
+    assert_int_equal(view->deviation != NULL, deviations);
+    for (size_t k = 0; k < COUNT * channels; k++) {
+        const double read = view->value[k];
+        assert_true(read == value[k] || (isnan(read) && isnan(value[k])));
+        assert_true(!deviations || view->deviation[k] == deviation[k] || isnan(deviation[k]));
+        assert_true(fabs(view->pair[k / channels].incident.theta -
+                         pair[k / channels].incident.theta) < 1e-12);
+    }
+    gonio_readings_free(&made);
+    gonio_readings_free(&back);
+    support_remove(folder);
+}
+
+static void test_json_round_trips(void **state)
+{
+    (void)state;
+    static const double wavelength[4] = {400.0, 500.5, 633.0, 1064.0};
+    round_trip(wavelength, 4, true);
+    round_trip(NULL, 3, false);
+    round_trip(NULL, 1, true);
+    round_trip(NULL, 2, true);
+}
+
 /* ---- OpenMATERIAL ---- */
 
 static void test_open_material(void **state)
@@ -216,6 +271,13 @@ static void test_bad_files(void **state)
          GONIO_ERROR_FORMAT, "the unit 'gon' is neither"},
         {"{\"data\":{" ANGLES("1,1,1,1") ",\"BRDF\":[\"a\",\"b\",null,{}]}}", GONIO_ERROR_DATA,
          "none of the 1 rows"},
+        {"{\"data\":{" ANGLES(
+             "1,1,1,1") ",\"adhoc_variables\":{\"channel\":{\"values\":[\"R\",\"X\",1,"
+                        "2]}},\"BRDF\":[1,2,3,4]}}",
+         GONIO_ERROR_FORMAT, "entry 2: a channel is R, G, B"},
+        {"{\"data\":{" ANGLES(
+             "1,1,1,1") ",\"wavelength_i\":[500,null,500,500],\"BRDF\":[1,2,3,4]}}",
+         GONIO_ERROR_FORMAT, "entry 2: the wavelength is not a number"},
         {"{\"lookupTable\":1}", GONIO_ERROR_FORMAT, "no brdf.lookupTable"},
         {"{\"brdf\":{\"lookupTable\":[[1,2,3,4]]}}", GONIO_ERROR_FORMAT,
          "row 1 of lookupTable: wavelength"},
@@ -259,6 +321,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_polarisations_wavelengths_and_uncertainties),
         cmocka_unit_test(test_analysed_light_adds_up),
+        cmocka_unit_test(test_json_round_trips),
         cmocka_unit_test(test_open_material),
         cmocka_unit_test(test_curet),
         cmocka_unit_test(test_bad_files),

@@ -8,10 +8,10 @@
 
 #include "../import.h"
 #include "../long_table.h"
-#include "format.h"
+#include "brdf_json.h"
 #include "json_text.h"
 
-enum { ANGLES = 4 };
+enum { ANGLES = 4, MOST_CHANNELS = 4096 };
 
 /* A column: an array of numbers, or one number for all rows. */
 typedef struct column {
@@ -25,6 +25,8 @@ typedef struct columns {
     column value;
     column deviation;
     const json_t *analysed; /* polarisations of what is detected */
+    const json_t *channel;  /* names or numbers of channels without wavelengths; NULL: none */
+    size_t channels;        /* of these */
     size_t rows;
     int wavelengths; /* gonio_wavelength_unit */
 } columns;
@@ -103,6 +105,42 @@ static void find_deviation(const json_t *data, const json_t *brdf, columns *c)
     c->deviation = (column){values_of(object), k > 0.0 ? 1.0 / k : 1.0};
 }
 
+/* R, G, B are 0, 1, 2; numbers are counted from 1. MOST_CHANNELS for what is neither. */
+static size_t channel_at(const columns *c, size_t row)
+{
+    const json_t *entry = json_array_get(c->channel, row);
+    const char *name = json_string_value(entry);
+    const char *colour =
+        name != NULL && name[0] != '\0' && name[1] == '\0' ? strchr("RGB", name[0]) : NULL;
+    if (colour != NULL) {
+        return *colour == 'R' ? 0 : *colour == 'G' ? 1 : 2;
+    }
+    const json_int_t number = json_integer_value(entry);
+    return number >= 1 && number <= MOST_CHANNELS ? (size_t)number - 1 : MOST_CHANNELS;
+}
+
+/* The channels of a file without wavelengths: what gonio writes of colours and of sensors. */
+static gonio_status find_channels(const gonio_i_readings_file *file, const json_t *data, columns *c)
+{
+    c->channel = c->wavelength.values == NULL
+                     ? values_of(gonio_i_json_member(gonio_i_json_member(data, "adhoc_variables"),
+                                                     "channel"))
+                     : NULL;
+    c->channels = c->wavelength.values == NULL ? 1 : 0;
+    for (size_t k = 0; k < json_array_size(c->channel); k++) {
+        const size_t channel = channel_at(c, k);
+        if (channel == MOST_CHANNELS) {
+            return gonio_i_fail(file->context, GONIO_ERROR_FORMAT,
+                                "%s: entry %zu: a channel is R, G, B or a number from 1",
+                                file->path, k + 1);
+        }
+        const bool colour = json_is_string(json_array_get(c->channel, k));
+        const size_t least = colour ? GONIO_CHANNELS : channel + 1;
+        c->channels = least > c->channels ? least : c->channels;
+    }
+    return GONIO_OK;
+}
+
 /* As many rows as values; every other column has as many, or one number. */
 static gonio_status check_lengths(const gonio_i_readings_file *file, columns *c)
 {
@@ -111,6 +149,11 @@ static gonio_status check_lengths(const gonio_i_readings_file *file, columns *c)
     static const char *const names[] = {"theta_i", "phi_i",      "theta_r",
                                         "phi_r",   "wavelength", "the uncertainty"};
     c->rows = json_array_size(c->value.values);
+    if (c->channel != NULL && json_array_size(c->channel) != c->rows) {
+        return gonio_i_fail(file->context, GONIO_ERROR_FORMAT,
+                            "%s: %zu values of the BRDF, but %zu channels", file->path, c->rows,
+                            json_array_size(c->channel));
+    }
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
         const json_t *values = all[k]->values;
         if (json_is_array(values) && json_array_size(values) != c->rows) {
@@ -140,6 +183,9 @@ static gonio_status find_columns(const gonio_i_readings_file *file, const json_t
         status = find_wavelength(file, data, c);
         find_deviation(data, brdf, c);
         c->analysed = values_of(gonio_i_json_member(data, "polarization_r"));
+    }
+    if (status == GONIO_OK) {
+        status = find_channels(file, data, c);
     }
     return status == GONIO_OK ? check_lengths(file, c) : status;
 }
@@ -188,15 +234,20 @@ static gonio_status add_row(const gonio_i_readings_file *file, const columns *c,
                                 "%s: entry %zu: an angle is not a number", file->path, k + 1);
         }
     }
-    const double wavelength = number_at(&c->wavelength, k);
-    row.wavelength = isnan(wavelength) ? 0.0 : wavelength;
+    row.wavelength = c->channel != NULL ? (double)channel_at(c, k)
+                     : c->channels > 0  ? 0.0
+                                        : number_at(&c->wavelength, k);
+    if (isnan(row.wavelength)) {
+        return gonio_i_fail(file->context, GONIO_ERROR_FORMAT,
+                            "%s: entry %zu: the wavelength is not a number", file->path, k + 1);
+    }
     return gonio_i_long_table_add(table, &row);
 }
 
 static gonio_status read_rows(const gonio_i_readings_file *file, const columns *c,
                               gonio_i_import *in)
 {
-    gonio_i_long_table table = {.context = file->context};
+    gonio_i_long_table table = {.context = file->context, .numbered = c->channels};
     const double factor = analysers(c);
     gonio_status status = GONIO_OK;
     for (size_t k = 0; k < c->rows && status == GONIO_OK; k++) {
@@ -241,5 +292,9 @@ static bool probe(const char *text, size_t size)
     return gonio_i_json_has(text, size, "BRDF");
 }
 
-const gonio_i_readings_format gonio_i_readings_brdf_json = {
-    .word = "json", .name = "BRDF JSON", .probe = probe, .read = read};
+const gonio_i_readings_format gonio_i_readings_brdf_json = {.word = "json",
+                                                            .name = "BRDF JSON",
+                                                            .extensions = {".json", ".brdf"},
+                                                            .probe = probe,
+                                                            .read = read,
+                                                            .print = gonio_i_brdf_json_print};

@@ -23,8 +23,9 @@ typedef struct gonio_i_readings_file {
 } gonio_i_readings_file;
 
 typedef struct gonio_i_readings_format {
-    const char *word; /* for --as format=WORD */
-    const char *name; /* for people */
+    const char *word;          /* for --as format=WORD */
+    const char *name;          /* for people */
+    const char *extensions[2]; /* of files that are written so; CSV is written by any other name */
 
     /* Whether a text is of this format, by its content; text[size] is 0. */
     bool (*probe)(const char *text, size_t size);
@@ -43,7 +44,8 @@ typedef struct gonio_i_readings_format {
     FORMAT(scattered)                                                                              \
     FORMAT(alta)                                                                                   \
     FORMAT(pab)                                                                                    \
-    FORMAT(astm) FORMAT(tracepro) FORMAT(zemax) FORMAT(fred) FORMAT(curet) FORMAT(openmaterial)    \
+    FORMAT(astm)                                                                                   \
+    FORMAT(tracepro) FORMAT(zemax) FORMAT(fred) FORMAT(curet) FORMAT(openmaterial)                 \
         FORMAT(brdf_json) FORMAT(in_plane) FORMAT(csv)
 
 #define GONIO_I_DECLARE_FORMAT(name) extern const gonio_i_readings_format gonio_i_readings_##name;

@@ -3,6 +3,7 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const char *begin_of(const char *text, size_t size)
@@ -40,4 +41,20 @@ const json_t *gonio_i_json_member(const json_t *object, const char *name)
 double gonio_i_json_double(const json_t *value)
 {
     return json_is_number(value) ? json_number_value(value) : NAN;
+}
+
+char *gonio_i_json_quote(const char *text)
+{
+    json_t *made = json_string(text);
+    if (made == NULL) { /* not UTF-8: its ASCII */
+        char *plain = strdup(text);
+        for (char *c = plain; c != NULL && *c != '\0'; c++) {
+            *c = (unsigned char)*c < 0x80 ? *c : '?';
+        }
+        made = plain != NULL ? json_string(plain) : NULL;
+        free(plain);
+    }
+    char *quoted = json_dumps(made, JSON_ENCODE_ANY);
+    json_decref(made);
+    return quoted;
 }

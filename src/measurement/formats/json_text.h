@@ -18,4 +18,8 @@ const json_t *gonio_i_json_member(const json_t *object, const char *name);
 /* A number; NaN for anything else. */
 double gonio_i_json_double(const json_t *value);
 
+/* A text as a JSON string in quotes, without what is not UTF-8; the caller's. NULL: out of memory.
+ */
+char *gonio_i_json_quote(const char *text);
+
 #endif
