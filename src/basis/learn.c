@@ -579,9 +579,9 @@ gonio_status gonio_i_basis_learn_exact(gonio_context *context, const gonio_datab
         return GONIO_ERROR_MEMORY;
     }
     l.basis->without_mean = options->without_mean;
-    l.context = gonio_i_team_begin(context);
+    l.context = gonio_i_shared_context_begin(context);
     status = learn(&l, options);
-    gonio_i_team_end(l.context, context);
+    gonio_i_shared_context_end(l.context, context);
     if (status != GONIO_OK) {
         free(l.vectors);
         gonio_basis_free(&l.basis);

@@ -18,10 +18,10 @@ struct gonio_context {
     gonio_context_options options;
     pthread_mutex_t callbacks;
     bool cancelled;
-    const char *task; /* the progress told last */
+    const char *task; /* the progress reported last */
     double fraction;
-    gonio_context *above; /* of a team or a piece: where its messages go */
-    bool failed;          /* of a team: an error was told */
+    gonio_context *above; /* of a shared context or a piece: where its messages go */
+    bool failed;          /* of a shared context: an error was reported */
     const char *piece;    /* of a piece: what its messages begin with */
 };
 
@@ -126,22 +126,22 @@ int gonio_context_threads(const gonio_context *context)
     return context->options.threads < most ? context->options.threads : most;
 }
 
-gonio_context *gonio_i_team_begin(gonio_context *context)
+gonio_context *gonio_i_shared_context_begin(gonio_context *context)
 {
-    gonio_context *team = context != NULL ? calloc(1, sizeof *team) : NULL;
-    if (team == NULL) {
+    gonio_context *shared = context != NULL ? calloc(1, sizeof *shared) : NULL;
+    if (shared == NULL) {
         return context;
     }
-    team->options = context->options;
-    team->above = context;
-    pthread_mutex_init(&team->callbacks, NULL);
-    return team;
+    shared->options = context->options;
+    shared->above = context;
+    pthread_mutex_init(&shared->callbacks, NULL);
+    return shared;
 }
 
-void gonio_i_team_end(gonio_context *team, const gonio_context *context)
+void gonio_i_shared_context_end(gonio_context *shared, const gonio_context *context)
 {
-    if (team != context) {
-        gonio_context_free(&team);
+    if (shared != context) {
+        gonio_context_free(&shared);
     }
 }
 
@@ -164,13 +164,13 @@ void gonio_i_piece_end(gonio_context *piece)
     gonio_context_free(&piece);
 }
 
-/* Whether a team may tell this error: the first only. */
-static bool is_first_error(gonio_context *team)
+/* Whether a shared context reports this error: only the first. */
+static bool is_first_error(gonio_context *shared)
 {
-    pthread_mutex_lock(&team->callbacks);
-    const bool first = !team->failed;
-    team->failed = true;
-    pthread_mutex_unlock(&team->callbacks);
+    pthread_mutex_lock(&shared->callbacks);
+    const bool first = !shared->failed;
+    shared->failed = true;
+    pthread_mutex_unlock(&shared->callbacks);
     return first;
 }
 

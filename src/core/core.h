@@ -26,15 +26,15 @@ gonio_status gonio_i_fail(gonio_context *context, gonio_status status, const cha
 void gonio_i_warn(gonio_context *context, const char *format, ...) GONIO_I_PRINTF(2, 3);
 void gonio_i_note(gonio_context *context, const char *format, ...) GONIO_I_PRINTF(2, 3);
 
-/* For the length of a call that runs threads: a context that passes everything on, but of the
- * threads' errors only the first, as a failure has one message. With no context or no memory it is
- * the context itself. */
-gonio_context *gonio_i_team_begin(gonio_context *context);
-void gonio_i_team_end(gonio_context *team, const gonio_context *context);
+/* A context that the threads of one call share, for the length of that call. It passes everything
+ * on to `context`, except that it reports only the first error: a failure has one message. Without
+ * a context or memory the result is `context` itself. */
+gonio_context *gonio_i_shared_context_begin(gonio_context *context);
+void gonio_i_shared_context_end(gonio_context *shared, const gonio_context *context);
 
-/* For one of many independent pieces of work that run side by side: a context with one thread that
- * passes messages on behind "name: ". Progress told to it only asks whether to stop: the callback
- * is told again what was told last of the work as a whole. `name` must last as long. Errors:
+/* A context with one thread, for one of many independent pieces of work that run in parallel. Its
+ * messages begin with "name: ". Progress reported to it only asks whether to stop: the callback
+ * gets the last progress of the whole work again. `name` must outlive the context. Errors:
  * _MEMORY. */
 gonio_status gonio_i_piece_begin(gonio_context *context, const char *name, gonio_context **piece);
 void gonio_i_piece_end(gonio_context *piece);

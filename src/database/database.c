@@ -409,24 +409,24 @@ static gonio_status read_materials(gonio_context *context, gonio_database *datab
 {
     gonio_status result = GONIO_OK;
     size_t finished = 0;
-    gonio_context *team = gonio_i_team_begin(context);
+    gonio_context *shared = gonio_i_shared_context_begin(context);
 #pragma omp parallel num_threads(gonio_context_threads(context))
     {
         reader r = {0};
-        gonio_status mine = make_reader(team, database, &r) ? GONIO_OK : GONIO_ERROR_MEMORY;
+        gonio_status mine = make_reader(shared, database, &r) ? GONIO_OK : GONIO_ERROR_MEMORY;
 #pragma omp for schedule(dynamic)
         for (size_t k = 0; k < database->materials; k++) {
             gonio_status so_far;
 #pragma omp atomic read
             so_far = result;
             if (mine == GONIO_OK && so_far == GONIO_OK) {
-                mine = read_material(team, database, k, from, &r);
+                mine = read_material(shared, database, k, from, &r);
             }
             size_t done;
 #pragma omp atomic capture
             done = ++finished;
             if (mine == GONIO_OK) {
-                mine = gonio_i_progress(team, "reading materials",
+                mine = gonio_i_progress(shared, "reading materials",
                                         (double)done / (double)database->materials);
             }
             if (mine != GONIO_OK) {
@@ -440,7 +440,7 @@ static gonio_status read_materials(gonio_context *context, gonio_database *datab
         }
         free_reader(&r);
     }
-    gonio_i_team_end(team, context);
+    gonio_i_shared_context_end(shared, context);
     return result;
 }
 

@@ -90,22 +90,22 @@ static gonio_status sum_slabs(gonio_context *context, const gonio_material *refe
                               const gonio_material *other, slab_sums slabs[GONIO_THETA_H_BINS])
 {
     gonio_status result = GONIO_OK;
-    gonio_context *team = gonio_i_team_begin(context);
+    gonio_context *shared = gonio_i_shared_context_begin(context);
 #pragma omp parallel num_threads(gonio_context_threads(context))
     {
         scratch s = {0};
-        gonio_status mine = make_scratch(team, &s) ? GONIO_OK : GONIO_ERROR_MEMORY;
+        gonio_status mine = make_scratch(shared, &s) ? GONIO_OK : GONIO_ERROR_MEMORY;
 #pragma omp for schedule(dynamic)
         for (int theta_h = 0; theta_h < GONIO_THETA_H_BINS; theta_h++) {
             if (mine == GONIO_OK) {
-                mine = sum_slab(team, reference, other, theta_h, &s, &slabs[theta_h]);
+                mine = sum_slab(shared, reference, other, theta_h, &s, &slabs[theta_h]);
             }
         }
         free_scratch(&s);
 #pragma omp critical(gonio_compare)
         result = mine != GONIO_OK ? mine : result;
     }
-    gonio_i_team_end(team, context);
+    gonio_i_shared_context_end(shared, context);
     return result;
 }
 

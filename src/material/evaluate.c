@@ -32,13 +32,13 @@ static gonio_status evaluate_blocks(gonio_context *context, const gonio_material
 {
     const gonio_material_source source = gonio_i_material_source(material);
     const gonio_material_view *view = gonio_material_describe(material);
-    gonio_context *team = gonio_i_team_begin(context);
+    gonio_context *shared = gonio_i_shared_context_begin(context);
     gonio_status status = GONIO_OK;
 #pragma omp parallel for schedule(dynamic) num_threads(gonio_context_threads(context))
     for (size_t first = 0; first < count; first += BLOCK) {
         const size_t here = count - first < BLOCK ? count - first : BLOCK;
         double *block = values + first * view->channels;
-        const gonio_status mine = source.evaluate(source.self, team, pairs + first, here, block);
+        const gonio_status mine = source.evaluate(source.self, shared, pairs + first, here, block);
         for (size_t k = 0; k < here && mine == GONIO_OK; k++) {
             take_out(view, &pairs[first + k], block + k * view->channels);
         }
@@ -47,7 +47,7 @@ static gonio_status evaluate_blocks(gonio_context *context, const gonio_material
             status = mine;
         }
     }
-    gonio_i_team_end(team, context);
+    gonio_i_shared_context_end(shared, context);
     return status;
 }
 

@@ -12,7 +12,7 @@ struct gonio_table {
     const double *slab[GONIO_THETA_H_BINS]; /* of rho */
 };
 
-static void load_slabs(gonio_context *team, const gonio_material *material, int threads,
+static void load_slabs(gonio_context *shared, const gonio_material *material, int threads,
                        double *rho, gonio_status *status)
 {
     int finished = 0;
@@ -22,14 +22,14 @@ static void load_slabs(gonio_context *team, const gonio_material *material, int 
 #pragma omp atomic read
         mine = *status;
         if (mine == GONIO_OK) {
-            mine = gonio_material_read_slab(team, material, theta_h,
+            mine = gonio_material_read_slab(shared, material, theta_h,
                                             rho + (size_t)theta_h * GONIO_SLAB_VALUES);
         }
         int done;
 #pragma omp atomic capture
         done = ++finished;
         if (mine == GONIO_OK) {
-            mine = gonio_i_progress(team, "reading", (double)done / GONIO_THETA_H_BINS);
+            mine = gonio_i_progress(shared, "reading", (double)done / GONIO_THETA_H_BINS);
         }
         if (mine != GONIO_OK) {
 #pragma omp atomic write
@@ -54,9 +54,9 @@ gonio_status gonio_table_load(gonio_context *context, const gonio_material *mate
     if (made->rho == NULL) {
         status = GONIO_ERROR_MEMORY;
     } else {
-        gonio_context *team = gonio_i_team_begin(context);
-        load_slabs(team, material, gonio_context_threads(context), made->rho, &status);
-        gonio_i_team_end(team, context);
+        gonio_context *shared = gonio_i_shared_context_begin(context);
+        load_slabs(shared, material, gonio_context_threads(context), made->rho, &status);
+        gonio_i_shared_context_end(shared, context);
     }
     if (status != GONIO_OK) {
         gonio_table_free(&made);

@@ -126,15 +126,15 @@ static void run_all(starts *all)
 {
     const int restarts = all->problem->restarts;
     const int threads = gonio_context_threads(all->problem->context);
-    const int teams = restarts < threads ? restarts : threads;
-    all->threads = threads / teams;
-    if (teams == 1) {
+    const int at_once = restarts < threads ? restarts : threads;
+    all->threads = threads / at_once;
+    if (at_once == 1) {
         for (int restart = 0; restart < restarts; restart++) {
             run_unless_failed(all, restart);
         }
         return;
     }
-#pragma omp parallel for schedule(dynamic) num_threads(teams)
+#pragma omp parallel for schedule(dynamic) num_threads(at_once)
     for (int restart = 0; restart < restarts; restart++) {
         run_unless_failed(all, restart);
     }

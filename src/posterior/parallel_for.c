@@ -18,7 +18,7 @@ gonio_status gonio_i_parallel_for(gonio_context *context, gonio_i_steps *steps, 
                                   gonio_i_parallel_body work, void *data)
 {
     const size_t threads = (size_t)gonio_context_threads(context);
-    gonio_context *team = gonio_i_team_begin(context);
+    gonio_context *shared = gonio_i_shared_context_begin(context);
     gonio_status result = GONIO_OK;
     size_t failed = count;
     /* Fewer pieces than threads are done one by one, each by all threads. */
@@ -30,8 +30,8 @@ gonio_status gonio_i_parallel_for(gonio_context *context, gonio_i_steps *steps, 
         if (before < k) {
             continue;
         }
-        gonio_status status = work(data, team, k);
-        status = status == GONIO_OK ? step_on(team, steps) : status;
+        gonio_status status = work(data, shared, k);
+        status = status == GONIO_OK ? step_on(shared, steps) : status;
 #pragma omp critical(gonio_parallel_for)
         if (status != GONIO_OK && k < failed) {
 #pragma omp atomic write
@@ -39,6 +39,6 @@ gonio_status gonio_i_parallel_for(gonio_context *context, gonio_i_steps *steps, 
             result = status;
         }
     }
-    gonio_i_team_end(team, context);
+    gonio_i_shared_context_end(shared, context);
     return result;
 }

@@ -12,7 +12,7 @@ typedef struct gonio_i_steps {
 } gonio_i_steps;
 
 /* Calls work(data, context, k) for every k < count, by as many threads as the context has; the
- * context that work gets is a team's (core.h). After a failure no further task is begun; the status
+ * context that work gets is shared (core.h). After a failure no further task is begun; the status
  * is that of the first task that failed. steps: counts the tasks and reports progress. Errors:
  * those of the work; _CANCELLED. */
 typedef gonio_status (*gonio_i_parallel_body)(void *data, gonio_context *context, size_t k);

@@ -30,28 +30,28 @@ static size_t solve(batch *all, const gonio_readings *const *readings, size_t co
 }
 
 /* Writes table k all but the last step. */
-static gonio_status write_table(batch *all, gonio_context *team, size_t k, gonio_i_output *output)
+static gonio_status write_table(batch *all, gonio_context *shared, size_t k, gonio_i_output *output)
 {
     gonio_material *material = NULL;
-    gonio_status status =
-        gonio_reconstruction_material(team, all->basis, all->made[k], "reconstruction", &material);
+    gonio_status status = gonio_reconstruction_material(shared, all->basis, all->made[k],
+                                                        "reconstruction", &material);
     if (status == GONIO_OK) {
-        status =
-            gonio_i_merl_write(team, material, all->paths[k], all->threads, &all->progress, output);
+        status = gonio_i_merl_write(shared, material, all->paths[k], all->threads, &all->progress,
+                                    output);
     }
     gonio_material_free(&material);
     return status;
 }
 
 /* Puts table k in place, unless one before it failed. */
-static void finish_table(batch *all, gonio_context *team, size_t k, gonio_status written,
+static void finish_table(batch *all, gonio_context *shared, size_t k, gonio_status written,
                          gonio_i_output *output)
 {
     gonio_status before;
 #pragma omp atomic read
     before = all->status;
     const gonio_status status =
-        gonio_i_output_close(team, output, before != GONIO_OK ? before : written);
+        gonio_i_output_close(shared, output, before != GONIO_OK ? before : written);
     if (status != GONIO_OK) {
         gonio_reconstruction_free(&all->made[k]);
 #pragma omp atomic write
@@ -64,22 +64,22 @@ static void finish_table(batch *all, gonio_context *team, size_t k, gonio_status
 static void write_tables(batch *all, size_t count)
 {
     const size_t threads = (size_t)gonio_context_threads(all->context);
-    const size_t teams = count < threads ? count : threads;
-    gonio_context *team = gonio_i_team_begin(all->context);
-    all->threads = teams > 0 ? (int)(threads / teams) : 1;
-#pragma omp parallel for ordered schedule(dynamic) num_threads((int)(teams > 0 ? teams : 1))
+    const size_t at_once = count < threads ? count : threads;
+    gonio_context *shared = gonio_i_shared_context_begin(all->context);
+    all->threads = at_once > 0 ? (int)(threads / at_once) : 1;
+#pragma omp parallel for ordered schedule(dynamic) num_threads((int)(at_once > 0 ? at_once : 1))
     for (size_t k = 0; k < count; k++) {
         gonio_i_output output = {.descriptor = -1, .final = -1};
         gonio_status status;
 #pragma omp atomic read
         status = all->status;
         if (status == GONIO_OK) {
-            status = write_table(all, team, k, &output);
+            status = write_table(all, shared, k, &output);
         }
 #pragma omp ordered
-        finish_table(all, team, k, status, &output);
+        finish_table(all, shared, k, status, &output);
     }
-    gonio_i_team_end(team, all->context);
+    gonio_i_shared_context_end(shared, all->context);
 }
 
 gonio_status gonio_reconstruct_tables(gonio_context *context, const gonio_basis *basis,

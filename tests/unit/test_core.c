@@ -40,7 +40,7 @@ static void test_a_message_is_one_line(void **state)
     assert_null(context);
 }
 
-static void test_a_team_tells_its_first_error_only(void **state)
+static void test_a_shared_context_tells_its_first_error_only(void **state)
 {
     (void)state;
     gonio_context *context = NULL;
@@ -48,22 +48,22 @@ static void test_a_team_tells_its_first_error_only(void **state)
         .size = sizeof options, .message = count_message, .threads = 2};
     assert_int_equal(gonio_context_create(&context, &options), GONIO_OK);
     for (int time = 1; time <= 2; time++) {
-        gonio_context *team = gonio_i_team_begin(context);
-        gonio_context *inner = gonio_i_team_begin(team);
+        gonio_context *shared = gonio_i_shared_context_begin(context);
+        gonio_context *inner = gonio_i_shared_context_begin(shared);
         messages = 0;
 #pragma omp parallel for num_threads(4)
         for (int k = 0; k < 100; k++) {
-            gonio_i_fail(k % 2 ? inner : team, GONIO_ERROR_IO, "error %d", k);
+            gonio_i_fail(k % 2 ? inner : shared, GONIO_ERROR_IO, "error %d", k);
         }
         assert_int_equal(messages, 1);
         gonio_i_warn(inner, "warnings all come through");
-        gonio_i_note(team, "and notes");
+        gonio_i_note(shared, "and notes");
         assert_int_equal(messages, 3);
-        assert_int_equal(gonio_context_threads(team), gonio_context_threads(context));
-        gonio_i_team_end(inner, team);
-        gonio_i_team_end(team, context);
+        assert_int_equal(gonio_context_threads(shared), gonio_context_threads(context));
+        gonio_i_shared_context_end(inner, shared);
+        gonio_i_shared_context_end(shared, context);
     }
-    assert_null(gonio_i_team_begin(NULL));
+    assert_null(gonio_i_shared_context_begin(NULL));
     gonio_context_free(&context);
 }
 
@@ -81,17 +81,17 @@ static int cancel_if_asked(void *user, const char *task, double fraction)
     return *(const int *)user;
 }
 
-static void test_a_team_can_be_cancelled(void **state)
+static void test_a_shared_context_can_be_cancelled(void **state)
 {
     (void)state;
     gonio_context *context = NULL;
     const gonio_context_options options = {.size = sizeof options, .progress = stop_at_half};
     assert_int_equal(gonio_context_create(&context, &options), GONIO_OK);
-    gonio_context *team = gonio_i_team_begin(context);
-    assert_int_equal(gonio_i_progress(team, "work", 0.2), GONIO_OK);
-    assert_int_equal(gonio_i_progress(team, "work", 0.7), GONIO_ERROR_CANCELLED);
+    gonio_context *shared = gonio_i_shared_context_begin(context);
+    assert_int_equal(gonio_i_progress(shared, "work", 0.2), GONIO_OK);
+    assert_int_equal(gonio_i_progress(shared, "work", 0.7), GONIO_ERROR_CANCELLED);
     assert_int_equal(gonio_i_progress(context, "work", 0.3), GONIO_ERROR_CANCELLED);
-    gonio_i_team_end(team, context);
+    gonio_i_shared_context_end(shared, context);
     gonio_context_free(&context);
 }
 
@@ -145,26 +145,26 @@ static void test_a_piece_is_part_of_a_whole(void **state)
     const gonio_context_options options = {
         .size = sizeof options, .message = note_message, .progress = note_progress, .threads = 2};
     assert_int_equal(gonio_context_create(&context, &options), GONIO_OK);
-    gonio_context *team = gonio_i_team_begin(context);
+    gonio_context *shared = gonio_i_shared_context_begin(context);
     gonio_context *piece = NULL, *inner = NULL;
-    assert_int_equal(gonio_i_piece_begin(team, "gold", &piece), GONIO_OK);
+    assert_int_equal(gonio_i_piece_begin(shared, "gold", &piece), GONIO_OK);
     assert_int_equal(gonio_i_piece_begin(piece, "start 2", &inner), GONIO_OK);
     assert_int_equal(gonio_context_threads(piece), 1);
     assert_int_equal(gonio_i_progress(piece, "inside", 1.0), GONIO_OK);
     assert_string_equal(told, " 0.00");
-    assert_int_equal(gonio_i_progress(team, "whole", 0.25), GONIO_OK);
+    assert_int_equal(gonio_i_progress(shared, "whole", 0.25), GONIO_OK);
     assert_int_equal(gonio_i_progress(inner, "inside", 1.0), GONIO_OK);
     assert_string_equal(told, "whole 0.25");
     gonio_i_warn(inner, "%s", "dull");
     assert_string_equal(told, "gold: start 2: dull");
     gonio_i_fail(piece, GONIO_ERROR_DATA, "first");
-    gonio_i_fail(inner, GONIO_ERROR_DATA, "second, which the team keeps to itself");
+    gonio_i_fail(inner, GONIO_ERROR_DATA, "second, which the shared context keeps to itself");
     assert_string_equal(told, "gold: first");
-    assert_int_equal(gonio_i_progress(team, "whole", 0.75), GONIO_ERROR_CANCELLED);
+    assert_int_equal(gonio_i_progress(shared, "whole", 0.75), GONIO_ERROR_CANCELLED);
     assert_int_equal(gonio_i_progress(inner, "inside", 0.1), GONIO_ERROR_CANCELLED);
     gonio_i_piece_end(inner);
     gonio_i_piece_end(piece);
-    gonio_i_team_end(team, context);
+    gonio_i_shared_context_end(shared, context);
     gonio_context_free(&context);
 
     assert_int_equal(gonio_i_piece_begin(NULL, "alone", &piece), GONIO_OK);
@@ -422,8 +422,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_a_message_is_one_line),
-        cmocka_unit_test(test_a_team_tells_its_first_error_only),
-        cmocka_unit_test(test_a_team_can_be_cancelled),
+        cmocka_unit_test(test_a_shared_context_tells_its_first_error_only),
+        cmocka_unit_test(test_a_shared_context_can_be_cancelled),
         cmocka_unit_test(test_a_cancelled_context_can_work_again),
         cmocka_unit_test(test_a_piece_is_part_of_a_whole),
         cmocka_unit_test(test_threads),

@@ -231,11 +231,11 @@ static void drop_finished(run *r)
 
 /* ---- doing them ---- */
 
-static gonio_status do_job(const run *r, gonio_context *team, const job *j)
+static gonio_status do_job(const run *r, gonio_context *shared, const job *j)
 {
     gonio_context *context = NULL;
     json_t *result = NULL;
-    gonio_status status = gonio_i_piece_begin(team, j->name, &context);
+    gonio_status status = gonio_i_piece_begin(shared, j->name, &context);
     if (status != GONIO_OK) {
         return status;
     }
@@ -249,18 +249,18 @@ static gonio_status do_job(const run *r, gonio_context *team, const job *j)
 }
 
 /* The share of the cost that is done, which 1 is told of only when all ranks have finished. */
-static gonio_status tell(run *r, gonio_context *team)
+static gonio_status tell(run *r, gonio_context *shared)
 {
-    return gonio_i_progress(team, r->work->title, 0.999 * r->done / r->cost);
+    return gonio_i_progress(shared, r->work->title, 0.999 * r->done / r->cost);
 }
 
-static void note_end(run *r, gonio_context *team, const job *j, gonio_status status)
+static void note_end(run *r, gonio_context *shared, const job *j, gonio_status status)
 {
 #pragma omp critical(gonio_pieces)
     {
         if (status == GONIO_OK) {
             r->done += j->cost;
-            status = tell(r, team);
+            status = tell(r, shared);
         }
         if (r->status == GONIO_OK) {
             r->status = status;
@@ -290,13 +290,13 @@ static const job *next_job(run *r)
 
 static gonio_status do_jobs(run *r, int threads)
 {
-    gonio_context *team = gonio_i_team_begin(r->context);
-    r->status = r->count > 0 ? tell(r, team) : GONIO_OK;
+    gonio_context *shared = gonio_i_shared_context_begin(r->context);
+    r->status = r->count > 0 ? tell(r, shared) : GONIO_OK;
 #pragma omp parallel num_threads(threads)
     for (const job *j = next_job(r); j != NULL; j = next_job(r)) {
-        note_end(r, team, j, do_job(r, team, j));
+        note_end(r, shared, j, do_job(r, shared, j));
     }
-    gonio_i_team_end(team, r->context);
+    gonio_i_shared_context_end(shared, r->context);
     return r->status;
 }
 

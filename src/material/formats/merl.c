@@ -321,10 +321,10 @@ gonio_status gonio_i_merl_write(gonio_context *context, const gonio_material *ma
         status = write_header(context, output);
     }
     if (status == GONIO_OK) {
-        gonio_context *team = gonio_i_team_begin(context);
-        writer w = {team, material, output, progress, GONIO_OK};
+        gonio_context *shared = gonio_i_shared_context_begin(context);
+        writer w = {shared, material, output, progress, GONIO_OK};
         write_blocks(&w, threads);
-        gonio_i_team_end(team, context);
+        gonio_i_shared_context_end(shared, context);
         status = w.status;
     }
     return status == GONIO_OK ? gonio_i_output_flush(context, output) : status;
