@@ -24,7 +24,7 @@
 enum {
     FIRST_BLOCK = 5,
     LEAST_RENEWED = 20, /* readings after which q and t are computed anew */
-    MOST_TURNS = 4,
+    MOST_SWEEPS = 4,
     BLOCK_ROWS = 1024,
     LOSS_PARTS = 8,
     MOST_WAITING = 2 /* an exchange */
@@ -315,7 +315,7 @@ static gonio_status exchange(design *d, size_t *chosen, size_t first, size_t end
 {
     bool changed = true;
     gonio_status status = GONIO_OK;
-    for (int turn = 0; turn < MOST_TURNS && changed && status == GONIO_OK; turn++) {
+    for (int sweeps = 0; sweeps < MOST_SWEEPS && changed && status == GONIO_OK; sweeps++) {
         changed = false;
         for (size_t i = first; i < end && status == GONIO_OK; i++) {
             take_back(d, chosen[i]);

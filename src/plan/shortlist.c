@@ -48,7 +48,8 @@ static gonio_status search_part(gonio_i_swap_search *s, gonio_i_selector *select
     return status;
 }
 
-/* Searches rows[count] alone, from the chosen ones, which are its first; turns to the result. */
+/* Searches rows[count] alone, from the chosen rows, which come first. The result becomes the
+ * choice. */
 static gonio_status search_among(gonio_i_swap_search *s, gonio_i_selector *select,
                                  const size_t *rows, size_t count, int restart, int *swaps,
                                  gonio_i_selection *selection)

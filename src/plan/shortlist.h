@@ -1,10 +1,10 @@
-/* Very many rows: most of the swaps are made where they are cheap.
+/* The search over very many rows makes most of its swaps on short lists of rows.
  *
- * Looking at every row takes long when there are a million, and so does every swap, as it makes all
- * gains anew. So before the search proper, what is looked for in one turn through the positions are
- * not single winners but several for each; then only those and the chosen rows are searched, to
- * their own local optimum; and so on until a turn brings little. The search proper then finds the
- * few swaps that are left, and proves the optimum as ever. */
+ * With a million rows, a test of every row takes long. So does every swap, because it changes all
+ * gains. So rounds precede the search over all rows. A round sweeps once over the positions and
+ * gathers several rows for each that lower kappa. Then it searches these and the chosen rows alone,
+ * to their local optimum. The rounds end when one gains little. The search over all rows then finds
+ * the few remaining swaps and proves the optimum. */
 #ifndef GONIO_SHORTLIST_H
 #define GONIO_SHORTLIST_H
 
@@ -12,8 +12,8 @@
 
 enum { GONIO_I_MANY_ROWS = 100000 };
 
-/* Makes those swaps; counts and records them. `select` finds a local optimum of a part of the rows
- * from the choice that is given. */
+/* Makes the swaps of the rounds, counts and records them. `select` finds a local optimum of some of
+ * the rows from a given choice. */
 gonio_status gonio_i_search_shortlists(gonio_i_swap_search *search, int restart,
                                        gonio_i_selector *select, int *swaps,
                                        gonio_i_selection *selection);

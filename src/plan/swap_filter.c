@@ -133,7 +133,7 @@ static void fill_column(gonio_i_swap_filter *f, const double *v, size_t j)
     test->margin[column] = (float)(product_error(f) * sqrt(squares));
 }
 
-void gonio_i_swap_filter_turn_to(gonio_i_swap_filter *f, const double *x, size_t position)
+void gonio_i_swap_filter_set_position(gonio_i_swap_filter *f, const double *x, size_t position)
 {
     const size_t k = f->problem->components;
     if (position >= f->first && position < f->first + f->batch) {

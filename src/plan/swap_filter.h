@@ -1,17 +1,17 @@
-/* The filter of the condition-number search: for one position of the choice, which rows could take
- * it and lift lambda_min above a bound mu < lambda_min(G). It never misses one; what passes is
- * decided exactly elsewhere.
+/* The filter of the condition-number search. For one position of the choice it finds the rows that
+ * could raise lambda_min above a bound mu < lambda_min(G). It never rejects such a row. Rows that
+ * pass are decided exactly elsewhere.
  *
  * With G = X'X, B = (G - mu)^-1 = T'T, v the row at the position and u a candidate, Sylvester's
  * law on G - vv' + uu' - mu (exchange_eigenvalues.h) reads, in terms of gain b_u = 1 + u'Bu = 1 +
  * |T u|^2, loss p_v = v'Bv - 1,   w = u'Bv: u passes if and only if w^2 > p_v b_u   (p_v < 0: all
- * do). Rows are looked at a chunk at a time, as the search comes to them: the gains of a chunk are
- * computed once for each G, the w for one position after a swap, and for more and more as positions
- * fail.
+ * do). Rows are tested a chunk at a time, when the search reaches them. The gains of a chunk are
+ * computed once for each G. The w are computed for one position after a swap, and for more
+ * positions at a time the more have failed.
  *
  * All this is done in single precision, with bounds of the rounding errors from
  *   |fl(x'y) - x'y| <= n eps |x| |y|                       (Higham 2002, section 3.1),
- * and the test lets pass whatever they leave undecided: rounding costs time, never a winner. B
+ * and the test passes what they leave undecided: rounding costs time and never loses a row. B
  * itself has errors too: the Cholesky factor of G - mu is that of G - mu + E, |E| <= r |G - mu|/
  * cond(G - mu) with r of some K eps cond(G - mu) (section 10.1). As (Bu)'E(Bv) then is at most
  * r |Tu| |Tv|, b_u is off by at most r b_u, p_v by r (1 + p_v), and w by
@@ -24,7 +24,7 @@
 #include "method.h"
 #include "packed_rows.h"
 
-/* Positions that are looked at together, and tests that takes. */
+/* Positions that are tested together, and the tests that this needs. */
 enum { GONIO_I_TESTS = 4, GONIO_I_BATCH = GONIO_I_TESTS * GONIO_I_COLUMNS };
 
 typedef struct gonio_i_swap_filter {
@@ -44,7 +44,7 @@ typedef struct gonio_i_swap_filter {
     bool all_pass[GONIO_I_BATCH];
     size_t first;       /* position that the batch begins with */
     size_t batch;       /* positions in it; 0 if there is none */
-    size_t next;        /* and how many the next batch will have */
+    size_t next;        /* positions of the next batch */
     bool *gain_is_set;  /* [chunks]: for this G */
     bool *batch_is_set; /* [chunks]: for this batch */
     bool blind;         /* G is too near singular for the filter: everything passes */
@@ -57,16 +57,17 @@ bool gonio_i_swap_filter_allocate(const gonio_i_selection_problem *problem,
                                   gonio_i_swap_filter *filter);
 void gonio_i_swap_filter_free(gonio_i_swap_filter *filter);
 
-/* Sets G [K][K] and mu < lambda_min(G); a mu lower than need be only lets more pass. condition: of
- * G - mu. */
+/* Sets G [K][K] and mu < lambda_min(G). A smaller mu only passes more rows. condition: of G - mu.
+ */
 void gonio_i_swap_filter_set(gonio_i_swap_filter *filter, const double *gram, double mu,
                              double condition);
 
-/* Computes the gains of a chunk ahead of need. */
+/* Computes the gains of a chunk before they are needed. */
 void gonio_i_swap_filter_prepare(gonio_i_swap_filter *filter, size_t chunk, int thread);
 
-/* Turns to a position. x: the chosen rows, [count][K]. */
-void gonio_i_swap_filter_turn_to(gonio_i_swap_filter *filter, const double *x, size_t position);
+/* Sets the position to test. x: the chosen rows, [count][K]. */
+void gonio_i_swap_filter_set_position(gonio_i_swap_filter *filter, const double *x,
+                                      size_t position);
 
 /* Of the rows first .. last - 1 of a chunk, those that pass, ascending, into
  * survivors[last - first + 1]; returns how many. */

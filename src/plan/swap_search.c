@@ -208,7 +208,7 @@ size_t gonio_i_swap_search_winners(gonio_i_swap_search *s, size_t position, size
 {
     const size_t rows = s->problem->rows;
     const size_t chunks = gonio_i_packed_rows_chunks(s->filter.packed);
-    gonio_i_swap_filter_turn_to(&s->filter, s->x, position);
+    gonio_i_swap_filter_set_position(&s->filter, s->x, position);
     size_t count = 0;
     size_t ahead = 1;
     for (size_t done = 0; done <= chunks && count < most; done += ahead) {
@@ -333,7 +333,7 @@ gonio_status gonio_i_swap_search_begin(gonio_i_swap_search *s, const size_t *cho
     return consider(s);
 }
 
-/* One turn through the positions. */
+/* One sweep over the positions. */
 static gonio_status sweep(gonio_i_swap_search *s, int restart, int *swaps,
                           gonio_i_selection *selection)
 {
@@ -373,13 +373,13 @@ gonio_status gonio_i_swap_search_descend(gonio_i_swap_search *s, int restart, in
 {
     gonio_status status = GONIO_OK;
     bool proved = s->problem->components < 2; /* kappa of one component is 1 */
-    for (int turn = 0; status == GONIO_OK && !proved; turn++) {
+    for (int sweeps = 0; status == GONIO_OK && !proved; sweeps++) {
         const int before = swaps;
         status = sweep(s, restart, &swaps, selection);
         proved = swaps == before;
         if (status == GONIO_OK) {
             status = gonio_i_swap_search_report(
-                s, proved ? 1.0 : turn / (turn + 20.0)); /* typically 20 to 40 */
+                s, proved ? 1.0 : sweeps / (sweeps + 20.0)); /* typically 20 to 40 */
         }
     }
     return status;
