@@ -20,8 +20,9 @@
 #include "../linalg/linalg.h"
 #include "mixtures.h"
 
-/* Tiles that one thread sums before it waits for its turn to add them up. */
-enum { TILES_A_TURN = 8 };
+/* Tiles that one thread sums before it waits to add its sum to the total. Batches are added in
+ * order. */
+enum { TILES_A_BATCH = 8 };
 
 static const double ORTHOGONAL = 1e-11; /* max |V'V - I| */
 
@@ -39,8 +40,8 @@ typedef struct learner {
     gonio_basis *basis;
     double *vectors; /* V before it is rounded */
     size_t tiles;
-    size_t turns;
-    size_t *finished; /* turns, over all passes */
+    size_t batches;
+    size_t *finished; /* batches, over all passes */
 } learner;
 
 void gonio_basis_options_default_of(gonio_basis_options *options, size_t size)
@@ -173,15 +174,15 @@ static gonio_status read_centred(const learner *l, size_t tile, gonio_i_row_rang
     return GONIO_OK;
 }
 
-/* One turn's work on one tile: adds to w->part. p is NULL in the first pass. */
+/* Work on one tile of a batch: adds to w->part. p is NULL in the first pass. */
 typedef gonio_status tile_work(const learner *l, gonio_i_row_range rows, const workspace *w,
                                const double *p);
 
-static gonio_status work_turn(const learner *l, tile_work *work, size_t turn, const workspace *w,
-                              const double *p, size_t n)
+static gonio_status work_on_batch(const learner *l, tile_work *work, size_t batch,
+                                  const workspace *w, const double *p, size_t n)
 {
-    const size_t first = turn * TILES_A_TURN;
-    const size_t end = first + TILES_A_TURN < l->tiles ? first + TILES_A_TURN : l->tiles;
+    const size_t first = batch * TILES_A_BATCH;
+    const size_t end = first + TILES_A_BATCH < l->tiles ? first + TILES_A_BATCH : l->tiles;
     gonio_status status = GONIO_OK;
     memset(w->part, 0, n * n * sizeof *w->part);
     for (size_t tile = first; tile < end && status == GONIO_OK; tile++) {
@@ -194,13 +195,13 @@ static gonio_status work_turn(const learner *l, tile_work *work, size_t turn, co
     return status;
 }
 
-static gonio_status report_turn(const learner *l)
+static gonio_status report_batch(const learner *l)
 {
     size_t done;
 #pragma omp atomic capture
     done = ++*l->finished;
     /* Two passes over the tiles. */
-    return gonio_i_progress(l->context, "learning", (double)done / (double)(2 * l->turns));
+    return gonio_i_progress(l->context, "learning", (double)done / (double)(2 * l->batches));
 }
 
 /* Goes through all tiles; sum (n x n): what the work has added to w->part, in order. */
@@ -213,15 +214,15 @@ static gonio_status for_each_tile(const learner *l, tile_work *work, const doubl
         workspace w = {0};
         gonio_status mine = make_workspace(l, &w) ? GONIO_OK : GONIO_ERROR_MEMORY;
 #pragma omp for ordered schedule(dynamic, 1)
-        for (size_t turn = 0; turn < l->turns; turn++) {
+        for (size_t batch = 0; batch < l->batches; batch++) {
             gonio_status so_far;
 #pragma omp atomic read
             so_far = result;
             if (mine == GONIO_OK && so_far == GONIO_OK) {
-                mine = work_turn(l, work, turn, &w, p, n);
+                mine = work_on_batch(l, work, batch, &w, p, n);
             }
             if (mine == GONIO_OK) {
-                mine = report_turn(l);
+                mine = report_batch(l);
             }
 #pragma omp ordered
             {
@@ -564,7 +565,7 @@ gonio_status gonio_i_basis_learn_exact(gonio_context *context, const gonio_datab
         return status;
     }
     l.tiles = gonio_i_database_tiles(database);
-    l.turns = (l.tiles + TILES_A_TURN - 1) / TILES_A_TURN;
+    l.batches = (l.tiles + TILES_A_BATCH - 1) / TILES_A_BATCH;
     size_t finished = 0;
     l.finished = &finished;
     l.basis = gonio_i_basis_allocate(context, l.materials, options->mixtures, l.view->cells,
