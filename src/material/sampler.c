@@ -7,7 +7,7 @@
 #include "../core/core.h"
 #include "inside.h"
 
-enum { TURNS = 8 };
+enum { AZIMUTHS = 8 };
 
 gonio_status gonio_i_sampler_begin(gonio_context *context, const gonio_material *material,
                                    bool average, gonio_i_sampler *sampler)
@@ -15,11 +15,11 @@ gonio_status gonio_i_sampler_begin(gonio_context *context, const gonio_material 
     *sampler = (gonio_i_sampler){.material = material,
                                  .view = gonio_material_describe(material),
                                  .average = average,
-                                 .turns = 1};
+                                 .azimuths = 1};
     if (average && sampler->view->anisotropic) {
-        sampler->turns = TURNS;
+        sampler->azimuths = AZIMUTHS;
         gonio_i_note(context, "%s: anisotropic; the mean over %d azimuths of the sample is written",
-                     sampler->view->name, TURNS);
+                     sampler->view->name, AZIMUTHS);
     }
     return material->source.evaluate == NULL ? gonio_table_load(context, material, &sampler->table)
                                              : GONIO_OK;
@@ -45,8 +45,8 @@ static gonio_status look_up(gonio_context *context, const gonio_i_sampler *s,
     return GONIO_OK;
 }
 
-/* Adds a turn's values to sums, and counts those that there are. */
-static void add_turn(const double *rotated, size_t count, double *sum, double *counts)
+/* Adds the values of one azimuth to sums, and counts those that exist. */
+static void add_azimuth(const double *rotated, size_t count, double *sum, double *counts)
 {
     for (size_t k = 0; k < count; k++) {
         sum[k] += isnan(rotated[k]) ? 0.0 : rotated[k];
@@ -54,8 +54,8 @@ static void add_turn(const double *rotated, size_t count, double *sum, double *c
     }
 }
 
-static gonio_status average_turns(gonio_context *context, const gonio_i_sampler *s,
-                                  const gonio_pair *pairs, size_t count, double *values)
+static gonio_status average_azimuths(gonio_context *context, const gonio_i_sampler *s,
+                                     const gonio_pair *pairs, size_t count, double *values)
 {
     const size_t numbers = count * s->view->channels;
     gonio_pair *rotated = gonio_i_allocate(context, count, sizeof *rotated);
@@ -66,16 +66,16 @@ static gonio_status average_turns(gonio_context *context, const gonio_i_sampler 
     for (size_t k = 0; k < numbers; k++) {
         values[k] = 0.0;
     }
-    for (size_t t = 0; t < s->turns && status == GONIO_OK; t++) {
+    for (size_t t = 0; t < s->azimuths && status == GONIO_OK; t++) {
         for (size_t k = 0; k < count; k++) {
-            const double angle = 2.0 * M_PI * (double)t / (double)s->turns;
+            const double angle = 2.0 * M_PI * (double)t / (double)s->azimuths;
             rotated[k] = pairs[k];
             rotated[k].incident.phi += angle;
             rotated[k].outgoing.phi += angle;
         }
         status = look_up(context, s, rotated, count, one);
         if (status == GONIO_OK) {
-            add_turn(one, numbers, values, counts);
+            add_azimuth(one, numbers, values, counts);
         }
     }
     for (size_t k = 0; k < numbers && status == GONIO_OK; k++) {
@@ -90,8 +90,8 @@ static gonio_status average_turns(gonio_context *context, const gonio_i_sampler 
 gonio_status gonio_i_sampler_values(gonio_context *context, const gonio_i_sampler *sampler,
                                     const gonio_pair *pairs, size_t count, double *values)
 {
-    return sampler->turns > 1 ? average_turns(context, sampler, pairs, count, values)
-                              : look_up(context, sampler, pairs, count, values);
+    return sampler->azimuths > 1 ? average_azimuths(context, sampler, pairs, count, values)
+                                 : look_up(context, sampler, pairs, count, values);
 }
 
 /* The colour of a direction's channels; NaN without data in all. */

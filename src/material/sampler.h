@@ -9,7 +9,7 @@ typedef struct gonio_i_sampler {
     const gonio_material_view *view;
     gonio_table *table; /* of a material that cannot be evaluated */
     bool average;       /* an anisotropic one is averaged over its azimuths */
-    size_t turns;       /* how many of them */
+    size_t azimuths;    /* how many of them */
 } gonio_i_sampler;
 
 /* `average`: whether an anisotropic material is looked up as an isotropic one, the mean over 8

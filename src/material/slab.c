@@ -7,7 +7,7 @@
 #include "../core/core.h"
 #include "inside.h"
 
-enum { TURNS = 8 /* azimuths of the half vector of an anisotropic material */ };
+enum { AZIMUTHS = 8 /* of the half vector of an anisotropic material */ };
 
 /* A row of bins along phi_d, and what its directions were found to be. */
 typedef struct row {
@@ -20,22 +20,22 @@ typedef struct row {
     double *mean;      /* [channels] */
 } row;
 
-static gonio_pair turn(gonio_pair pair, double angle)
+static gonio_pair rotate(gonio_pair pair, double angle)
 {
     pair.incident.phi += angle;
     pair.outgoing.phi += angle;
     return pair;
 }
 
-static void aim(row *r, gonio_bin bin)
+static void set_directions(row *r, gonio_bin bin)
 {
     const gonio_pair pair = gonio_pair_from_half_difference(gonio_bin_centre(bin));
     const gonio_pair back = {pair.outgoing, pair.incident};
     gonio_pair *at = r->pair + (size_t)bin.phi_d * r->directions;
     for (size_t k = 0; k < r->directions / 2; k++) {
         const double angle = 4.0 * M_PI * (double)k / (double)r->directions;
-        at[2 * k] = turn(pair, angle);
-        at[2 * k + 1] = turn(back, angle);
+        at[2 * k] = rotate(pair, angle);
+        at[2 * k + 1] = rotate(back, angle);
     }
 }
 
@@ -88,7 +88,7 @@ static gonio_status fill_row(gonio_context *context, row *r, int theta_h, int th
     }
     const int last = GONIO_PHI_D_BINS - first;
     for (int k = first; k < last; k++) {
-        aim(r, (gonio_bin){theta_h, theta_d, k});
+        set_directions(r, (gonio_bin){theta_h, theta_d, k});
     }
     const size_t start = (size_t)first * r->directions;
     gonio_status status = GONIO_OK;
@@ -113,7 +113,7 @@ gonio_status gonio_i_slab_evaluate(gonio_context *context, const gonio_material_
     row r = {.source = source,
              .weight = weight,
              .channels = source->channels,
-             .directions = source->anisotropic ? 2 * TURNS : 2};
+             .directions = source->anisotropic ? 2 * AZIMUTHS : 2};
     const size_t most = GONIO_PHI_D_BINS * r.directions;
     r.pair = gonio_i_allocate(context, most, sizeof *r.pair);
     r.value = gonio_i_allocate(context, most * r.channels, sizeof *r.value);

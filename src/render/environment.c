@@ -42,8 +42,8 @@ static const float *pixel_at(const gonio_environment *e, int column, int row)
 /* In pixels: 0 .. width from left to right, 0 .. height from the top. */
 static void place_of(const gonio_environment *e, const double direction[3], double *x, double *y)
 {
-    const double turn = atan2(direction[0], -direction[2]) / (2.0 * M_PI) + 0.5;
-    *x = turn * e->image->width;
+    const double revolutions = atan2(direction[0], -direction[2]) / (2.0 * M_PI) + 0.5;
+    *x = revolutions * e->image->width;
     *y = acos(fmin(fmax(direction[1], -1.0), 1.0)) / M_PI * e->image->height;
 }
 

@@ -112,7 +112,7 @@ static struct RTCRay ray_from(const double origin[3], const double direction[3],
                            .mask = UINT32_MAX};
 }
 
-static void turn_towards(const double side[3], double v[3])
+static void orient_towards(const double side[3], double v[3])
 {
     const double sign = gonio_i_dot3(side, v) < 0.0 ? -1.0 : 1.0;
     for (int k = 0; k < 3; k++) {
@@ -156,13 +156,13 @@ bool gonio_i_scene_trace(const gonio_i_scene *scene, const double origin[3],
     hit->face[1] = (double)found.hit.Ng_y;
     hit->face[2] = (double)found.hit.Ng_z;
     gonio_i_normalise(hit->face);
-    turn_towards(back, hit->face);
+    orient_towards(back, hit->face);
     if (scene->mesh == NULL) {
         memcpy(hit->normal, hit->face, sizeof hit->normal);
         return true;
     }
     interpolate_normal(scene->mesh, &found.hit, hit);
-    turn_towards(hit->face, hit->normal);
+    orient_towards(hit->face, hit->normal);
     if (gonio_i_dot3(hit->normal, back) <= 0.0) { /* at the rim of a coarse mesh */
         memcpy(hit->normal, hit->face, sizeof hit->normal);
     }

@@ -41,12 +41,12 @@ size_t gonio_i_klems_patches(const gonio_i_klems *basis)
 size_t gonio_i_klems_patch(const gonio_i_klems *basis, gonio_angles direction, bool incident)
 {
     const double theta = direction.theta * 180.0 / M_PI;
-    const double turn = direction.phi / (2.0 * M_PI) + (incident ? 0.5 : 0.0);
+    const double revolutions = direction.phi / (2.0 * M_PI) + (incident ? 0.5 : 0.0);
     size_t first = 0;
     for (size_t k = 0; k < basis->rings; k++) {
         const size_t patches = basis->patches[k];
         if (theta >= basis->bound[k] && theta < basis->bound[k + 1]) {
-            const double place = (turn - floor(turn)) * (double)patches + 0.5;
+            const double place = (revolutions - floor(revolutions)) * (double)patches + 0.5;
             return first + (size_t)place % patches;
         }
         first += patches;
@@ -65,6 +65,6 @@ gonio_angles gonio_i_klems_direction(const gonio_i_klems *basis, size_t patch, d
     const double low = sin(basis->bound[ring] * M_PI / 180.0);
     const double high = sin(basis->bound[ring + 1] * M_PI / 180.0);
     const double square = low * low + across * (high * high - low * low);
-    const double turn = ((double)patch + around - 0.5) / (double)basis->patches[ring];
-    return (gonio_angles){asin(sqrt(square)), 2.0 * M_PI * (turn + (incident ? 0.5 : 0.0))};
+    const double revolutions = ((double)patch + around - 0.5) / (double)basis->patches[ring];
+    return (gonio_angles){asin(sqrt(square)), 2.0 * M_PI * (revolutions + (incident ? 0.5 : 0.0))};
 }

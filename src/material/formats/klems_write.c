@@ -35,7 +35,7 @@ static gonio_angles sample_patch(const gonio_i_klems *basis, size_t patch, size_
     return gonio_i_klems_direction(basis, patch, across, around, incident);
 }
 
-static void aim(const writer *w, size_t in)
+static void set_directions(const writer *w, size_t in)
 {
     for (size_t out = 0; out < w->patches; out++) {
         for (size_t k = 0; k < SAMPLES * SAMPLES; k++) {
@@ -73,7 +73,7 @@ static gonio_status find_means(const writer *w)
 {
     gonio_status status = GONIO_OK;
     for (size_t in = 0; in < w->patches && status == GONIO_OK; in++) {
-        aim(w, in);
+        set_directions(w, in);
         status = gonio_i_sampler_colours(w->context, w->sampler, w->pair,
                                          w->patches * SAMPLES * SAMPLES, w->rgb);
         if (status == GONIO_OK) {

@@ -58,8 +58,9 @@ static spot locate(const fit *f, gonio_pair pair)
     const double x = sin(pair.incident.theta) + sin(pair.outgoing.theta) * cos(phi);
     const double y = sin(pair.outgoing.theta) * sin(phi);
     const double z = cos(pair.incident.theta) + cos(pair.outgoing.theta);
-    const double turn = (atan2(y, x) + M_PI) / (2.0 * M_PI);
-    const double u[2] = {sqrt(atan2(hypot(x, y), z) * (2.0 / M_PI)), turn - floor(turn)};
+    const double revolutions = (atan2(y, x) + M_PI) / (2.0 * M_PI);
+    const double u[2] = {sqrt(atan2(hypot(x, y), z) * (2.0 / M_PI)),
+                         revolutions - floor(revolutions)};
     double s[2];
     gonio_i_warp_invert(v->warp, &slice, u, s);
     const gonio_i_step t = gonio_i_step_among(f->theta, v->thetas, pair.incident.theta);

@@ -187,7 +187,7 @@ typedef struct place {
     bool measured;
 } place;
 
-static place aim(const writer *w, size_t t, size_t node, gonio_pair *pair)
+static place set_direction(const writer *w, size_t t, size_t node, gonio_pair *pair)
 {
     const gonio_i_blend slice = {1, {0}, {1.0}};
     const double last = (double)(w->side - 1);
@@ -294,10 +294,10 @@ static void store_luminance(writer *w, size_t t, const place *places)
     }
 }
 
-static void aim_all(const writer *w, size_t t, gonio_pair *pairs, place *places)
+static void set_all_directions(const writer *w, size_t t, gonio_pair *pairs, place *places)
 {
     for (size_t k = 0; k < w->side * w->side; k++) {
-        places[k] = aim(w, t, k, &pairs[k]);
+        places[k] = set_direction(w, t, k, &pairs[k]);
     }
 }
 
@@ -332,7 +332,7 @@ static gonio_status read_all(writer *w, workplace *p)
     gonio_status status = GONIO_OK;
     for (size_t t = 0; t < THETAS && status == GONIO_OK; t++) {
         bool any = false;
-        aim_all(w, t, p->pairs, p->places);
+        set_all_directions(w, t, p->pairs, p->places);
         status = read_incidence(w, p->pairs, p->rho, p->known, &any);
         if (status == GONIO_OK && any) {
             double *kept = p->latest;
@@ -342,12 +342,12 @@ static gonio_status read_all(writer *w, workplace *p)
             missing++;
         }
         for (size_t first = 0; any && first < missing; first++) {
-            aim_all(w, first, p->pairs, p->places);
+            set_all_directions(w, first, p->pairs, p->places);
             store_incidence(w, first, p->places, p->latest);
         }
         missing = any ? 0 : missing;
         if (status == GONIO_OK) {
-            aim_all(w, t, p->pairs, p->places);
+            set_all_directions(w, t, p->pairs, p->places);
             store_incidence(w, t, p->places, p->latest);
             status = gonio_i_progress(w->context, "writing", 0.3 * (double)(t + 1) / THETAS);
         }
@@ -377,7 +377,7 @@ static gonio_status find_values(writer *w)
         status = fit_values(w);
     }
     for (size_t t = 0; t < THETAS && status == GONIO_OK; t++) {
-        aim_all(w, t, p.pairs, p.places);
+        set_all_directions(w, t, p.pairs, p.places);
         store_luminance(w, t, p.places);
     }
     free(p.pairs);

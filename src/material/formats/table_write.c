@@ -22,7 +22,7 @@ typedef struct writer {
 } writer;
 
 /* The pairs at the centres of a slab's bins, either side of the reciprocal pair. */
-static void aim(const writer *w, int theta_h)
+static void set_directions(const writer *w, int theta_h)
 {
     for (int k = 0; k < BINS; k++) {
         const gonio_bin bin = {theta_h, k / GONIO_PHI_D_BINS, k % GONIO_PHI_D_BINS};
@@ -71,7 +71,7 @@ static gonio_status cannot_make(const writer *w)
 /* HDF5 is entered for the writing alone, as the material may come from HDF5 too. */
 static gonio_status write_slab(const writer *w, int theta_h)
 {
-    aim(w, theta_h);
+    set_directions(w, theta_h);
     const gonio_status status =
         gonio_i_sampler_values(w->context, w->sampler, w->pair, (size_t)BINS * SIDES, w->value);
     if (status != GONIO_OK) {

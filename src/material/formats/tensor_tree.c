@@ -201,11 +201,12 @@ static void disk_to_square(double x, double y, double square[2])
     square[1] = 0.5 * (b[quarter] + 1.0);
 }
 
-/* Of a direction whose azimuth is turned back by `turn`. */
-static void map_direction(gonio_angles direction, double turn, double square[2])
+/* Of a direction with `azimuth` subtracted from its own. */
+static void map_direction(gonio_angles direction, double azimuth, double square[2])
 {
     const double sine = sin(direction.theta);
-    disk_to_square(sine * cos(direction.phi - turn), sine * sin(direction.phi - turn), square);
+    disk_to_square(sine * cos(direction.phi - azimuth), sine * sin(direction.phi - azimuth),
+                   square);
 }
 
 double gonio_i_tensor_tree_value(const gonio_i_tensor_tree *tree, gonio_pair pair)

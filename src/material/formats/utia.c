@@ -49,8 +49,8 @@ typedef struct around {
 static around find_around(gonio_angles at)
 {
     const gonio_i_step t = gonio_i_step_evenly(THETAS, at.theta / ((THETAS - 1) * THETA_STEP));
-    const double turn = at.phi / (2.0 * M_PI);
-    const double place = (turn - floor(turn)) * PHIS;
+    const double revolutions = at.phi / (2.0 * M_PI);
+    const double place = (revolutions - floor(revolutions)) * PHIS;
     const size_t before = (size_t)place % PHIS;
     const double share = place - floor(place);
     around a;
