@@ -67,7 +67,7 @@ static gonio_status add_variances(gonio_context *context, const gonio_i_study *s
 }
 
 gonio_status gonio_i_compute_spectrum(const gonio_i_study *study, gonio_context *context,
-                                      const gonio_i_part *p, json_t *result)
+                                      const gonio_i_piece *p, json_t *result)
 {
     (void)p;
     json_t *all = json_array();
@@ -134,7 +134,7 @@ static gonio_status record_start(gonio_context *context, const gonio_basis *basi
 
 /* Each start is a plan of its own, since of several a plan keeps the rows of the best. */
 gonio_status gonio_i_compute_convergence(const gonio_i_study *study, gonio_context *context,
-                                         const gonio_i_part *p, json_t *result)
+                                         const gonio_i_piece *p, json_t *result)
 {
     (void)p;
     json_t *starts = json_array();
@@ -164,7 +164,7 @@ static json_t *entry_json(const gonio_plan_entry *entry)
 }
 
 gonio_status gonio_i_compute_directions(const gonio_i_study *study, gonio_context *context,
-                                        const gonio_i_part *p, json_t *result)
+                                        const gonio_i_piece *p, json_t *result)
 {
     gonio_plan *plan = NULL;
     gonio_basis *basis = NULL;
@@ -216,7 +216,7 @@ static gonio_status compute_samples(gonio_context *context, const gonio_i_study 
 }
 
 gonio_status gonio_i_compute_grid(const gonio_i_study *study, gonio_context *context,
-                                  const gonio_i_part *p, json_t *result)
+                                  const gonio_i_piece *p, json_t *result)
 {
     const gonio_i_split *split = &study->splits.split[p->split];
     gonio_i_trial trial;
@@ -244,7 +244,7 @@ gonio_status gonio_i_compute_grid(const gonio_i_study *study, gonio_context *con
 /* ---- Fig. 3(b) ---- */
 
 gonio_status gonio_i_compute_method(const gonio_i_study *study, gonio_context *context,
-                                    const gonio_i_part *p, json_t *result)
+                                    const gonio_i_piece *p, json_t *result)
 {
     const gonio_i_split *split = &study->splits.split[p->split];
     const gonio_i_method_entry *method = gonio_i_method_at(p->index);
@@ -300,7 +300,7 @@ static size_t *list_others(gonio_context *context, const gonio_i_study *study, s
 }
 
 gonio_status gonio_i_compute_left_out(const gonio_i_study *study, gonio_context *context,
-                                      const gonio_i_part *p, json_t *result)
+                                      const gonio_i_piece *p, json_t *result)
 {
     const size_t material = study->left_out[p->index];
     double condition[GONIO_I_CHOSEN];
@@ -329,7 +329,7 @@ gonio_status gonio_i_compute_left_out(const gonio_i_study *study, gonio_context 
 
 /* The method that the paper quotes beside its own. */
 gonio_status gonio_i_compute_quoted(const gonio_i_study *study, gonio_context *context,
-                                    const gonio_i_part *p, json_t *result)
+                                    const gonio_i_piece *p, json_t *result)
 {
     size_t material = study->quoted[p->index].material;
     const size_t count = study->collection.count - 1;

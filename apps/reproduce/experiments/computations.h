@@ -5,15 +5,15 @@
 #include "experiments.h"
 
 /* One piece: what kind it is, and which of them. */
-typedef struct gonio_i_part {
+typedef struct gonio_i_piece {
     int kind; /* in the table of experiments.c */
     size_t split;
     size_t index; /* of the grid's components, the method, the chosen size, the left-out material */
-} gonio_i_part;
+} gonio_i_piece;
 
 /* Computes a piece into a JSON object, in the form that experiments.h tells. */
 typedef gonio_status gonio_i_compute(const gonio_i_study *study, gonio_context *context,
-                                     const gonio_i_part *p, json_t *result);
+                                     const gonio_i_piece *p, json_t *result);
 
 gonio_i_compute gonio_i_compute_spectrum;
 gonio_i_compute gonio_i_compute_convergence;

@@ -11,7 +11,7 @@
 typedef struct plan_of_work {
     const gonio_i_study *study;
     size_t count;
-    gonio_i_part *part; /* [count] */
+    gonio_i_piece *pieces; /* [count] */
 } plan_of_work;
 
 /* ---- costs: seconds, roughly ---- */
@@ -28,18 +28,18 @@ static double size_cost(gonio_i_size size)
     return plan_cost(size.components, size.samples);
 }
 
-static double spectrum_cost(const gonio_i_study *study, const gonio_i_part *p)
+static double spectrum_cost(const gonio_i_study *study, const gonio_i_piece *p)
 {
     (void)p;
     return 0.05 * (double)(1 + study->splits.count);
 }
 
-static double shown_cost(const gonio_i_study *study, const gonio_i_part *p)
+static double shown_cost(const gonio_i_study *study, const gonio_i_piece *p)
 {
     return 0.05 + GONIO_I_STARTS * size_cost(study->chosen[p->index]);
 }
 
-static double grid_cost(const gonio_i_study *study, const gonio_i_part *p)
+static double grid_cost(const gonio_i_study *study, const gonio_i_piece *p)
 {
     const double tests = (double)study->splits.split[p->split].test_count;
     double cost = 0.1;
@@ -54,20 +54,20 @@ static double grid_cost(const gonio_i_study *study, const gonio_i_part *p)
 static const double JOINT_COST = 40.0;
 static const double SEPARATE_COST = 15.0;
 
-static bool is_of_full_grid(const gonio_i_study *study, const gonio_i_part *p)
+static bool is_of_full_grid(const gonio_i_study *study, const gonio_i_piece *p)
 {
     (void)study;
     return gonio_i_method_at(p->index)->representation == GONIO_FULL;
 }
 
-static bool is_always(const gonio_i_study *study, const gonio_i_part *p)
+static bool is_always(const gonio_i_study *study, const gonio_i_piece *p)
 {
     (void)study;
     (void)p;
     return true;
 }
 
-static double quoted_cost(const gonio_i_study *study, const gonio_i_part *p)
+static double quoted_cost(const gonio_i_study *study, const gonio_i_piece *p)
 {
     (void)study;
     (void)p;
@@ -75,7 +75,7 @@ static double quoted_cost(const gonio_i_study *study, const gonio_i_part *p)
 }
 
 /* A random choice costs nothing. */
-static double method_cost(const gonio_i_study *study, const gonio_i_part *p)
+static double method_cost(const gonio_i_study *study, const gonio_i_piece *p)
 {
     const gonio_i_method_entry *method = gonio_i_method_at(p->index);
     if (is_of_full_grid(study, p)) {
@@ -86,7 +86,7 @@ static double method_cost(const gonio_i_study *study, const gonio_i_part *p)
                : 0.1 + size_cost(gonio_i_method_size(study, method));
 }
 
-static double left_out_cost(const gonio_i_study *study, const gonio_i_part *p)
+static double left_out_cost(const gonio_i_study *study, const gonio_i_piece *p)
 {
     (void)p;
     double cost = 0.2;
@@ -102,10 +102,10 @@ typedef struct kind {
     gonio_i_experiment experiment;
     bool by_split;
     size_t (*count)(const gonio_i_study *study); /* for each split; NULL for one */
-    char *(*name)(const gonio_i_study *study, const gonio_i_part *p);
-    double (*cost)(const gonio_i_study *study, const gonio_i_part *p);
+    char *(*name)(const gonio_i_study *study, const gonio_i_piece *p);
+    double (*cost)(const gonio_i_study *study, const gonio_i_piece *p);
     gonio_i_compute *compute;
-    bool (*one_at_a_time)(const gonio_i_study *study, const gonio_i_part *p); /* NULL for no */
+    bool (*one_at_a_time)(const gonio_i_study *study, const gonio_i_piece *p); /* NULL for no */
 } kind;
 
 enum { KINDS = 9 };
@@ -114,36 +114,36 @@ static const kind kinds[KINDS];
 
 /* ---- names ---- */
 
-static char *plain_name(const gonio_i_study *study, const gonio_i_part *p)
+static char *plain_name(const gonio_i_study *study, const gonio_i_piece *p)
 {
     (void)study;
     return strdup(gonio_experiment_name((int)kinds[p->kind].experiment));
 }
 
-static char *grid_name(const gonio_i_study *study, const gonio_i_part *p)
+static char *grid_name(const gonio_i_study *study, const gonio_i_piece *p)
 {
     return gonio_i_format("fig3a-split-%02zu-basis-%zu", p->split + 1,
                           study->grid_component[p->index]);
 }
 
-static char *method_name(const gonio_i_study *study, const gonio_i_part *p)
+static char *method_name(const gonio_i_study *study, const gonio_i_piece *p)
 {
     (void)study;
     return gonio_i_format("fig3b-%s-split-%02zu", gonio_i_method_at(p->index)->name, p->split + 1);
 }
 
-static char *directions_name(const gonio_i_study *study, const gonio_i_part *p)
+static char *directions_name(const gonio_i_study *study, const gonio_i_piece *p)
 {
     return gonio_i_format("fig4-samples-%zu", study->chosen[p->index].samples);
 }
 
-static char *left_out_name(const gonio_i_study *study, const gonio_i_part *p)
+static char *left_out_name(const gonio_i_study *study, const gonio_i_piece *p)
 {
     return gonio_i_format("fig5-%s",
                           gonio_i_name_of(&study->collection, study->left_out[p->index]));
 }
 
-static char *quoted_name(const gonio_i_study *study, const gonio_i_part *p)
+static char *quoted_name(const gonio_i_study *study, const gonio_i_piece *p)
 {
     return gonio_i_format("fig5-%s-%s", gonio_i_quoted_method()->name,
                           gonio_i_name_of(&study->collection, study->quoted[p->index].material));
@@ -151,18 +151,18 @@ static char *quoted_name(const gonio_i_study *study, const gonio_i_part *p)
 
 /* ---- Fig. 6 and Fig. 7 ---- */
 
-static double rendering_cost(const gonio_i_study *study, const gonio_i_part *p)
+static double rendering_cost(const gonio_i_study *study, const gonio_i_piece *p)
 {
     return gonio_i_rendering_cost(study, kinds[p->kind].experiment, p->index);
 }
 
-static char *rendering_name(const gonio_i_study *study, const gonio_i_part *p)
+static char *rendering_name(const gonio_i_study *study, const gonio_i_piece *p)
 {
     return gonio_i_rendering_name(study, kinds[p->kind].experiment, p->index);
 }
 
 static gonio_status compute_rendering(const gonio_i_study *study, gonio_context *context,
-                                      const gonio_i_part *p, json_t *result)
+                                      const gonio_i_piece *p, json_t *result)
 {
     return gonio_i_compute_rendering(study, context, kinds[p->kind].experiment, p->index, result);
 }
@@ -229,25 +229,25 @@ static size_t indices_of(const gonio_i_study *study, int k)
     return kinds[k].count != NULL ? kinds[k].count(study) : 1;
 }
 
-static size_t parts_of(const gonio_i_study *study, int k)
+static size_t pieces_of(const gonio_i_study *study, int k)
 {
     return study->wanted[kinds[k].experiment] ? splits_of(study, k) * indices_of(study, k) : 0;
 }
 
-static gonio_status list_parts(gonio_context *context, plan_of_work *work)
+static gonio_status list_pieces(gonio_context *context, plan_of_work *work)
 {
     size_t count = 0;
     for (int k = 0; k < KINDS; k++) {
-        count += parts_of(work->study, k);
+        count += pieces_of(work->study, k);
     }
-    work->part = gonio_i_allocate(context, count, sizeof *work->part);
-    if (work->part == NULL) {
+    work->pieces = gonio_i_allocate(context, count, sizeof *work->pieces);
+    if (work->pieces == NULL) {
         return GONIO_ERROR_MEMORY;
     }
     for (int k = 0; k < KINDS; k++) {
         const size_t indices = indices_of(work->study, k);
-        for (size_t n = 0; n < parts_of(work->study, k); n++) {
-            work->part[work->count++] = (gonio_i_part){k, n / indices, n % indices};
+        for (size_t n = 0; n < pieces_of(work->study, k); n++) {
+            work->pieces[work->count++] = (gonio_i_piece){k, n / indices, n % indices};
         }
     }
     return GONIO_OK;
@@ -258,28 +258,28 @@ static gonio_status list_parts(gonio_context *context, plan_of_work *work)
 static char *name_of(void *user, size_t piece)
 {
     const plan_of_work *work = user;
-    const gonio_i_part *p = &work->part[piece];
+    const gonio_i_piece *p = &work->pieces[piece];
     return kinds[p->kind].name(work->study, p);
 }
 
 static double cost_of(void *user, size_t piece)
 {
     const plan_of_work *work = user;
-    const gonio_i_part *p = &work->part[piece];
+    const gonio_i_piece *p = &work->pieces[piece];
     return kinds[p->kind].cost(work->study, p);
 }
 
 static bool is_one_at_a_time(void *user, size_t piece)
 {
     const plan_of_work *work = user;
-    const gonio_i_part *p = &work->part[piece];
+    const gonio_i_piece *p = &work->pieces[piece];
     return kinds[p->kind].one_at_a_time != NULL && kinds[p->kind].one_at_a_time(work->study, p);
 }
 
 static gonio_status compute(void *user, gonio_context *context, size_t piece, json_t **result)
 {
     const plan_of_work *work = user;
-    const gonio_i_part *p = &work->part[piece];
+    const gonio_i_piece *p = &work->pieces[piece];
     json_t *made = json_object();
     const gonio_status status = kinds[p->kind].compute(work->study, context, p, made);
     if (status != GONIO_OK) {
@@ -306,8 +306,8 @@ void gonio_i_results_free(gonio_i_results *results)
     *results = (gonio_i_results){0};
 }
 
-/* [split][index] of one kind, from the flat list in the order of the parts; [index] where there are
- * no splits, and one result where there is one. */
+/* [split][index] of one kind, from the flat list in the order of the pieces; [index] where there
+ * are no splits, and one result where there is one. */
 static json_t *nest(const gonio_i_study *study, int k, json_t **flat)
 {
     const size_t indices = indices_of(study, k);
@@ -336,7 +336,7 @@ static void sort_results(const gonio_i_study *study, json_t **flat, gonio_i_resu
     for (int k = 0; k < KINDS; k++) {
         if (study->wanted[kinds[k].experiment]) {
             *place[k] = nest(study, k, flat);
-            flat += parts_of(study, k);
+            flat += pieces_of(study, k);
         }
     }
 }
@@ -346,7 +346,7 @@ gonio_status gonio_i_run_experiments(gonio_context *context, const gonio_i_study
 {
     plan_of_work work = {.study = study};
     *results = (gonio_i_results){0};
-    gonio_status status = list_parts(context, &work);
+    gonio_status status = list_pieces(context, &work);
     json_t **flat = gonio_i_allocate(context, work.count, sizeof(json_t *));
     if (status == GONIO_OK && flat == NULL) {
         status = GONIO_ERROR_MEMORY;
@@ -368,6 +368,6 @@ gonio_status gonio_i_run_experiments(gonio_context *context, const gonio_i_study
         json_decref(flat[k]);
     }
     free(flat);
-    free(work.part);
+    free(work.pieces);
     return status;
 }
