@@ -124,22 +124,22 @@ static void put_plot(FILE *script, const gonio_i_categories *figure)
 gonio_status gonio_i_figure_categories(gonio_context *context, gonio_i_figures *figures,
                                        const gonio_i_categories *figure)
 {
-    gonio_i_sheet sheet;
+    gonio_i_figure_output output;
     gonio_i_range y = GONIO_I_NO_RANGE;
     gonio_status status = check(context, figure, &y);
     place *order = status == GONIO_OK ? sort(context, figure) : NULL;
     if (order == NULL) {
         return status != GONIO_OK ? status : GONIO_ERROR_MEMORY;
     }
-    status = gonio_i_sheet_begin(context, figure->name, figure->title, &sheet);
+    status = gonio_i_figure_output_begin(context, figure->name, figure->title, &output);
     if (status == GONIO_OK) {
-        put_data(sheet.data, figure, order);
-        gonio_i_put_axis(sheet.script, "y", &figure->y, &y);
-        put_settings(sheet.script, figure, order);
-        gonio_i_sheet_begin_drawing(&sheet, WIDTH, HEIGHT);
-        put_plot(sheet.script, figure);
-        gonio_i_sheet_end_drawing(&sheet);
-        status = gonio_i_sheet_end(&sheet, figures, status);
+        put_data(output.data, figure, order);
+        gonio_i_put_axis(output.script, "y", &figure->y, &y);
+        put_settings(output.script, figure, order);
+        gonio_i_figure_output_begin_drawing(&output, WIDTH, HEIGHT);
+        put_plot(output.script, figure);
+        gonio_i_figure_output_end_drawing(&output);
+        status = gonio_i_figure_output_end(&output, figures, status);
     }
     free(order);
     return status;

@@ -134,23 +134,23 @@ static void put_place(FILE *script, const gonio_i_curves *figure)
 gonio_status gonio_i_figure_curves(gonio_context *context, gonio_i_figures *figures,
                                    const gonio_i_curves *figure)
 {
-    gonio_i_sheet sheet;
+    gonio_i_figure_output output;
     gonio_i_range x = GONIO_I_NO_RANGE;
     gonio_i_range y = GONIO_I_NO_RANGE;
     gonio_status status = find_ranges(context, figure, &x, &y);
     if (status == GONIO_OK) {
-        status = gonio_i_sheet_begin(context, figure->name, figure->title, &sheet);
+        status = gonio_i_figure_output_begin(context, figure->name, figure->title, &output);
     }
     if (status != GONIO_OK) {
         return status;
     }
-    put_data(sheet.data, figure);
-    gonio_i_put_axis(sheet.script, "x", &figure->x, &x);
-    gonio_i_put_axis(sheet.script, "y", &figure->y, &y);
-    fprintf(sheet.script, "\ndata = '%s.csv'\n", figure->name);
-    put_place(sheet.script, figure);
-    gonio_i_sheet_begin_drawing(&sheet, 640, 420);
-    put_plot(sheet.script, figure);
-    gonio_i_sheet_end_drawing(&sheet);
-    return gonio_i_sheet_end(&sheet, figures, GONIO_OK);
+    put_data(output.data, figure);
+    gonio_i_put_axis(output.script, "x", &figure->x, &x);
+    gonio_i_put_axis(output.script, "y", &figure->y, &y);
+    fprintf(output.script, "\ndata = '%s.csv'\n", figure->name);
+    put_place(output.script, figure);
+    gonio_i_figure_output_begin_drawing(&output, 640, 420);
+    put_plot(output.script, figure);
+    gonio_i_figure_output_end_drawing(&output);
+    return gonio_i_figure_output_end(&output, figures, GONIO_OK);
 }

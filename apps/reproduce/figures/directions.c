@@ -82,10 +82,10 @@ static void put_panel(FILE *script, const gonio_i_directions *figure, size_t p)
         p + 1, p + 1);
 }
 
-static void put_drawing(gonio_i_sheet *sheet, const gonio_i_directions *figure)
+static void put_drawing(gonio_i_figure_output *output, const gonio_i_directions *figure)
 {
-    FILE *s = sheet->script;
-    gonio_i_sheet_begin_drawing(sheet, PANEL_WIDTH * (int)figure->count, PANEL_HEIGHT);
+    FILE *s = output->script;
+    gonio_i_figure_output_begin_drawing(output, PANEL_WIDTH * (int)figure->count, PANEL_HEIGHT);
     fprintf(s,
             "  set key at screen 0.5,0.05 center center horizontal Left reverse samplen 1 width 3\n"
             "  set multiplot layout 1,%zu margins 0.01,0.99,0.1,%s spacing 0.02,0",
@@ -100,28 +100,28 @@ static void put_drawing(gonio_i_sheet *sheet, const gonio_i_directions *figure)
         put_panel(s, figure, p);
     }
     fputs("  unset multiplot\n", s);
-    gonio_i_sheet_end_drawing(sheet);
+    gonio_i_figure_output_end_drawing(output);
 }
 
 gonio_status gonio_i_figure_directions(gonio_context *context, gonio_i_figures *figures,
                                        const gonio_i_directions *figure)
 {
-    gonio_i_sheet sheet;
+    gonio_i_figure_output output;
     gonio_status status = check(context, figure);
     if (status == GONIO_OK) {
-        status = gonio_i_sheet_begin(context, figure->name, NULL, &sheet);
+        status = gonio_i_figure_output_begin(context, figure->name, NULL, &output);
     }
     if (status != GONIO_OK) {
         return status;
     }
-    put_data(sheet.data, figure);
-    fprintf(sheet.script,
+    put_data(output.data, figure);
+    fprintf(output.script,
             "\ndata = '%s.csv'\n"
             "# The hemisphere seen from above.\n"
             "radius(theta) = %s\n",
             figure->name,
             figure->projection == GONIO_I_ORTHOGRAPHIC ? "sin(theta * pi / 180)" : "theta / 90.0");
-    fputs(hemisphere, sheet.script);
-    put_drawing(&sheet, figure);
-    return gonio_i_sheet_end(&sheet, figures, GONIO_OK);
+    fputs(hemisphere, output.script);
+    put_drawing(&output, figure);
+    return gonio_i_figure_output_end(&output, figures, GONIO_OK);
 }

@@ -215,21 +215,21 @@ static bool is_file_name(const char *name)
     return *name != '\0' && strlen(name) <= 100 && name[strspn(name, plain)] == '\0';
 }
 
-static void release(gonio_i_sheet *sheet)
+static void release(gonio_i_figure_output *output)
 {
-    if (sheet->plain != (locale_t)0) {
-        uselocale(sheet->before);
-        freelocale(sheet->plain);
+    if (output->plain != (locale_t)0) {
+        uselocale(output->before);
+        freelocale(output->plain);
     }
-    free(sheet->data_text);
-    free(sheet->script_text);
-    *sheet = (gonio_i_sheet){0};
+    free(output->data_text);
+    free(output->script_text);
+    *output = (gonio_i_figure_output){0};
 }
 
 /* Whether all that was put into the texts is there. */
-static bool close_texts(gonio_i_sheet *sheet)
+static bool close_texts(gonio_i_figure_output *output)
 {
-    FILE *const streams[] = {sheet->data, sheet->script};
+    FILE *const streams[] = {output->data, output->script};
     bool fine = true;
     for (int k = 0; k < 2; k++) {
         fine = fine && streams[k] != NULL && ferror(streams[k]) == 0;
@@ -238,40 +238,40 @@ static bool close_texts(gonio_i_sheet *sheet)
     return fine;
 }
 
-gonio_status gonio_i_sheet_begin(gonio_context *context, const char *name, const char *title,
-                                 gonio_i_sheet *sheet)
+gonio_status gonio_i_figure_output_begin(gonio_context *context, const char *name,
+                                         const char *title, gonio_i_figure_output *output)
 {
     if (!is_file_name(name)) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
                             "a figure's name is of letters, digits, '-' and '_', not '%s'", name);
     }
-    *sheet = (gonio_i_sheet){.context = context, .name = name};
-    sheet->data = open_memstream(&sheet->data_text, &sheet->data_size);
-    sheet->script = open_memstream(&sheet->script_text, &sheet->script_size);
-    sheet->plain = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0);
-    if (sheet->data == NULL || sheet->script == NULL || sheet->plain == (locale_t)0) {
-        close_texts(sheet);
-        release(sheet);
+    *output = (gonio_i_figure_output){.context = context, .name = name};
+    output->data = open_memstream(&output->data_text, &output->data_size);
+    output->script = open_memstream(&output->script_text, &output->script_size);
+    output->plain = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0);
+    if (output->data == NULL || output->script == NULL || output->plain == (locale_t)0) {
+        close_texts(output);
+        release(output);
         return gonio_i_fail(context, GONIO_ERROR_MEMORY, "figure %s: out of memory", name);
     }
-    sheet->before = uselocale(sheet->plain);
-    fprintf(sheet->script,
+    output->before = uselocale(output->plain);
+    fprintf(output->script,
             "# Run 'gnuplot %s.gp' here to draw %s.svg, .pdf and .png from %s.csv.\n", name, name,
             name);
-    fputs(style, sheet->script);
+    fputs(style, output->script);
     if (title != NULL) {
-        fputs("set title ", sheet->script);
-        gonio_i_put_quoted(sheet->script, title);
-        fputs(" noenhanced\n", sheet->script);
+        fputs("set title ", output->script);
+        gonio_i_put_quoted(output->script, title);
+        fputs(" noenhanced\n", output->script);
     }
     return GONIO_OK;
 }
 
-void gonio_i_sheet_begin_drawing(gonio_i_sheet *sheet, int width, int height)
+void gonio_i_figure_output_begin_drawing(gonio_i_figure_output *output, int width, int height)
 {
     enum { PNG_WIDTH = 1600, FONT = 12 };
     const double zoom = (double)PNG_WIDTH / width;
-    FILE *s = sheet->script;
+    FILE *s = output->script;
     fprintf(s,
             "\ndo for [format in 'svg pdf png'] {\n"
             "  if (format eq 'svg') { set terminal svg size %d,%d noenhanced font 'sans-serif,%d' "
@@ -284,12 +284,12 @@ void gonio_i_sheet_begin_drawing(gonio_i_sheet *sheet, int width, int height)
             "font 'sans-serif,%d' fontscale %.4g linewidth %.4g pointscale %.4g "
             "background 'white' }\n"
             "  set output '%s.'.format\n",
-            PNG_WIDTH, height * zoom, FONT, 0.75 * zoom, zoom, zoom, sheet->name);
+            PNG_WIDTH, height * zoom, FONT, 0.75 * zoom, zoom, zoom, output->name);
 }
 
-void gonio_i_sheet_end_drawing(gonio_i_sheet *sheet)
+void gonio_i_figure_output_end_drawing(gonio_i_figure_output *output)
 {
-    fputs("}\nset output\n", sheet->script);
+    fputs("}\nset output\n", output->script);
 }
 
 /* ---- the files ---- */
@@ -299,17 +299,17 @@ static const char *const endings[] = {"csv", "gp", "svg", "pdf", "png"};
 enum { TEXTS = 2, FILES = sizeof endings / sizeof *endings };
 
 /* Puts the first `count` files from the folder where they were made into place. */
-static gonio_status put_in_place(const gonio_i_sheet *sheet, const char *from, const char *to,
-                                 int count)
+static gonio_status put_in_place(const gonio_i_figure_output *output, const char *from,
+                                 const char *to, int count)
 {
     gonio_status status = GONIO_OK;
     for (int k = 0; k < count && status == GONIO_OK; k++) {
-        char *made = gonio_i_format("%s/%s.%s", from, sheet->name, endings[k]);
-        char *place = gonio_i_format("%s/%s.%s", to, sheet->name, endings[k]);
+        char *made = gonio_i_format("%s/%s.%s", from, output->name, endings[k]);
+        char *place = gonio_i_format("%s/%s.%s", to, output->name, endings[k]);
         if (made == NULL || place == NULL) {
-            status = gonio_i_fail(sheet->context, GONIO_ERROR_MEMORY, "out of memory");
+            status = gonio_i_fail(output->context, GONIO_ERROR_MEMORY, "out of memory");
         } else if (rename(made, place) != 0) {
-            status = gonio_i_fail(sheet->context, GONIO_ERROR_IO, "%s: cannot write: %s", place,
+            status = gonio_i_fail(output->context, GONIO_ERROR_IO, "%s: cannot write: %s", place,
                                   strerror(errno));
         }
         free(made);
@@ -318,10 +318,10 @@ static gonio_status put_in_place(const gonio_i_sheet *sheet, const char *from, c
     return status;
 }
 
-static void remove_workshop(const gonio_i_sheet *sheet, const char *workshop)
+static void remove_workshop(const gonio_i_figure_output *output, const char *workshop)
 {
     for (int k = 0; k < FILES; k++) {
-        char *path = gonio_i_format("%s/%s.%s", workshop, sheet->name, endings[k]);
+        char *path = gonio_i_format("%s/%s.%s", workshop, output->name, endings[k]);
         if (path != NULL) {
             unlink(path);
         }
@@ -330,14 +330,14 @@ static void remove_workshop(const gonio_i_sheet *sheet, const char *workshop)
     rmdir(workshop);
 }
 
-static gonio_status write_texts(const gonio_i_sheet *sheet, const char *workshop)
+static gonio_status write_texts(const gonio_i_figure_output *output, const char *workshop)
 {
-    const char *const texts[TEXTS] = {sheet->data_text, sheet->script_text};
-    gonio_status status = gonio_i_make_folder(sheet->context, workshop);
+    const char *const texts[TEXTS] = {output->data_text, output->script_text};
+    gonio_status status = gonio_i_make_folder(output->context, workshop);
     for (int k = 0; k < TEXTS && status == GONIO_OK; k++) {
-        char *path = gonio_i_format("%s/%s.%s", workshop, sheet->name, endings[k]);
-        status = path != NULL ? gonio_i_write_text(sheet->context, path, texts[k])
-                              : gonio_i_fail(sheet->context, GONIO_ERROR_MEMORY, "out of memory");
+        char *path = gonio_i_format("%s/%s.%s", workshop, output->name, endings[k]);
+        status = path != NULL ? gonio_i_write_text(output->context, path, texts[k])
+                              : gonio_i_fail(output->context, GONIO_ERROR_MEMORY, "out of memory");
         free(path);
     }
     return status;
@@ -355,10 +355,10 @@ static void forget_day(char *pdf, size_t size)
     }
 }
 
-static gonio_status forget_days(const gonio_i_sheet *sheet, const char *workshop)
+static gonio_status forget_days(const gonio_i_figure_output *output, const char *workshop)
 {
     struct stat status;
-    char *path = gonio_i_format("%s/%s.pdf", workshop, sheet->name);
+    char *path = gonio_i_format("%s/%s.pdf", workshop, output->name);
     const int descriptor = path != NULL ? open(path, O_RDWR | O_CLOEXEC) : -1;
     char *pdf = MAP_FAILED;
     if (descriptor >= 0 && fstat(descriptor, &status) == 0) {
@@ -369,8 +369,8 @@ static gonio_status forget_days(const gonio_i_sheet *sheet, const char *workshop
         forget_day(pdf, (size_t)status.st_size);
         munmap(pdf, (size_t)status.st_size);
     } else {
-        gonio_i_fail(sheet->context, GONIO_ERROR_IO, "%s.pdf: gnuplot has not drawn it: %s",
-                     sheet->name, strerror(errno));
+        gonio_i_fail(output->context, GONIO_ERROR_IO, "%s.pdf: gnuplot has not drawn it: %s",
+                     output->name, strerror(errno));
     }
     if (descriptor >= 0) {
         close(descriptor);
@@ -379,10 +379,10 @@ static gonio_status forget_days(const gonio_i_sheet *sheet, const char *workshop
     return fine ? GONIO_OK : GONIO_ERROR_IO;
 }
 
-static void note_undrawn(const gonio_i_sheet *sheet, gonio_i_figures *figures)
+static void note_undrawn(const gonio_i_figure_output *output, gonio_i_figures *figures)
 {
     if (!figures->undrawn) {
-        gonio_i_note(sheet->context,
+        gonio_i_note(output->context,
                      "no figures were drawn, because gnuplot is not on PATH: install it "
                      "(gnuplot-nox) and, in %s, run: for f in *.gp; do gnuplot $f; done",
                      figures->folder);
@@ -391,53 +391,55 @@ static void note_undrawn(const gonio_i_sheet *sheet, gonio_i_figures *figures)
 }
 
 /* Data and script stay even if gnuplot fails, so that people can see why. */
-static gonio_status draw(const gonio_i_sheet *sheet, gonio_i_figures *figures, const char *workshop)
+static gonio_status draw(const gonio_i_figure_output *output, gonio_i_figures *figures,
+                         const char *workshop)
 {
     bool found = false;
-    char *script = gonio_i_format("%s.gp", sheet->name);
+    char *script = gonio_i_format("%s.gp", output->name);
     if (script == NULL) {
-        return gonio_i_fail(sheet->context, GONIO_ERROR_MEMORY, "out of memory");
+        return gonio_i_fail(output->context, GONIO_ERROR_MEMORY, "out of memory");
     }
-    gonio_status drawn = gonio_i_gnuplot(sheet->context, workshop, script, &found);
+    gonio_status drawn = gonio_i_gnuplot(output->context, workshop, script, &found);
     free(script);
     if (drawn == GONIO_OK && found) {
-        drawn = forget_days(sheet, workshop);
+        drawn = forget_days(output, workshop);
     } else if (drawn == GONIO_OK) {
-        note_undrawn(sheet, figures);
+        note_undrawn(output, figures);
     }
     const gonio_status status =
-        put_in_place(sheet, workshop, figures->folder, drawn == GONIO_OK && found ? FILES : TEXTS);
+        put_in_place(output, workshop, figures->folder, drawn == GONIO_OK && found ? FILES : TEXTS);
     return drawn != GONIO_OK ? drawn : status;
 }
 
 /* Files are made in a folder of their own, to appear together when they are whole. */
-static gonio_status make_files(const gonio_i_sheet *sheet, gonio_i_figures *figures)
+static gonio_status make_files(const gonio_i_figure_output *output, gonio_i_figures *figures)
 {
-    char *workshop = gonio_i_format("%s/%s.part", figures->folder, sheet->name);
+    char *workshop = gonio_i_format("%s/%s.part", figures->folder, output->name);
     if (workshop == NULL) {
-        return gonio_i_fail(sheet->context, GONIO_ERROR_MEMORY, "out of memory");
+        return gonio_i_fail(output->context, GONIO_ERROR_MEMORY, "out of memory");
     }
-    gonio_status status = gonio_i_make_folder(sheet->context, figures->folder);
+    gonio_status status = gonio_i_make_folder(output->context, figures->folder);
     if (status == GONIO_OK) {
-        status = write_texts(sheet, workshop);
+        status = write_texts(output, workshop);
         if (status == GONIO_OK) {
-            status = draw(sheet, figures, workshop);
+            status = draw(output, figures, workshop);
         }
-        remove_workshop(sheet, workshop);
+        remove_workshop(output, workshop);
     }
     free(workshop);
     return status;
 }
 
-gonio_status gonio_i_sheet_end(gonio_i_sheet *sheet, gonio_i_figures *figures, gonio_status status)
+gonio_status gonio_i_figure_output_end(gonio_i_figure_output *output, gonio_i_figures *figures,
+                                       gonio_status status)
 {
-    if (!close_texts(sheet) && status == GONIO_OK) {
-        status = gonio_i_fail(sheet->context, GONIO_ERROR_MEMORY, "figure %s: out of memory",
-                              sheet->name);
+    if (!close_texts(output) && status == GONIO_OK) {
+        status = gonio_i_fail(output->context, GONIO_ERROR_MEMORY, "figure %s: out of memory",
+                              output->name);
     }
     if (status == GONIO_OK) {
-        status = make_files(sheet, figures);
+        status = make_files(output, figures);
     }
-    release(sheet);
+    release(output);
     return status;
 }

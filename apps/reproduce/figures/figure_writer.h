@@ -1,5 +1,5 @@
-/* A figure in the making: its data and its script as text, and from them the files. What the kinds
- * of figures (curves.c, map.c ...) share. */
+/* A figure while it is written: its data and script as texts, then the files. Shared by the kinds
+ * of figures (curves.c, map.c ...). */
 #ifndef GONIO_REPRODUCE_FIGURE_WRITER_H
 #define GONIO_REPRODUCE_FIGURE_WRITER_H
 
@@ -9,7 +9,7 @@
 
 #include "figure.h"
 
-typedef struct gonio_i_sheet {
+typedef struct gonio_i_figure_output {
     gonio_context *context;
     const char *name;
     FILE *data;   /* the CSV file */
@@ -17,19 +17,20 @@ typedef struct gonio_i_sheet {
     char *data_text, *script_text;
     size_t data_size, script_size;
     locale_t plain, before;
-} gonio_i_sheet;
+} gonio_i_figure_output;
 
 /* Begins both texts: the script up to where axes are set. Until the end, numbers are printed with
  * decimal points. Errors: _ARGUMENT for a name that cannot be a file's, _MEMORY. */
-gonio_status gonio_i_sheet_begin(gonio_context *context, const char *name, const char *title,
-                                 gonio_i_sheet *sheet);
+gonio_status gonio_i_figure_output_begin(gonio_context *context, const char *name,
+                                         const char *title, gonio_i_figure_output *output);
 
 /* Between these two the script is run once for each format; sizes in pixels of 1/96 inch. */
-void gonio_i_sheet_begin_drawing(gonio_i_sheet *sheet, int width, int height);
-void gonio_i_sheet_end_drawing(gonio_i_sheet *sheet);
+void gonio_i_figure_output_begin_drawing(gonio_i_figure_output *output, int width, int height);
+void gonio_i_figure_output_end_drawing(gonio_i_figure_output *output);
 
 /* If `status` is GONIO_OK, writes the files and has them drawn; releases all in any case. */
-gonio_status gonio_i_sheet_end(gonio_i_sheet *sheet, gonio_i_figures *figures, gonio_status status);
+gonio_status gonio_i_figure_output_end(gonio_i_figure_output *output, gonio_i_figures *figures,
+                                       gonio_status status);
 
 /* Text in quotes, as gnuplot takes it literally. */
 void gonio_i_put_quoted(FILE *script, const char *text);

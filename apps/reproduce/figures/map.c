@@ -125,22 +125,22 @@ static const char plot[] =
 gonio_status gonio_i_figure_map(gonio_context *context, gonio_i_figures *figures,
                                 const gonio_i_map *figure)
 {
-    gonio_i_sheet sheet;
+    gonio_i_figure_output output;
     gonio_i_range range = GONIO_I_NO_RANGE;
     gonio_status status = check(context, figure, &range);
     if (status == GONIO_OK) {
-        status = gonio_i_sheet_begin(context, figure->name, figure->title, &sheet);
+        status = gonio_i_figure_output_begin(context, figure->name, figure->title, &output);
     }
     if (status != GONIO_OK) {
         return status;
     }
-    put_data(sheet.data, figure);
-    gonio_i_put_axis(sheet.script, "x", &figure->x, &range);
-    gonio_i_put_axis(sheet.script, "y", &figure->y, &range);
-    gonio_i_put_axis(sheet.script, "cb", &figure->value, &range);
-    put_settings(sheet.script, figure);
-    gonio_i_sheet_begin_drawing(&sheet, 640, 480);
-    fputs(plot, sheet.script);
-    gonio_i_sheet_end_drawing(&sheet);
-    return gonio_i_sheet_end(&sheet, figures, GONIO_OK);
+    put_data(output.data, figure);
+    gonio_i_put_axis(output.script, "x", &figure->x, &range);
+    gonio_i_put_axis(output.script, "y", &figure->y, &range);
+    gonio_i_put_axis(output.script, "cb", &figure->value, &range);
+    put_settings(output.script, figure);
+    gonio_i_figure_output_begin_drawing(&output, 640, 480);
+    fputs(plot, output.script);
+    gonio_i_figure_output_end_drawing(&output);
+    return gonio_i_figure_output_end(&output, figures, GONIO_OK);
 }
