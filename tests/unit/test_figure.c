@@ -118,7 +118,7 @@ static gonio_status sample_spectrum(fixture *f, gonio_i_figures *figures)
     const gonio_i_curves figure = {.name = "fig-2a",
                                    .x = {"components K", NULL, false, 0, 100},
                                    .y = {"cumulative variance", "%", false, 0, 0},
-                                   .spread = GONIO_I_BAND,
+                                   .intervals = GONIO_I_BAND,
                                    .count = 1,
                                    .curves = &curve};
     return gonio_i_figure_curves(f->context, figures, &figure);
@@ -197,12 +197,12 @@ static gonio_status sample_methods(fixture *f, gonio_i_figures *figures)
                              .title = "Mean error of the 20 test materials, 10 splits, ± 1 s.d.",
                              .x = {"readings L", NULL, true, 9, 900},
                              .y = {"error E6", "%", false, 0, 0},
-                             .spread = GONIO_I_ERROR_BARS,
+                             .intervals = GONIO_I_ERROR_BARS,
                              .count = CURVES,
                              .curves = curves};
     const gonio_status status = gonio_i_figure_curves(f->context, figures, &figure);
     figure.name = "fig-3b-bands";
-    figure.spread = GONIO_I_BAND;
+    figure.intervals = GONIO_I_BAND;
     return status == GONIO_OK ? gonio_i_figure_curves(f->context, figures, &figure) : status;
 }
 
@@ -507,7 +507,7 @@ static void test_what_cannot_be_shown(void **state)
     const double x[] = {1.0, 0.0}, values[] = {1.0, 2.0, 3.0, 4.0};
     const gonio_i_axis plain = {"x", NULL, false, 0, 0}, logarithmic = {"y", NULL, true, 0, 0};
     const gonio_i_curve curve = {"c", 2, x, x, NULL, NULL, false};
-    gonio_i_curves curves = {"c", NULL, plain, logarithmic, GONIO_I_NO_SPREAD, 1, &curve, 0.0};
+    gonio_i_curves curves = {"c", NULL, plain, logarithmic, GONIO_I_NO_INTERVALS, 1, &curve, 0.0};
     const gonio_i_map map = {"m", NULL, plain, plain, plain, 2, 2, x, x, values, 0, NULL, 0, NULL};
     const gonio_i_directions directions = {"d", NULL, GONIO_I_EQUAL_ANGLE, 0, NULL};
     const gonio_i_categories none = {.name = "n", .y = plain};

@@ -44,8 +44,8 @@ static double centred_reading(const gonio_i_trial *t, size_t test, size_t row)
            t->view->mean[row];
 }
 
-/* Column `column` of V C' + m, spread to all cells. */
-static void spread(const gonio_i_trial *t, const double *product, size_t column, double *g)
+/* Column `column` of V C' + m, in all cells. */
+static void expand_column(const gonio_i_trial *t, const double *product, size_t column, double *g)
 {
     for (int32_t cell = 0; cell < GONIO_CELLS; cell++) {
         const size_t first = gonio_basis_position(t->basis, cell) * GONIO_CHANNELS;
@@ -68,7 +68,7 @@ static gonio_status errors_of(gonio_context *context, const gonio_i_trial *t, co
                                             c, t->tests, product, t->tests);
     }
     for (size_t k = 0; k < t->tests && status == GONIO_OK; k++) {
-        spread(t, product, k, g);
+        expand_column(t, product, k, g);
         status = gonio_i_digest_compare(context, t->collection->digest[t->test[k]], g, &errors[k]);
     }
     free(product);

@@ -58,9 +58,9 @@ static int line_type_of(const gonio_i_curves *figure, size_t curve)
     return type;
 }
 
-static bool has_spread(const gonio_i_curves *figure, size_t k, gonio_i_spread spread)
+static bool has_intervals(const gonio_i_curves *figure, size_t k, gonio_i_interval_style intervals)
 {
-    return figure->spread == spread && figure->curves[k].low != NULL &&
+    return figure->intervals == intervals && figure->curves[k].low != NULL &&
            figure->curves[k].high != NULL && !figure->curves[k].faint;
 }
 
@@ -78,7 +78,7 @@ static void put_curve(FILE *script, const gonio_i_curves *figure, size_t k)
 {
     const gonio_i_curve *c = &figure->curves[k];
     const int type = line_type_of(figure, k);
-    if (has_spread(figure, k, GONIO_I_ERROR_BARS)) {
+    if (has_intervals(figure, k, GONIO_I_ERROR_BARS)) {
         fprintf(script,
                 ", \\\n    data skip 1 using (x_of(%zu)):2:3:4 with yerrorbars lt %d lw 0.8 dt 1 "
                 "pt 0 notitle",
@@ -100,7 +100,7 @@ static void put_plot(FILE *script, const gonio_i_curves *figure)
 {
     fputs("  plot NaN notitle", script);
     for (size_t k = 0; k < figure->count; k++) {
-        if (has_spread(figure, k, GONIO_I_BAND)) {
+        if (has_intervals(figure, k, GONIO_I_BAND)) {
             fprintf(script,
                     ", \\\n    data skip 1 using (x_of(%zu)):3:4 with filledcurves lt %d "
                     "fs transparent solid 0.16 noborder notitle",

@@ -32,17 +32,17 @@ typedef struct gonio_i_axis {
 
 /* ---- curves: y against x ---- */
 
-typedef enum gonio_i_spread {
-    GONIO_I_NO_SPREAD,
+typedef enum gonio_i_interval_style {
+    GONIO_I_NO_INTERVALS,
     GONIO_I_BAND,      /* a light band from low to high */
     GONIO_I_ERROR_BARS /* a bar from low to high at each point */
-} gonio_i_spread;
+} gonio_i_interval_style;
 
 typedef struct gonio_i_curve {
     const char *name; /* in the key; NULL to leave it out */
     size_t count;
     const double *x, *y;      /* [count] */
-    const double *low, *high; /* [count]; NULL for no spread */
+    const double *low, *high; /* [count]; the interval of each point, or NULL */
     bool faint;               /* thin and grey: one of many that are not told apart */
 } gonio_i_curve;
 
@@ -50,7 +50,7 @@ typedef struct gonio_i_curves {
     const char *name;  /* of the files */
     const char *title; /* NULL for none; so in all figures */
     gonio_i_axis x, y;
-    gonio_i_spread spread;
+    gonio_i_interval_style intervals;
     size_t count;
     const gonio_i_curve *curves;
     double apart; /* if not 0, how far each curve is drawn to the right of the one before, so that

@@ -71,7 +71,7 @@ static void add_point(curve_set *set, size_t curve, double x, double y)
 }
 
 /* To the last point. */
-static void add_spread(curve_set *set, size_t curve, double low, double high)
+static void add_interval(curve_set *set, size_t curve, double low, double high)
 {
     const size_t at = curve * set->most + set->curve[curve].count - 1;
     set->low[at] = low;
@@ -361,7 +361,7 @@ static gonio_status draw_methods(drawer *d)
             least = fmin(least, (double)size.samples);
             most = fmax(most, (double)size.samples);
             add_point(&set, curve, (double)size.samples, e6);
-            add_spread(&set, curve, e6 - deviation(d, m), e6 + deviation(d, m));
+            add_interval(&set, curve, e6 - deviation(d, m), e6 + deviation(d, m));
         }
         const size_t unused = set.count - used;
         set.count = used;
@@ -372,7 +372,7 @@ static gonio_status draw_methods(drawer *d)
                                                     .low = 0.8 * least,
                                                     .high = 1.1 * most},
                                               .y = e6_axis,
-                                              .spread = GONIO_I_ERROR_BARS,
+                                              .intervals = GONIO_I_ERROR_BARS,
                                               .apart = most > 300 ? 1.02 : 2.0});
         set.count = used + unused;
     }
