@@ -100,8 +100,8 @@ static double facet_density(gonio_i_atlas_facets facets, double cosine, double s
 {
     double alpha2 = facets.alpha * facets.alpha;
     double cosine2 = cosine * cosine;
-    double spread = 1.0 / (cosine2 + sine * sine / alpha2); /* cos^-2 (1 + tan^2/alpha^2)^-1 */
-    double heavy = spread * spread;
+    double root = 1.0 / (cosine2 + sine * sine / alpha2); /* cos^-2 (1 + tan^2/alpha^2)^-1 */
+    double heavy = root * root;
     double light = 3.0 * heavy * heavy * cosine2 * cosine2;
 
     return (heavy + facets.light * (light - heavy)) / (PI * alpha2);
@@ -109,12 +109,12 @@ static double facet_density(gonio_i_atlas_facets facets, double cosine, double s
 
 /* Density of relief facets, 1/sr: slopes r with P = exp(-(r - r0)^2/w^2) / Z,
  * Z = pi w^2 exp(-r0^2/w^2) + pi^(3/2) r0 w (1 + erf(r0/w)). */
-static double relief_density(double slope, double spread, double cosine, double sine)
+static double relief_density(double slope, double width, double cosine, double sine)
 {
-    double offset = slope / spread;
-    double distance = (sine / cosine - slope) / spread;
+    double offset = slope / width;
+    double distance = (sine / cosine - slope) / width;
     double total =
-        PI * spread * spread * (exp(-offset * offset) + sqrt(PI) * offset * (1.0 + erf(offset)));
+        PI * width * width * (exp(-offset * offset) + sqrt(PI) * offset * (1.0 + erf(offset)));
 
     return exp(-distance * distance) / (total * cosine * cosine * cosine * cosine);
 }
@@ -256,9 +256,9 @@ static half_terms half_terms_at(const gonio_i_atlas_material *material, double t
         half.haze = facet_density(material->haze_facets, half.cosine, half.sine);
     if (material->flake_facets.alpha > 0.0)
         half.flake = facet_density(material->flake_facets, half.cosine, half.sine);
-    if (material->relief_spread > 0.0)
+    if (material->relief_width > 0.0)
         half.relief =
-            relief_density(material->relief_slope, material->relief_spread, half.cosine, half.sine);
+            relief_density(material->relief_slope, material->relief_width, half.cosine, half.sine);
     if (exponent > 0.0)
         half.sheen = (2.0 + exponent) / (2.0 * PI) * pow(half.sine, exponent);
     return half;
@@ -320,7 +320,7 @@ static void evaluate(bin_row *row, const gonio_i_atlas_material *material, const
         add_lobe(row, material->flake_facets, half->flake, difference->flake);
     attenuate(row, material);
     add_surface(row, material, half, difference);
-    if (material->relief_spread > 0.0)
+    if (material->relief_width > 0.0)
         add_relief(row, material, half, difference);
     if (material->sheen_exponent > 0.0)
         add_sheen(row, material, half->sheen);

@@ -45,9 +45,9 @@
     .name = NAME, .material_class = "metal", .flake = {R, G, B}, .flake_facets = {ALPHA, LIGHT},   \
     .film = FILM
 
-/* In addition to any of these: facets of one slope (R G B, slope, spread). */
-#define RELIEF(R, G, B, SLOPE, SPREAD)                                                             \
-    .relief = {R, G, B}, .relief_slope = SLOPE, .relief_spread = SPREAD
+/* In addition to any of these: facets of one slope (R G B, slope, width). */
+#define RELIEF(R, G, B, SLOPE, WIDTH)                                                             \
+    .relief = {R, G, B}, .relief_slope = SLOPE, .relief_width = WIDTH
 
 const gonio_i_atlas_material gonio_i_atlas_materials[] = {
     {METAL("gold-polished",          1.00, 0.98, 0.77, 0.34, 0.05, 0.015, 0.00, 0.04, 0.120)},

@@ -37,7 +37,7 @@ typedef struct gonio_i_atlas_material {
     /* Relief: facets whose slopes crowd around one value (weave, emboss, crystal faces). */
     double relief[GONIO_CHANNELS]; /* reflectance, 0: none */
     double relief_slope;
-    double relief_spread; /* half width at 1/e, in slope */
+    double relief_width; /* half width at 1/e, in slope */
 
     /* Fibres standing out of the surface. */
     double sheen[GONIO_CHANNELS]; /* weight */

@@ -92,22 +92,22 @@ gonio_status gonio_reconstruction_predict_readings(gonio_context *context, const
 /* ---- as a material ---- */
 
 /* A field over the grid, of three channels. */
-typedef struct spread_field {
+typedef struct grid_field {
     const gonio_basis *basis;
     const gonio_basis_view *view;
     bool plain; /* g itself in place of e^g - 1 */
     double *g;  /* [channel][position] */
-} spread_field;
+} grid_field;
 
 static void release(void *self)
 {
-    spread_field *f = self;
+    grid_field *f = self;
     free(f->g);
     free(f);
 }
 
 /* One row of bins: between the middles of sectors, or a cell for all or for each. */
-static void fill_row(const spread_field *f, int theta_h, int theta_d, size_t channel, int first,
+static void fill_row(const grid_field *f, int theta_h, int theta_d, size_t channel, int first,
                      double *row)
 {
     const double *g = f->g + channel * f->view->cells;
@@ -123,7 +123,7 @@ static void fill_row(const spread_field *f, int theta_h, int theta_d, size_t cha
     }
 }
 
-static void finish_row(const spread_field *f, size_t channel, size_t count, double *row)
+static void finish_row(const grid_field *f, size_t channel, size_t count, double *row)
 {
     for (size_t k = 0; k < count; k++) {
         row[k] = row[k] > 0.0 ? fmin(row[k], GONIO_I_LARGEST_LOG) : 0.0;
@@ -139,7 +139,7 @@ static void finish_row(const spread_field *f, size_t channel, size_t count, doub
 static gonio_status read_field(void *self, gonio_context *context, int theta_h, double *rho)
 {
     (void)context;
-    const spread_field *f = self;
+    const grid_field *f = self;
     for (size_t k = 0; k < GONIO_SLAB_VALUES; k++) {
         rho[k] = -1.0;
     }
@@ -156,7 +156,7 @@ static gonio_status read_field(void *self, gonio_context *context, int theta_h, 
 }
 
 /* [channel][position] of R, G, B. */
-static void copy_colours(const double *from, spread_field *f)
+static void copy_colours(const double *from, grid_field *f)
 {
     const bool joint = is_joint(f->basis);
     for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
@@ -169,7 +169,7 @@ static void copy_colours(const double *from, spread_field *f)
 }
 
 /* A single channel without a wavelength as grey. */
-static void copy_grey(const gonio_reconstruction *r, spread_field *f)
+static void copy_grey(const gonio_reconstruction *r, grid_field *f)
 {
     for (size_t k = 0; k < f->view->cells; k++) {
         const double rho =
@@ -181,7 +181,7 @@ static void copy_grey(const gonio_reconstruction *r, spread_field *f)
 }
 
 /* The colours of spectra, cell by cell. weight[channel][wavelengths]. */
-static void mix_colours(const gonio_reconstruction *r, const double *weight, spread_field *f)
+static void mix_colours(const gonio_reconstruction *r, const double *weight, grid_field *f)
 {
     for (size_t k = 0; k < f->view->cells; k++) {
         double rgb[GONIO_CHANNELS] = {0.0};
@@ -202,7 +202,7 @@ static void mix_colours(const gonio_reconstruction *r, const double *weight, spr
 
 /* Deviations of the colours' g, errors of all wavelengths taken as going together, from those of
  * the channels: d rho = (rho + s) d g. weight[channel][columns]; NULL for a single channel. */
-static void mix_deviations(const gonio_reconstruction *r, const double *weight, spread_field *f)
+static void mix_deviations(const gonio_reconstruction *r, const double *weight, grid_field *f)
 {
     const size_t count = r->columns;
     for (size_t k = 0; k < f->view->cells; k++) {
@@ -227,7 +227,7 @@ static void mix_deviations(const gonio_reconstruction *r, const double *weight, 
 
 /* Under equal energy, as colours of spectral materials are. */
 static gonio_status fill_spectra(gonio_context *context, const gonio_reconstruction *r,
-                                 spread_field *f)
+                                 grid_field *f)
 {
     double *weight = gonio_i_allocate(context, GONIO_CHANNELS * r->wavelengths, sizeof *weight);
     const gonio_status status = weight != NULL
@@ -245,7 +245,7 @@ static gonio_status fill_spectra(gonio_context *context, const gonio_reconstruct
 }
 
 static gonio_status fill_field(gonio_context *context, const gonio_reconstruction *r,
-                               const double *from, spread_field *f)
+                               const double *from, grid_field *f)
 {
     if (has_colours(f->basis, r)) {
         copy_colours(from, f);
@@ -271,7 +271,7 @@ static gonio_status create(gonio_context *context, const gonio_basis *basis,
                            const gonio_reconstruction *r, const double *from, bool plain,
                            const char *name, gonio_material **material)
 {
-    spread_field *f = gonio_i_allocate(context, 1, sizeof *f);
+    grid_field *f = gonio_i_allocate(context, 1, sizeof *f);
     if (f == NULL) {
         return GONIO_ERROR_MEMORY;
     }

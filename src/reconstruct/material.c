@@ -67,7 +67,7 @@ static double *row_of(double *rho, int channel, int theta_d)
 }
 
 /* One value for all valid bins of a cell. */
-static void spread_cells(const reconstructed *r, int theta_h, const int *first, double *rho)
+static void fill_cells(const reconstructed *r, int theta_h, const int *first, double *rho)
 {
     for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
         double value[GONIO_THETA_D_BINS];
@@ -136,7 +136,7 @@ static gonio_status read_reconstructed(void *self, gonio_context *context, int t
         first[theta_d] = gonio_i_first_valid_phi(theta_h, theta_d);
     }
     if (r->view->representation == GONIO_BIVARIATE) {
-        spread_cells(r, theta_h, first, rho);
+        fill_cells(r, theta_h, first, rho);
     } else {
         fill_bins(r, theta_h, first, rho);
     }
