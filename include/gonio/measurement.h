@@ -89,23 +89,23 @@ static inline void gonio_readings_options_default(gonio_readings_options *option
 
 /* What readings are made of; all arrays stay the caller's. */
 typedef struct gonio_readings_arrays {
-    size_t size;            /* sizeof(gonio_readings_arrays) */
-    size_t count;           /* readings, at least 1 */
-    size_t channels;        /* 3 without wavelengths: R, G, B; at least 1 */
-    const gonio_pair *pair; /* [count], radians: theta in [0, pi/2), phi in [-2 pi, 2 pi] */
-    const int *planned;     /* [count], the channel to be read there: 0 .. channels - 1, or
-                             * GONIO_ALL_CHANNELS; NULL: all */
-    const double
-        *wavelength;     /* [channels], nm, no two the same; NULL: colours or unnamed channels */
-    const double *value; /* [count][channels], 1/sr, NaN: not read; NULL: nothing was read */
-    const double *deviation; /* [count][channels], standard deviations of the values, 1/sr, NaN:
-                              * not known; NULL: none is known */
+    size_t size;              /* sizeof(gonio_readings_arrays) */
+    size_t count;             /* readings, at least 1 */
+    size_t channels;          /* 3 without wavelengths: R, G, B; at least 1 */
+    const gonio_pair *pair;   /* [count], radians: theta in [0, pi/2), phi in [-2 pi, 2 pi] */
+    const int *planned;       /* [count], the channel to be read there: 0 .. channels - 1, or
+                               * GONIO_ALL_CHANNELS; NULL: all */
+    const double *wavelength; /* [channels], nm, 100 to 1e6, no two the same; NULL: colours or
+                               * unnamed channels */
+    const double *value;      /* [count][channels], 1/sr, NaN: not read; NULL: nothing was read */
+    const double *deviation;  /* [count][channels], standard deviations of the values, 1/sr, NaN:
+                               * not known; NULL: none is known */
 } gonio_readings_arrays;
 
 /* Makes readings from arrays. options may be NULL (values_needed does not count). Messages call
  * them "readings", and reading k its line k + 1. Errors: _ARGUMENT (no readings or channels, a
- * planned channel that there is not, wavelengths that are not positive or the same twice); _DATA as
- * of files; _MEMORY. */
+ * planned channel that there is not, wavelengths that are no light or the same twice); _DATA as of
+ * files; _MEMORY. */
 GONIO_API gonio_status gonio_readings_create(gonio_context *context,
                                              const gonio_readings_arrays *arrays,
                                              const gonio_readings_options *options,

@@ -312,9 +312,42 @@ void gonio_i_csv_close(gonio_i_csv_reader *reader)
 
 /* ---- cells ---- */
 
+/* Numbers of up to 15 digits are quotients of exact doubles: rounded once, as
+ * strtod rounds. False for all others. */
+static bool take_short_number(const char *cell, char delimiter, double *value)
+{
+    static const double power[] = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                   1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
+    const bool negative = *cell == '-';
+    const char *at = cell + negative;
+    int64_t digits = 0;
+    int count = 0;
+    int places = -1;
+    for (; count <= 15; at++) {
+        if (*at >= '0' && *at <= '9') {
+            digits = 10 * digits + (*at - '0');
+            count++;
+            places += places >= 0;
+        } else if (places < 0 && (*at == '.' || (*at == ',' && delimiter != ','))) {
+            places = 0;
+        } else {
+            break;
+        }
+    }
+    if (count == 0 || count > 15 || *at != '\0') {
+        return false;
+    }
+    const double whole = (double)digits / power[places > 0 ? places : 0];
+    *value = negative ? -whole : whole;
+    return true;
+}
+
 bool gonio_i_csv_is_number(const char *cell, char delimiter, double *value)
 {
     char text[64];
+    if (take_short_number(cell, delimiter, value)) {
+        return true;
+    }
     const size_t length = strlen(cell);
     if (length == 0 || length >= sizeof text) {
         return false;

@@ -7,11 +7,10 @@
 
 #include "convention.h"
 #include "horizon.h"
+#include "rules.h"
 
 enum { DIGITS = 9 };
 
-static const double LEAST_WAVELENGTH = 100.0; /* nm; no goniometer works below */
-static const double MOST_WAVELENGTH = 1e6;
 static const double MOST_AZIMUTH = 720.0; /* degrees */
 static const double SAME = 1e-9;          /* relative: values that repeat others */
 
@@ -36,9 +35,13 @@ void gonio_i_import_leniently(gonio_i_import *import)
 /* The unit of a wavelength that would be light. */
 static const char *unit_of_light(double wavelength)
 {
-    return wavelength > LEAST_WAVELENGTH * 1e-9 && wavelength < MOST_WAVELENGTH * 1e-9   ? "m"
-           : wavelength > LEAST_WAVELENGTH * 1e-3 && wavelength < MOST_WAVELENGTH * 1e-3 ? "um"
-                                                                                         : NULL;
+    return wavelength > gonio_i_least_wavelength * 1e-9 &&
+                   wavelength < gonio_i_most_wavelength * 1e-9
+               ? "m"
+           : wavelength > gonio_i_least_wavelength * 1e-3 &&
+                   wavelength < gonio_i_most_wavelength * 1e-3
+               ? "um"
+               : NULL;
 }
 
 static gonio_status refuse_wavelength(const gonio_i_import *in, double wavelength)
@@ -67,15 +70,14 @@ static gonio_status take_wavelengths(const gonio_i_import *in, size_t channels,
 {
     for (size_t k = 0; k < channels; k++) {
         nm[k] = nanometres(in, wavelength[k]);
-        if (!(nm[k] >= LEAST_WAVELENGTH && nm[k] <= MOST_WAVELENGTH)) {
+        if (!(nm[k] >= gonio_i_least_wavelength && nm[k] <= gonio_i_most_wavelength)) {
             return refuse_wavelength(in, wavelength[k]);
         }
-        for (size_t j = 0; j < k; j++) {
-            if (nm[j] == nm[k]) {
-                return gonio_i_fail(in->context, GONIO_ERROR_FORMAT, "%s: %g nm occurs twice",
-                                    in->readings->path, nm[k]);
-            }
-        }
+    }
+    const double twice = gonio_i_wavelength_twice(nm, channels);
+    if (twice > 0.0) {
+        return gonio_i_fail(in->context, GONIO_ERROR_FORMAT, "%s: %g nm occurs twice",
+                            in->readings->path, twice);
     }
     return gonio_i_readings_begin(in->context, in->readings, channels, nm);
 }

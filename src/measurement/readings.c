@@ -122,22 +122,34 @@ void gonio_i_value_name(const gonio_readings *readings, size_t channel, bool dev
 
 /* ---- channels ---- */
 
+static gonio_status check_wavelength(gonio_context *context, const char *path, double wavelength)
+{
+    if (!(wavelength > 0.0 && wavelength <= gonio_i_most_wavelength)) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "%s: %g is not a wavelength in nm", path,
+                            wavelength);
+    }
+    return wavelength >= gonio_i_least_wavelength
+               ? GONIO_OK
+               : gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                              "%s: a wavelength of %g nm is no light; give nanometres", path,
+                              wavelength);
+}
+
 static gonio_status check_wavelengths(gonio_context *context, const char *path, size_t channels,
                                       const double *wavelength)
 {
-    for (size_t k = 0; k < channels && wavelength != NULL; k++) {
-        if (!(wavelength[k] > 0.0 && wavelength[k] < 1e6)) {
-            return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "%s: %g is not a wavelength in nm",
-                                path, wavelength[k]);
-        }
-        for (size_t j = 0; j < k; j++) {
-            if (wavelength[j] == wavelength[k]) {
-                return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "%s: %g nm occurs twice", path,
-                                    wavelength[k]);
-            }
-        }
+    gonio_status status = GONIO_OK;
+    for (size_t k = 0; k < channels && status == GONIO_OK; k++) {
+        status = check_wavelength(context, path, wavelength[k]);
     }
-    return GONIO_OK;
+    if (status != GONIO_OK) {
+        return status;
+    }
+    const double twice = gonio_i_wavelength_twice(wavelength, channels);
+    return twice == 0.0 ? GONIO_OK
+           : twice < 0.0
+               ? gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", path)
+               : gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "%s: %g nm occurs twice", path, twice);
 }
 
 static gonio_status copy_wavelengths(gonio_context *context, const char *path, size_t channels,
@@ -147,8 +159,11 @@ static gonio_status copy_wavelengths(gonio_context *context, const char *path, s
     if (channels == 0) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "%s: no channels", path);
     }
+    if (wavelength == NULL) {
+        return GONIO_OK;
+    }
     const gonio_status status = check_wavelengths(context, path, channels, wavelength);
-    if (status != GONIO_OK || wavelength == NULL) {
+    if (status != GONIO_OK) {
         return status;
     }
     *copy = gonio_i_allocate(context, channels, sizeof **copy);
@@ -218,7 +233,8 @@ static gonio_status make_room(gonio_context *context, gonio_readings *r, bool de
     if (r->count < r->room) {
         return GONIO_OK;
     }
-    const size_t room = r->room > 0 ? 2 * r->room : FIRST_ROOM;
+    const size_t first = r->expected > FIRST_ROOM ? r->expected : FIRST_ROOM;
+    const size_t room = r->room > 0 ? 2 * r->room : first;
     const size_t values = r->channels * sizeof(double);
     bool done = true;
     r->pair = enlarge(r->pair, room, sizeof *r->pair, &done);

@@ -17,7 +17,8 @@ struct gonio_readings {
     char *path;
     gonio_readings_options options; /* that they were made with */
     size_t count;
-    size_t room; /* readings that the arrays below have room for */
+    size_t room;     /* readings that the arrays below have room for */
+    size_t expected; /* readings to make room for at once; 0: not known */
     size_t channels;
     gonio_pair *pair;
     int *planned;

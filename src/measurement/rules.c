@@ -2,7 +2,8 @@
 #include "rules.h"
 
 #include <math.h>
-#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
 
 const char *const gonio_i_angle_names[4] = {"theta_i_deg", "phi_i_deg", "theta_o_deg", "phi_o_deg"};
 
@@ -56,6 +57,31 @@ const char *gonio_i_deviation_problem(double deviation, gonio_status *status)
     }
     *status = GONIO_OK;
     return NULL;
+}
+
+const double gonio_i_least_wavelength = 100.0;
+const double gonio_i_most_wavelength = 1e6;
+
+static int compare_numbers(const void *a, const void *b)
+{
+    const double x = *(const double *)a;
+    const double y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+double gonio_i_wavelength_twice(const double *wavelength, size_t count)
+{
+    double *sorted = malloc((count + 1) * sizeof *sorted);
+    double twice = sorted != NULL ? 0.0 : -1.0;
+    if (sorted != NULL) {
+        memcpy(sorted, wavelength, count * sizeof *sorted);
+        qsort(sorted, count, sizeof *sorted, compare_numbers);
+    }
+    for (size_t k = 1; sorted != NULL && k < count && twice == 0.0; k++) {
+        twice = sorted[k - 1] == sorted[k] ? sorted[k] : 0.0;
+    }
+    free(sorted);
+    return twice;
 }
 
 gonio_angles gonio_i_angles_from_degrees(double theta, double phi)

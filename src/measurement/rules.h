@@ -18,6 +18,13 @@ const char *gonio_i_value_problem(double value, const gonio_readings_options *op
 /* A standard deviation, 1/sr. */
 const char *gonio_i_deviation_problem(double deviation, gonio_status *status);
 
+/* nm: no goniometer works with light below. */
+extern const double gonio_i_least_wavelength;
+extern const double gonio_i_most_wavelength;
+
+/* A wavelength that occurs twice; 0 if none does, -1 when out of memory. */
+double gonio_i_wavelength_twice(const double *wavelength, size_t count);
+
 /* theta and phi, in degrees and allowed, in radians, phi in [0, 2 pi). */
 gonio_angles gonio_i_angles_from_degrees(double theta, double phi);
 

@@ -245,6 +245,19 @@ static gonio_status write_notes(csv_source *s)
                               : status;
 }
 
+/* As many as there are lines, and no more than lines of that many cells fit into the text: arrays
+ * that never grow are not copied. */
+static size_t expected_rows(const gonio_i_csv_reader *reader)
+{
+    const char *end = reader->text + reader->size;
+    size_t lines = 1;
+    for (const char *at = reader->text; (at = memchr(at, '\n', (size_t)(end - at))) != NULL; at++) {
+        lines++;
+    }
+    const size_t most = reader->size / reader->columns + 1;
+    return lines < most ? lines : most;
+}
+
 static gonio_status import_rows(csv_source *s, gonio_i_csv_kept *kept)
 {
     const gonio_convention stated = convention_of(s->columns);
@@ -256,6 +269,7 @@ static gonio_status import_rows(csv_source *s, gonio_i_csv_kept *kept)
     kept->rewrite_angles = !s->columns->own_angles || s->in.how.angles != GONIO_DEGREES ||
                            s->in.how.mirror == GONIO_MIRROR_0;
     s->readings->keep_angles = kept->rewrite_angles;
+    s->readings->expected = expected_rows(&s->reader);
     gonio_status status =
         gonio_i_import_channels(&s->in, s->columns->channels, s->columns->wavelength);
     if (status == GONIO_OK) {
