@@ -13,12 +13,14 @@
  * shadow-hiding surge, divided by its peak; I  two-beam interference in a film; S  Estevez and
  * Kulla's (2017) cloth distribution with Neubelt and Pettineo's (2013) visibility. Each factor
  * depends on theta_h or theta_d, or is symmetric in ci and co: the whole is reciprocal. A lobe M
- * alone reflects at most 1; that the sum does, for every material, is tested. */
+ * alone reflects at most 1; that the sum does, for every material, is tested. Compiled without
+ * fused multiply-add, so that values do not depend on the processor. */
 #include <gonio/atlas.h>
 
 #include <math.h>
 #include <string.h>
 
+#include "../core/core.h"
 #include "materials.h"
 
 static const double PI = 3.14159265358979323846;
@@ -135,11 +137,12 @@ static inline double masking(double cosine, double alpha2, double light)
 }
 
 /* Adds scale x D G / (4 ci co), G = 1/(1 + Lambda_i + Lambda_o). */
-static void add_lobe(bin_row *row, gonio_i_atlas_facets facets, double density,
-                     const double scale[GONIO_CHANNELS])
+GONIO_I_VECTORISED static void add_lobe(bin_row *row, gonio_i_atlas_facets facets, double density,
+                                        const double scale[GONIO_CHANNELS])
 {
     const double alpha2 = facets.alpha * facets.alpha;
     const double light = facets.light;
+    const double by_channel[GONIO_CHANNELS] = {scale[0], scale[1], scale[2]};
 
 #pragma omp simd
     for (int k = 0; k < row->count; k++) {
@@ -150,7 +153,7 @@ static void add_lobe(bin_row *row, gonio_i_atlas_facets facets, double density,
         double lobe = 0.25 * density / (incident * outgoing + shadow);
 
         for (int c = 0; c < GONIO_CHANNELS; c++)
-            row->rho[c][k] += scale[c] * lobe;
+            row->rho[c][k] += by_channel[c] * lobe;
     }
 }
 
@@ -172,8 +175,8 @@ static void add_surface(bin_row *row, const gonio_i_atlas_material *material,
 
 /* Adds the pigment: Fujii's form of Oren-Nayar, R = A (1 + r s/t), A = 1/(1 + r (1/2 - 2/(3 pi))),
  * s = i.o - ci co, t = max(ci, co) where s > 0 and 1 elsewhere; i.o = cos(2 theta_d). */
-static void add_diffuse(bin_row *row, const gonio_i_atlas_material *material,
-                        const difference_terms *difference)
+GONIO_I_VECTORISED static void add_diffuse(bin_row *row, const gonio_i_atlas_material *material,
+                                           const difference_terms *difference)
 {
     const double roughness = material->roughness;
     const double between = 2.0 * difference->cosine * difference->cosine - 1.0;
@@ -193,7 +196,7 @@ static void add_diffuse(bin_row *row, const gonio_i_atlas_material *material,
 }
 
 /* Multiplies what lies beneath the surface by (1 - surface F0) t(ci) t(co). */
-static void attenuate(bin_row *row, const gonio_i_atlas_material *material)
+GONIO_I_VECTORISED static void attenuate(bin_row *row, const gonio_i_atlas_material *material)
 {
     const double surface = material->surface;
     double passed[GONIO_CHANNELS];
@@ -211,8 +214,9 @@ static void attenuate(bin_row *row, const gonio_i_atlas_material *material)
 }
 
 /* Adds relief x D G / (4 ci co), G = min(cd, 2 ch ci, 2 ch co) / cd. */
-static void add_relief(bin_row *row, const gonio_i_atlas_material *material, const half_terms *half,
-                       const difference_terms *difference)
+GONIO_I_VECTORISED static void add_relief(bin_row *row, const gonio_i_atlas_material *material,
+                                          const half_terms *half,
+                                          const difference_terms *difference)
 {
     const double clear = difference->cosine;
     const double groove = 2.0 * half->cosine;
@@ -232,7 +236,8 @@ static void add_relief(bin_row *row, const gonio_i_atlas_material *material, con
 }
 
 /* Adds sheen D_s / (4 (ci + co - ci co)). */
-static void add_sheen(bin_row *row, const gonio_i_atlas_material *material, double density)
+GONIO_I_VECTORISED static void add_sheen(bin_row *row, const gonio_i_atlas_material *material,
+                                         double density)
 {
 #pragma omp simd
     for (int k = 0; k < row->count; k++) {

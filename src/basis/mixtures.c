@@ -154,54 +154,70 @@ void gonio_i_mixtures_parents(const gonio_i_mixtures *mixtures, int32_t *parents
     }
 }
 
-/* A row of a column that is varied: between four cells. */
-static double stretched(const gonio_i_mixtures *m, const half *h, size_t row, int32_t phi_cells)
+/* Rows that are mixed together: where each is on the grid. */
+typedef struct row_run {
+    size_t count;
+    int32_t phi_cells;
+    gonio_i_cell_indices at[CHUNK];
+    int channel[CHUNK];
+} row_run;
+
+static void find_rows(const gonio_basis *basis, size_t first, size_t count, row_run *run)
 {
-    const gonio_channel_model channels = m->basis->channels;
-    const int channel = gonio_i_channel_of(channels, row);
-    const int32_t cell = m->basis->cell[gonio_i_position_of(channels, row)];
-    const gonio_i_cell_indices at = gonio_i_indices_of_cell(phi_cells, cell);
+    run->count = count;
+    run->phi_cells = gonio_i_phi_cells(basis->representation);
+    for (size_t i = 0; i < count; i++) {
+        const size_t position = gonio_i_position_of(basis->channels, first + i);
+        run->at[i] = gonio_i_indices_of_cell(run->phi_cells, basis->cell[position]);
+        run->channel[i] = gonio_i_channel_of(basis->channels, first + i);
+    }
+}
+
+/* A row of a column that is varied: between four cells. */
+static double stretched(const gonio_i_mixtures *m, const half *h, const row_run *run, size_t i)
+{
+    const gonio_i_cell_indices at = run->at[i];
     const between at_h = h->theta_h[at.theta_h];
     const between at_d = h->theta_d[at.theta_d];
     const float *column = m->measured + h->column * m->basis->rows;
+    const int32_t *position =
+        m->basis->position +
+        gonio_i_cell_at(run->phi_cells, (gonio_i_cell_indices){at_h.low, at_d.low, at.phi});
     double sum = 0.0;
     for (int k = 0; k < 4; k++) {
-        const int32_t other = gonio_i_cell_at(
-            phi_cells, (gonio_i_cell_indices){at_h.low + k / 2, at_d.low + k % 2, at.phi});
-        const size_t position = (size_t)m->basis->position[other];
+        const int32_t further =
+            gonio_i_cell_at(run->phi_cells, (gonio_i_cell_indices){k / 2, k % 2, 0});
         sum += (k / 2 == 0 ? 1.0 - at_h.share : at_h.share) *
                (k % 2 == 0 ? 1.0 - at_d.share : at_d.share) *
-               (double)column[gonio_i_row_of(channels, position, channel)];
+               (double)column[gonio_i_row_of(m->basis->channels, (size_t)position[further],
+                                             run->channel[i])];
     }
     return sum;
 }
 
-/* share (e^g - 1) of a half, for up to CHUNK rows. */
-static void reflectance(const gonio_i_mixtures *m, const half *h, size_t first, size_t count,
-                        double *x)
+/* share (e^g - 1) of a half. */
+static void reflectance(const gonio_i_mixtures *m, const half *h, const row_run *run, double *x)
 {
-    const int32_t phi_cells = gonio_i_phi_cells(m->basis->representation);
-    for (size_t i = 0; i < count; i++) {
-        x[i] = stretched(m, h, first + i, phi_cells);
+    for (size_t i = 0; i < run->count; i++) {
+        x[i] = stretched(m, h, run, i);
     }
-    gonio_i_expm1(count, x, x);
-    for (size_t i = 0; i < count; i++) {
+    gonio_i_expm1(run->count, x, x);
+    for (size_t i = 0; i < run->count; i++) {
         x[i] *= h->share;
     }
 }
 
-static void mix(const gonio_i_mixtures *m, const recipe *r, size_t first, size_t count,
-                float *values)
+static void mix(const gonio_i_mixtures *m, const recipe *r, const row_run *run, float *values)
 {
     double x[CHUNK];
     double y[CHUNK];
-    reflectance(m, &r->half[0], first, count, x);
-    reflectance(m, &r->half[1], first, count, y);
-    for (size_t i = 0; i < count; i++) {
+    reflectance(m, &r->half[0], run, x);
+    reflectance(m, &r->half[1], run, y);
+    for (size_t i = 0; i < run->count; i++) {
         x[i] += y[i];
     }
-    gonio_i_log1p(count, x, x);
-    for (size_t i = 0; i < count; i++) {
+    gonio_i_log1p(run->count, x, x);
+    for (size_t i = 0; i < run->count; i++) {
         values[i] = (float)x[i];
     }
 }
@@ -209,10 +225,11 @@ static void mix(const gonio_i_mixtures *m, const recipe *r, size_t first, size_t
 void gonio_i_mixtures_fill(const gonio_i_mixtures *mixtures, size_t first, size_t count,
                            float *values)
 {
-    for (size_t k = 0; k < mixtures->count; k++) {
-        for (size_t i = 0; i < count; i += CHUNK) {
-            const size_t rows = count - i < CHUNK ? count - i : CHUNK;
-            mix(mixtures, &mixtures->recipe[k], first + i, rows, values + k * count + i);
+    for (size_t i = 0; i < count; i += CHUNK) {
+        row_run run;
+        find_rows(mixtures->basis, first + i, count - i < CHUNK ? count - i : CHUNK, &run);
+        for (size_t k = 0; k < mixtures->count; k++) {
+            mix(mixtures, &mixtures->recipe[k], &run, values + k * count + i);
         }
     }
 }

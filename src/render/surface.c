@@ -130,33 +130,38 @@ static void find_highlight(gonio_i_surface *s)
 
 /* ---- making one ---- */
 
-/* Returns how many valid bins hold data. */
-static size_t copy_values(const gonio_table *table, float (*bin)[VALUES])
+/* Copies the bins of a cell that have data; returns how many of the valid ones have. */
+static size_t copy_cell(const double *rho, int first_valid, float (*bin)[VALUES])
 {
-    const double *rho = gonio_table_values(table);
     size_t data = 0;
-    for (int32_t at = 0; at < GONIO_BINS; at++) {
-        const double *value = rho + (size_t)(at / GONIO_SLAB_BINS) * GONIO_SLAB_VALUES +
-                              (size_t)(at % GONIO_SLAB_BINS);
-        if (value[0] < 0.0) {
+    for (int p = 0; p < GONIO_PHI_D_BINS; p++) {
+        if (rho[p] < 0.0) {
             continue;
         }
         for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
-            bin[at][channel] = (float)value[(size_t)channel * GONIO_SLAB_BINS];
+            bin[p][channel] = (float)rho[channel * GONIO_SLAB_BINS + p];
         }
-        bin[at][3] = 1.0F;
-        data += gonio_bin_is_valid(gonio_bin_from_index(at)) ? 1 : 0;
+        bin[p][3] = 1.0F;
+        data += p >= first_valid && p < GONIO_PHI_D_BINS - first_valid ? 1 : 0;
     }
     return data;
 }
 
-static size_t valid_bins(void)
+/* Returns how many valid bins lack data. */
+static size_t copy_values(const gonio_table *table, float (*bin)[VALUES], size_t *data)
 {
-    size_t count = 0;
-    for (int32_t at = 0; at < GONIO_BINS; at++) {
-        count += gonio_bin_is_valid(gonio_bin_from_index(at)) ? 1 : 0;
+    size_t valid = 0;
+    *data = 0;
+    for (int cell = 0; cell < GONIO_CELLS; cell++) {
+        const int theta_h = cell / GONIO_THETA_D_BINS;
+        const int theta_d = cell % GONIO_THETA_D_BINS;
+        const int first = gonio_i_first_valid_phi(theta_h, theta_d);
+        const double *rho = gonio_table_values(table) + (size_t)theta_h * GONIO_SLAB_VALUES +
+                            (size_t)theta_d * GONIO_PHI_D_BINS;
+        *data += copy_cell(rho, first, bin + (size_t)cell * GONIO_PHI_D_BINS);
+        valid += (size_t)(GONIO_PHI_D_BINS - 2 * first);
     }
-    return count;
+    return valid - *data;
 }
 
 static gonio_status fill_bins(gonio_context *context, const gonio_material *material,
@@ -167,13 +172,13 @@ static gonio_status fill_bins(gonio_context *context, const gonio_material *mate
     if (status != GONIO_OK) {
         return status;
     }
-    const size_t data = copy_values(table, surface->bin);
+    size_t data = 0;
+    const size_t holes = copy_values(table, surface->bin, &data);
     gonio_table_free(&table);
     if (data == 0) {
         return gonio_i_fail(context, GONIO_ERROR_DATA, "%s: the material holds no data",
                             gonio_material_name(material));
     }
-    const size_t holes = valid_bins() - data;
     if (holes > 0) {
         gonio_i_note(context,
                      "%s: %zu directions have no data; the nearest directions with data are used",
