@@ -33,17 +33,35 @@ static void place_nodes(double low, double high, nodes *n)
     }
 }
 
+/* The node at t, if t is one or there is only one; else how many nodes there are. */
+static size_t node_at(const nodes *n, double t)
+{
+    size_t j = 0;
+    while (j < n->count && n->count > 1 && t != n->t[j]) {
+        j++;
+    }
+    return j;
+}
+
+GONIO_I_VECTORISED static void divide_by_distance(const nodes *n, double t, double *share)
+{
+    for (size_t j = 0; j < n->count; j++) {
+        share[j] = n->factor[j] / (t - n->t[j]);
+    }
+}
+
 /* How much each node's value counts at t. */
 static void interpolate(const nodes *n, double t, double *share)
 {
+    const size_t at = node_at(n, t);
+    if (at < n->count) {
+        memset(share, 0, n->count * sizeof *share);
+        share[at] = 1.0;
+        return;
+    }
     double sum = 0.0;
+    divide_by_distance(n, t, share);
     for (size_t j = 0; j < n->count; j++) {
-        if (t == n->t[j] || n->count == 1) {
-            memset(share, 0, n->count * sizeof *share);
-            share[j] = 1.0;
-            return;
-        }
-        share[j] = n->factor[j] / (t - n->t[j]);
         sum += share[j];
     }
     for (size_t j = 0; j < n->count; j++) {
@@ -147,15 +165,6 @@ static void fill_terms(int metric, slab *s, gonio_i_digest *d)
 
 /* ---- digesting a cell ---- */
 
-/* Adds a bin to the moments of node j. */
-static void add_moment(const slab *s, size_t bin, double share, size_t j, gonio_i_digest_metric *m)
-{
-    m->linear[j] += share;
-    for (size_t c = 0; c < GONIO_CHANNELS; c++) {
-        m->moment[c][j] += share * s->difference[c * GONIO_SLAB_BINS + bin];
-    }
-}
-
 /* The one node of terms that are in proportion; returns how many that is. */
 static size_t add_proportional(const slab *s, size_t row, double (*proportion)(double),
                                size_t first, gonio_i_digest_metric *m)
@@ -164,8 +173,11 @@ static size_t add_proportional(const slab *s, size_t row, double (*proportion)(d
     for (size_t p = row; p < row + GONIO_PHI_D_BINS; p++) {
         if (s->data[p]) {
             const double share = proportion(s->cosines[p]);
-            add_moment(s, p, share, first, m);
+            m->linear[first] += share;
             m->square[first] += share * share;
+            for (size_t c = 0; c < GONIO_CHANNELS; c++) {
+                m->moment[c][first] += share * s->difference[c * GONIO_SLAB_BINS + p];
+            }
         }
     }
     return 1;
@@ -185,22 +197,44 @@ static void choose_nodes(const slab *s, size_t row, nodes *n)
     place_nodes(low, high, n);
 }
 
+/* Sums over the bins of a cell, for each of its nodes. */
+typedef struct node_sums {
+    double share[MOST_NODES];
+    double moment[GONIO_CHANNELS][MOST_NODES];
+} node_sums;
+
+static void add_bin(const slab *s, size_t bin, const nodes *n, node_sums *sums)
+{
+    double share[MOST_NODES];
+    interpolate(n, s->log_weight[bin], share);
+    for (size_t j = 0; j < n->count; j++) {
+        sums->share[j] += share[j];
+    }
+    for (size_t c = 0; c < GONIO_CHANNELS; c++) {
+        const double difference = s->difference[c * GONIO_SLAB_BINS + bin];
+        for (size_t j = 0; j < n->count; j++) {
+            sums->moment[c][j] += share[j] * difference;
+        }
+    }
+}
+
 /* The nodes of any other terms; returns how many. */
 static size_t add_interpolated(const slab *s, size_t row, size_t first, gonio_i_digest_metric *m)
 {
     nodes n;
-    double share[MOST_NODES];
+    node_sums sums = {0};
     choose_nodes(s, row, &n);
-    for (size_t j = 0; j < n.count; j++) {
-        m->node[first + j] = exp(n.t[j]);
-    }
     for (size_t p = row; p < row + GONIO_PHI_D_BINS; p++) {
         if (s->data[p]) {
-            interpolate(&n, s->log_weight[p], share);
+            add_bin(s, p, &n, &sums);
         }
-        for (size_t j = 0; j < n.count && s->data[p]; j++) {
-            add_moment(s, p, share[j], first + j, m);
-            m->square[first + j] += share[j];
+    }
+    for (size_t j = 0; j < n.count; j++) {
+        m->node[first + j] = exp(n.t[j]);
+        m->linear[first + j] = sums.share[j];
+        m->square[first + j] = sums.share[j];
+        for (size_t c = 0; c < GONIO_CHANNELS; c++) {
+            m->moment[c][first + j] = sums.moment[c][j];
         }
     }
     return n.count;
