@@ -29,10 +29,11 @@ static void print_row(const char *name, const gonio_error *error, const gonio_im
 static json_t *comparison_json(const char *path, const gonio_comparison *c,
                                const gonio_image_error *rendered)
 {
-    json_t *json = json_pack("{s:s, s:I, s:I, s:o, s:o, s:o, s:o}", "file", path, "bins",
-                             (json_int_t)c->bins, "missing_bins", (json_int_t)c->missing, "all",
-                             tool_error_json(&c->all), "R", tool_error_json(&c->channel[0]), "G",
-                             tool_error_json(&c->channel[1]), "B", tool_error_json(&c->channel[2]));
+    json_t *json =
+        json_pack("{s:o, s:I, s:I, s:o, s:o, s:o, s:o}", "file", tool_json_text(path), "bins",
+                  (json_int_t)c->bins, "missing_bins", (json_int_t)c->missing, "all",
+                  tool_error_json(&c->all), "R", tool_error_json(&c->channel[0]), "G",
+                  tool_error_json(&c->channel[1]), "B", tool_error_json(&c->channel[2]));
     if (json != NULL && rendered != NULL) {
         json_object_set_new(json, "rendered",
                             json_pack("{s:o, s:o}", "psnr_db", tool_json_number(rendered->psnr),
@@ -187,10 +188,11 @@ static void report_readings(const comparing *c, const char *path, const paired *
     const size_t missing =
         gonio_readings_describe(p->reference)->count - p->left_out_count - compared;
     if (tool_json) {
-        json_array_append_new(
-            c->results, json_pack("{s:s, s:I, s:I, s:I, s:o}", "file", path, "readings",
-                                  (json_int_t)compared, "left_out", (json_int_t)p->left_out_count,
-                                  "missing", (json_int_t)missing, "all", tool_error_json(error)));
+        json_array_append_new(c->results,
+                              json_pack("{s:o, s:I, s:I, s:I, s:o}", "file", tool_json_text(path),
+                                        "readings", (json_int_t)compared, "left_out",
+                                        (json_int_t)p->left_out_count, "missing",
+                                        (json_int_t)missing, "all", tool_error_json(error)));
         return;
     }
     print_row(path, error, NULL);
@@ -301,8 +303,8 @@ static int run(tool *t, void *given)
     c.results = json_array();
     const int code = compare_all(t, &c, arguments, count);
     if (code == 0 && tool_json) {
-        return tool_print_json(
-            t, json_pack("{s:s, s:o}", "reference", arguments[0], "comparisons", c.results));
+        return tool_print_json(t, json_pack("{s:o, s:o}", "reference", tool_json_text(arguments[0]),
+                                            "comparisons", c.results));
     }
     json_decref(c.results);
     return code;

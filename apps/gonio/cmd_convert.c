@@ -11,9 +11,10 @@
 /* Silent but for --json. */
 static int report(const tool *t, const gonio_material *material, const char *output)
 {
-    return tool_json ? tool_print_json(t, json_pack("{s:s, s:s, s:s}", "output", output, "material",
-                                                    gonio_material_name(material), "from",
-                                                    gonio_material_format(material)))
+    return tool_json ? tool_print_json(t, json_pack("{s:o, s:o, s:s}", "output",
+                                                    tool_json_text(output), "material",
+                                                    tool_json_text(gonio_material_name(material)),
+                                                    "from", gonio_material_format(material)))
                      : 0;
 }
 
@@ -37,8 +38,8 @@ static int convert_basis(tool *t, const char *input, const char *format, const c
 {
     const gonio_status status = gonio_basis_convert(t->context, input, output);
     return status == GONIO_OK && tool_json
-               ? tool_print_json(t, json_pack("{s:s, s:s, s:s}", "output", output, "basis", input,
-                                              "from", format))
+               ? tool_print_json(t, json_pack("{s:o, s:o, s:s}", "output", tool_json_text(output),
+                                              "basis", tool_json_text(input), "from", format))
                : tool_exit_code(status);
 }
 

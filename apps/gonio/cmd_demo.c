@@ -92,7 +92,7 @@ static int run_step_as_json(const step *s, json_t *done)
     json_t *result = NULL;
     json_t *words = json_array();
     for (int k = 0; s->words[k] != NULL; k++) {
-        json_array_append_new(words, json_string(s->words[k]));
+        json_array_append_new(words, tool_json_text(s->words[k]));
     }
     tool_keep_json(&result);
     const int code = run_step(s);
@@ -131,8 +131,8 @@ static int run_steps_as_json(const tool *t, const char *folder, int count)
         code = run_step_as_json(&steps[k], done);
     }
     if (code == 0) {
-        return tool_print_json(
-            t, json_pack("{s:s, s:s, s:o}", "folder", folder, "material", material, "steps", done));
+        return tool_print_json(t, json_pack("{s:o, s:s, s:o}", "folder", tool_json_text(folder),
+                                            "material", material, "steps", done));
     }
     json_decref(done);
     return code;

@@ -174,12 +174,12 @@ static json_t *material_json(const char *path, const gonio_material *material,
                                         tool_json_number(rgb[1]), tool_json_number(rgb[2])));
     }
     json_t *object = json_pack(
-        "{s:s, s:s, s:s, s:s, s:I, s:f, s:o, s:o, s:o, s:b, s:s}", "file", path, "kind", "material",
-        "name", gonio_material_name(material), "format", gonio_material_format(material),
-        "valid_bins", (json_int_t)facts->bins, "valid_share", (double)facts->bins / VALID_BINS,
-        "peak_per_sr", tool_json_number(facts->peak), "mirror_asymmetry_percent",
-        tool_json_number(facts->asymmetry), "albedo", albedo, "conserves_energy",
-        facts->largest_albedo <= 1.0, "fingerprint", fingerprint);
+        "{s:o, s:s, s:o, s:s, s:I, s:f, s:o, s:o, s:o, s:b, s:s}", "file", tool_json_text(path),
+        "kind", "material", "name", tool_json_text(gonio_material_name(material)), "format",
+        gonio_material_format(material), "valid_bins", (json_int_t)facts->bins, "valid_share",
+        (double)facts->bins / VALID_BINS, "peak_per_sr", tool_json_number(facts->peak),
+        "mirror_asymmetry_percent", tool_json_number(facts->asymmetry), "albedo", albedo,
+        "conserves_energy", facts->largest_albedo <= 1.0, "fingerprint", fingerprint);
     add_view(object, gonio_material_describe(material), facts);
     return object;
 }
@@ -267,17 +267,18 @@ static json_t *basis_json(const char *path, const gonio_basis *basis)
     snprintf(fingerprint, sizeof fingerprint, "%016" PRIx64, view->fingerprint);
     json_t *names = json_array();
     for (size_t k = 0; k < view->materials; k++) {
-        json_array_append_new(names, json_string(view->names[k]));
+        json_array_append_new(names, tool_json_text(view->names[k]));
     }
     return json_pack(
-        "{s:s, s:s, s:s, s:b, s:b, s:s, s:s, s:I, s:I, s:I, s:f, s:o, s:s, s:s, s:s}", "file", path,
-        "kind", "basis", "mapping", gonio_mapping_name(view->mapping), "mean", !view->without_mean,
-        "loadings", view->loadings != NULL, "representation",
+        "{s:o, s:s, s:s, s:b, s:b, s:s, s:s, s:I, s:I, s:I, s:f, s:o, s:s, s:s, s:o}", "file",
+        tool_json_text(path), "kind", "basis", "mapping", gonio_mapping_name(view->mapping), "mean",
+        !view->without_mean, "loadings", view->loadings != NULL, "representation",
         gonio_representation_name(view->representation), "channels",
         gonio_channel_model_name(view->channels), "components", (json_int_t)view->components,
         "cells", (json_int_t)view->cells, "mixtures", (json_int_t)view->mixtures,
         "explained_variance", gonio_basis_cumulative_variance(basis, view->components), "materials",
-        names, "fingerprint", fingerprint, "program", view->program, "command", view->command);
+        names, "fingerprint", fingerprint, "program", view->program, "command",
+        tool_json_text(view->command));
 }
 
 static void print_basis(const char *path, const gonio_basis *basis)
@@ -354,10 +355,11 @@ static int info_readings(const tool *t, const char *path, json_t *results)
     const char *kind = measured > 0 ? "readings" : "plan";
     if (results != NULL) {
         json_array_append_new(results,
-                              json_pack("{s:s, s:s, s:I, s:I, s:s, s:I, s:s}", "file", path, "kind",
-                                        kind, "directions", (json_int_t)view->count, "measured",
-                                        (json_int_t)measured, "basis", basis, "components",
-                                        (json_int_t)view->components, "method", view->method));
+                              json_pack("{s:o, s:s, s:I, s:I, s:s, s:I, s:o}", "file",
+                                        tool_json_text(path), "kind", kind, "directions",
+                                        (json_int_t)view->count, "measured", (json_int_t)measured,
+                                        "basis", basis, "components", (json_int_t)view->components,
+                                        "method", tool_json_text(view->method)));
     } else {
         printf("%s: gonio %s, %zu directions, %zu measured\n", path, kind, view->count, measured);
         printf("  basis        %s\n", basis);
@@ -384,8 +386,8 @@ static int info_other(const tool *t, const char *path, json_t *results)
         return tool_exit_code(status);
     }
     if (results != NULL) {
-        json_array_append_new(results, json_pack("{s:s, s:s, s:s}", "file", path, "kind",
-                                                 gonio_kind_name(kind), "format", format));
+        json_array_append_new(results, json_pack("{s:o, s:s, s:s}", "file", tool_json_text(path),
+                                                 "kind", gonio_kind_name(kind), "format", format));
     } else {
         printf("%s: %s, %s\n", path, gonio_kind_name(kind), format);
     }

@@ -61,8 +61,9 @@ static int report(const tool *t, const gonio_basis *basis, const options *o)
     const gonio_basis_view *view = gonio_basis_describe(basis);
     const double share = gonio_basis_cumulative_variance(basis, view->components);
     if (tool_json) {
-        return tool_print_json(t, json_pack("{s:s, s:I, s:I, s:I, s:f}", "basis", o->output,
-                                            "materials", (json_int_t)view->materials, "components",
+        return tool_print_json(t, json_pack("{s:o, s:I, s:I, s:I, s:f}", "basis",
+                                            tool_json_text(o->output), "materials",
+                                            (json_int_t)view->materials, "components",
                                             (json_int_t)view->components, "cells",
                                             (json_int_t)view->cells, "explained_variance", share));
     }

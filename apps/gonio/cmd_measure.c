@@ -19,9 +19,10 @@ static int report(const tool *t, const options *o, const gonio_readings *reading
 {
     const gonio_readings_view *view = gonio_readings_describe(readings);
     if (tool_json) {
-        return tool_print_json(t, json_pack("{s:s, s:I, s:I, s:s}", "output", o->output, "readings",
-                                            (json_int_t)view->count, "channels",
-                                            (json_int_t)view->channels, "material", material));
+        return tool_print_json(
+            t, json_pack("{s:o, s:I, s:I, s:o}", "output", tool_json_text(o->output), "readings",
+                         (json_int_t)view->count, "channels", (json_int_t)view->channels,
+                         "material", tool_json_text(material)));
     }
     if (!tool_quiet) {
         fprintf(tool_results(), "%s: %zu reading%s of %s\n", o->output, view->count,

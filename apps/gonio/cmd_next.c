@@ -27,10 +27,10 @@ static int report(const tool *t, const options *o, const answer *a)
     const gonio_plan *plan = a->plan;
     if (tool_json) {
         return tool_print_json(
-            t, json_pack("{s:b, s:f, s:s?, s:I, s:o, s:s?}", "target_met", plan == NULL,
-                         "expected_e6_percent", a->now, "plan", plan != NULL ? o->output : NULL,
-                         "readings", (json_int_t)(plan != NULL ? plan->count : 0),
-                         "expected_then_percent",
+            t, json_pack("{s:b, s:f, s:o, s:I, s:o, s:s?}", "target_met", plan == NULL,
+                         "expected_e6_percent", a->now, "plan",
+                         tool_json_text(plan != NULL ? o->output : NULL), "readings",
+                         (json_int_t)(plan != NULL ? plan->count : 0), "expected_then_percent",
                          plan != NULL ? tool_json_number(plan->expected[plan->count - 1])
                                       : json_null(),
                          "suspicion", a->suspicion));
@@ -76,6 +76,9 @@ static int next(tool *t, const options *o, const char *basis_path, const char *p
     gonio_status status = tool_read_readings(t, path, &any, &readings);
     if (status == GONIO_OK) {
         status = tool_basis(t, basis_path, NULL, &basis);
+    }
+    if (status == GONIO_OK) {
+        status = tool_keep_read_channels(t, basis, readings);
     }
     if (status == GONIO_OK) {
         status = find_next(t, o, basis, readings, &a);

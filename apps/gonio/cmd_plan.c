@@ -26,9 +26,9 @@ static int report(const tool *t, const gonio_plan *plan, const options *o)
 {
     if (tool_json) {
         const double expected = plan->expected != NULL ? plan->expected[plan->count - 1] : INFINITY;
-        return tool_print_json(t, json_pack("{s:s, s:s, s:I, s:I, s:o, s:o}", "plan", o->output,
-                                            "method", plan->method, "readings",
-                                            (json_int_t)plan->count, "components",
+        return tool_print_json(t, json_pack("{s:o, s:s, s:I, s:I, s:o, s:o}", "plan",
+                                            tool_json_text(o->output), "method", plan->method,
+                                            "readings", (json_int_t)plan->count, "components",
                                             (json_int_t)plan->components, "condition_number",
                                             tool_json_number(plan->condition_number),
                                             "expected_e6_percent", tool_json_number(expected)));

@@ -95,12 +95,13 @@ static json_t *as_json(const gonio_reconstruction *r, const char *output, const 
 {
     json_t *made =
         r->field != NULL
-            ? json_pack("{s:s, s:I, s:I, s:f, s:f, s:I, s:f, s:s?, s:o}", "output", output,
-                        "channels", (json_int_t)r->columns, "readings", (json_int_t)r->readings,
-                        "expected_e6_percent", r->predicted_e6, "residual_log", r->residual,
-                        "outlying", (json_int_t)r->outlying, "remainder_log", r->smoothness,
-                        "suspicion", r->suspicion, "dark_level_per_sr", dark_levels(r))
-            : json_pack("{s:s, s:I, s:I, s:o, s:f}", "output", output, "components",
+            ? json_pack("{s:o, s:I, s:I, s:f, s:f, s:I, s:f, s:s?, s:o}", "output",
+                        tool_json_text(output), "channels", (json_int_t)r->columns, "readings",
+                        (json_int_t)r->readings, "expected_e6_percent", r->predicted_e6,
+                        "residual_log", r->residual, "outlying", (json_int_t)r->outlying,
+                        "remainder_log", r->smoothness, "suspicion", r->suspicion,
+                        "dark_level_per_sr", dark_levels(r))
+            : json_pack("{s:o, s:I, s:I, s:o, s:f}", "output", tool_json_text(output), "components",
                         (json_int_t)r->components, "readings", (json_int_t)r->readings,
                         "condition_number", tool_json_number(r->condition_number), "residual_log",
                         r->residual);
@@ -313,6 +314,9 @@ static int reconstruct_all(tool *t, const options *o, const char *basis_path,
     if (status == GONIO_OK) {
         const char *planned = gonio_readings_describe(readings[0])->method;
         status = tool_basis(t, basis_path, o->method != NULL ? o->method : planned, &basis);
+    }
+    for (size_t k = 0; k < count && status == GONIO_OK; k++) {
+        status = tool_keep_read_channels(t, basis, readings[k]);
     }
     if (status == GONIO_OK) {
         status = reconstruct(t, o, basis, readings, outputs, count, results);

@@ -204,9 +204,10 @@ static int report_one(const tool *t, const options *o, const scene *s, const cha
                       const gonio_image *image)
 {
     if (tool_json) {
-        return tool_print_json(t, json_pack("{s:s, s:s, s:i, s:i, s:i}", "output", o->output,
-                                            "material", material, "width", image->width, "height",
-                                            image->height, "samples", s->how.samples));
+        return tool_print_json(t, json_pack("{s:o, s:o, s:i, s:i, s:i}", "output",
+                                            tool_json_text(o->output), "material",
+                                            tool_json_text(material), "width", image->width,
+                                            "height", image->height, "samples", s->how.samples));
     }
     if (!tool_quiet) {
         fprintf(tool_results(), "%s: %s, %d x %d pixels, %d samples\n", o->output, material,
@@ -379,14 +380,16 @@ static json_t *picture_json(const options *o, const picture *p, const char *cons
         json_t *others = json_array();
         for (size_t k = 1; k < p->columns; k++) {
             const size_t at = row * p->columns + k;
-            json_array_append_new(others, json_pack("{s:s, s:o}", "file", paths[at], "e6_percent",
-                                                    tool_json_number(p->cells[at].e6)));
+            json_array_append_new(others,
+                                  json_pack("{s:o, s:o}", "file", tool_json_text(paths[at]),
+                                            "e6_percent", tool_json_number(p->cells[at].e6)));
         }
-        json_array_append_new(rows, json_pack("{s:s, s:o}", "reference", paths[row * p->columns],
+        json_array_append_new(rows, json_pack("{s:o, s:o}", "reference",
+                                              tool_json_text(paths[row * p->columns]),
                                               "comparisons", others));
     }
-    return json_pack("{s:s, s:i, s:i, s:o}", "output", o->output, "width", p->image[0]->width,
-                     "height", p->image[0]->height, "rows", rows);
+    return json_pack("{s:o, s:i, s:i, s:o}", "output", tool_json_text(o->output), "width",
+                     p->image[0]->width, "height", p->image[0]->height, "rows", rows);
 }
 
 static int report_picture(const tool *t, const options *o, const picture *p,

@@ -91,10 +91,12 @@ static bool check(const tool *t, const options *o, const char **arguments, size_
 static int print_result(const tool *t, const options *o, const shown *s)
 {
     if (tool_json) {
-        return tool_print_json(t, json_pack("{s:s, s:s?, s:s?, s:s?, s:s?, s:s?}", "output",
-                                            o->output, "folder", s->folder, "reference",
-                                            s->reference, "reconstruction", s->reconstruction,
-                                            "readings", o->readings, "deviation", o->deviation));
+        return tool_print_json(
+            t, json_pack("{s:o, s:o, s:o, s:o, s:o, s:o}", "output", tool_json_text(o->output),
+                         "folder", tool_json_text(s->folder), "reference",
+                         tool_json_text(s->reference), "reconstruction",
+                         tool_json_text(s->reconstruction), "readings", tool_json_text(o->readings),
+                         "deviation", tool_json_text(o->deviation)));
     }
     if (!tool_quiet) {
         fprintf(tool_results(), "%s: open it in a browser\n", o->output);

@@ -32,6 +32,14 @@ gonio_status tool_read_readings(const tool *t, const char *path,
     return status == GONIO_OK ? gonio_readings_read(t->context, path, &how, readings) : status;
 }
 
+gonio_status tool_keep_read_channels(const tool *t, const gonio_basis *basis,
+                                     gonio_readings *readings)
+{
+    return gonio_basis_describe(basis)->channels == GONIO_SEPARATE
+               ? gonio_readings_drop_empty_channels(t->context, readings)
+               : GONIO_OK;
+}
+
 /* A file of a format that the user names is readings, unless it is a material. */
 static gonio_status find_kind(const tool *t, const char *path, gonio_kind *kind)
 {

@@ -24,6 +24,10 @@ gonio_status tool_open_material(const tool *t, const char *path, gonio_material 
 gonio_status tool_read_readings(const tool *t, const char *path,
                                 const gonio_readings_options *options, gonio_readings **readings);
 
+/* Of readings for a basis of separate channels, those channels stay in which something was read. */
+gonio_status tool_keep_read_channels(const tool *t, const gonio_basis *basis,
+                                     gonio_readings *readings);
+
 /* Any values: repeats and negative ones are accepted. */
 extern const gonio_readings_options tool_any_values;
 

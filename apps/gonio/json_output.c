@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 static json_t **kept_json = NULL;
 
@@ -14,6 +15,43 @@ void tool_keep_json(json_t **kept)
 json_t *tool_json_number(double value)
 {
     return isfinite(value) ? json_real(value) : json_null();
+}
+
+/* The bytes of the UTF-8 character that a text begins with; 0 if it does not begin with one. */
+static size_t character_length(const unsigned char *text)
+{
+    const size_t length = text[0] < 0x80                      ? 1
+                          : text[0] >= 0xc2 && text[0] < 0xe0 ? 2
+                          : text[0] >= 0xe0 && text[0] < 0xf0 ? 3
+                          : text[0] >= 0xf0 && text[0] < 0xf5 ? 4
+                                                              : 0;
+    for (size_t k = 1; k < length; k++) {
+        if ((text[k] & 0xc0) != 0x80) {
+            return 0;
+        }
+    }
+    json_t *valid = length > 0 ? json_stringn((const char *)text, length) : NULL;
+    json_decref(valid);
+    return valid != NULL ? length : 0;
+}
+
+json_t *tool_json_text(const char *text)
+{
+    static const char replacement[] = "\xef\xbf\xbd";
+    char *valid = NULL;
+    size_t size = 0;
+    FILE *stream = text != NULL ? open_memstream(&valid, &size) : NULL;
+    if (stream == NULL) {
+        return text == NULL ? json_null() : NULL;
+    }
+    for (const char *at = text; *at != '\0';) {
+        const size_t length = character_length((const unsigned char *)at);
+        fwrite(length > 0 ? at : replacement, 1, length > 0 ? length : 3, stream);
+        at += length > 0 ? length : 1;
+    }
+    json_t *json = fclose(stream) == 0 ? json_string(valid) : NULL;
+    free(valid);
+    return json;
 }
 
 json_t *tool_error_json(const gonio_error *error)

@@ -9,6 +9,9 @@
 /* A JSON number; null if it is infinite or NaN, which JSON lacks. */
 json_t *tool_json_number(double value);
 
+/* A name from elsewhere, which need not be UTF-8: bytes that are not become U+FFFD. NULL: null. */
+json_t *tool_json_text(const char *text);
+
 /* An error by every metric: {"e6_percent": ..., ...} (gonio_metric_view.key). */
 json_t *tool_error_json(const gonio_error *error);
 

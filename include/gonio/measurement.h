@@ -226,6 +226,12 @@ GONIO_API gonio_status gonio_readings_look_up(gonio_context *context, gonio_read
 GONIO_API gonio_status gonio_readings_average_repeats(gonio_context *context,
                                                       gonio_readings *readings);
 
+/* Drops channels in which nothing was read, with a note that names them. Of R, G, B those that stay
+ * become channels without wavelengths: one of them is grey in a table. Readings without any value
+ * stay as they are. Errors: _MEMORY. */
+GONIO_API gonio_status gonio_readings_drop_empty_channels(gonio_context *context,
+                                                          gonio_readings *readings);
+
 /* Brings two readings into channels that can be compared. Spectra: b at the wavelengths of a,
  * linear between its own, NaN beyond them. If they are of different kinds, both as colours: spectra
  * under equal energy, a single channel as grey. Deviations are dropped where values change. Errors:

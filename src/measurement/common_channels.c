@@ -1,5 +1,7 @@
-/* Readings in other channels, so that two can be compared: see measurement.h. */
+/* Readings in other channels: those that were read, or those that two can be compared in. See
+ * measurement.h. */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -106,6 +108,110 @@ static gonio_status fill_wavelengths(gonio_context *context, const gonio_reading
                      context, GONIO_ERROR_MISMATCH,
                      "%s and %s were read at wavelengths of which none is among the other's",
                      others->path, readings->path);
+}
+
+/* ---- channels without a value ---- */
+
+static bool is_empty(const gonio_readings *readings, size_t channel)
+{
+    bool empty = true;
+    for (size_t k = 0; k < readings->count && empty; k++) {
+        empty = isnan(readings->value[k * readings->channels + channel]);
+    }
+    return empty;
+}
+
+/* kept[channels]: those with values, in order. Returns how many there are. */
+static size_t find_kept(const gonio_readings *readings, size_t *kept)
+{
+    size_t count = 0;
+    for (size_t c = 0; c < readings->channels; c++) {
+        if (!is_empty(readings, c)) {
+            kept[count++] = c;
+        }
+    }
+    return count;
+}
+
+/* "nothing was read in R_per_sr, B_per_sr: left out". kept[count] is in order. */
+static gonio_status note_dropped(gonio_context *context, gonio_readings *readings,
+                                 const size_t *kept, size_t count)
+{
+    char *text = NULL;
+    size_t size = 0;
+    size_t next = 0;
+    const char *separator = "";
+    FILE *stream = open_memstream(&text, &size);
+    if (stream == NULL) {
+        return gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", readings->path);
+    }
+    for (size_t c = 0; c < readings->channels; c++) {
+        char name[GONIO_I_NAME_ROOM];
+        if (next < count && kept[next] == c) {
+            next++;
+            continue;
+        }
+        gonio_i_value_name(readings, c, false, name);
+        fprintf(stream, "%s%s", separator, name);
+        separator = ", ";
+    }
+    fclose(stream);
+    const bool grey = gonio_readings_are_colours(readings) && count == 1;
+    gonio_i_note(context, "%s: nothing was read in %s: left out%s", readings->path, text,
+                 grey ? "; what was read becomes a single channel, grey in tables of colours" : "");
+    free(text);
+    return GONIO_OK;
+}
+
+/* One array of [count][channels] with fewer channels; in place. */
+static void narrow(double *value, size_t count, size_t channels, const size_t *kept, size_t fewer)
+{
+    for (size_t k = 0; k < count && value != NULL; k++) {
+        for (size_t j = 0; j < fewer; j++) {
+            value[k * fewer + j] = value[k * channels + kept[j]];
+        }
+    }
+}
+
+/* The new number of a planned channel; a dropped one is not known any more. */
+static int renumbered(int planned, const size_t *kept, size_t count)
+{
+    for (size_t j = 0; j < count; j++) {
+        if (planned >= 0 && kept[j] == (size_t)planned) {
+            return (int)j;
+        }
+    }
+    return GONIO_ALL_CHANNELS;
+}
+
+static void keep_channels(gonio_readings *r, const size_t *kept, size_t count)
+{
+    narrow(r->value, r->count, r->channels, kept, count);
+    narrow(r->deviation, r->count, r->channels, kept, count);
+    narrow(r->wavelength, 1, r->channels, kept, count);
+    for (size_t k = 0; k < r->count; k++) {
+        r->planned[k] = renumbered(r->planned[k], kept, count);
+    }
+    r->channels = count;
+    gonio_i_readings_update_view(r);
+}
+
+gonio_status gonio_readings_drop_empty_channels(gonio_context *context, gonio_readings *readings)
+{
+    size_t *kept = gonio_i_allocate(context, readings->channels, sizeof *kept);
+    if (kept == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    const size_t count = find_kept(readings, kept);
+    gonio_status status = GONIO_OK;
+    if (count > 0 && count < readings->channels) {
+        status = note_dropped(context, readings, kept, count);
+        if (status == GONIO_OK) {
+            keep_channels(readings, kept, count);
+        }
+    }
+    free(kept);
+    return status;
 }
 
 /* ---- what both can have ---- */

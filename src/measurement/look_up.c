@@ -115,16 +115,21 @@ static size_t lower_bound(const known_places *k, place at)
 typedef struct best {
     likeness like;
     double apart;
+    double turn; /* of azimuths, also about the normal */
     size_t reading;
 } best;
 
 static void try_reading(const known_places *k, gonio_pair at, size_t reading, best *b)
 {
     double apart = 0.0;
-    const likeness like = compare(at, k->readings->pair[reading], &apart);
-    const bool nearer = apart < b->apart || (apart == b->apart && reading < b->reading);
+    const gonio_pair here = k->readings->pair[reading];
+    const likeness like = compare(at, here, &apart);
+    const double turn = turn_between(at.incident.phi, here.incident.phi) +
+                        turn_between(at.outgoing.phi, here.outgoing.phi);
+    const bool first = turn < b->turn || (turn == b->turn && reading < b->reading);
+    const bool nearer = apart < b->apart || (apart == b->apart && first);
     if (like < b->like || (like != NONE && like == b->like && nearer)) {
-        *b = (best){like, apart, reading};
+        *b = (best){like, apart, turn, reading};
     }
 }
 
@@ -145,7 +150,7 @@ static void try_angles(const known_places *k, gonio_pair at, double theta_i, dou
 /* The nearest of those that are most alike; the first of equals; `count` if there is none. */
 static size_t find(const known_places *k, gonio_pair at)
 {
-    best b = {NONE, INFINITY, k->readings->count};
+    best b = {NONE, INFINITY, INFINITY, k->readings->count};
     try_angles(k, at, at.incident.theta, at.outgoing.theta, &b);
     if (b.like == NONE) {
         try_angles(k, at, at.outgoing.theta, at.incident.theta, &b);

@@ -337,22 +337,6 @@ gonio_status gonio_i_readings_add(gonio_context *context, gonio_readings *r,
     return GONIO_OK;
 }
 
-gonio_status gonio_i_readings_finish(gonio_context *context, gonio_readings *readings,
-                                     bool measured)
-{
-    if (readings->count == 0) {
-        return gonio_i_fail(context, GONIO_ERROR_DATA, "%s: no lines below the column names",
-                            readings->path);
-    }
-    const char *method = gonio_i_comments_value(&readings->comment, "method");
-    readings->method = method != NULL ? method : "";
-    gonio_i_readings_update_view(readings);
-    const gonio_status status = gonio_i_readings_group(context, readings);
-    return status == GONIO_OK && !readings->options.average_repeats
-               ? gonio_i_readings_refuse_repeats(context, readings, measured)
-               : status;
-}
-
 gonio_status gonio_i_readings_note(gonio_context *context, gonio_readings *readings,
                                    const char *format, ...)
 {
@@ -370,6 +354,37 @@ gonio_status gonio_i_readings_note(gonio_context *context, gonio_readings *readi
     free(length >= 0 ? text : NULL);
     return kept ? GONIO_OK
                 : gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", readings->path);
+}
+
+static gonio_status note_poles(gonio_context *context, gonio_readings *readings)
+{
+    size_t turned = 0;
+    const gonio_status status = gonio_i_readings_count_turned(context, readings, &turned);
+    if (status != GONIO_OK || turned == 0) {
+        return status;
+    }
+    return gonio_i_readings_note(context, readings,
+                                 "theta = 0 is one direction at any azimuth: %zu reading%s another",
+                                 turned, turned > 1 ? "s repeat" : " repeats");
+}
+
+gonio_status gonio_i_readings_finish(gonio_context *context, gonio_readings *readings,
+                                     bool measured)
+{
+    if (readings->count == 0) {
+        return gonio_i_fail(context, GONIO_ERROR_DATA, "%s: no lines below the column names",
+                            readings->path);
+    }
+    const char *method = gonio_i_comments_value(&readings->comment, "method");
+    readings->method = method != NULL ? method : "";
+    gonio_i_readings_update_view(readings);
+    gonio_status status = gonio_i_readings_group(context, readings);
+    if (status == GONIO_OK) {
+        status = note_poles(context, readings);
+    }
+    return status == GONIO_OK && !readings->options.average_repeats
+               ? gonio_i_readings_refuse_repeats(context, readings, measured)
+               : status;
 }
 
 /* ---- from arrays ---- */

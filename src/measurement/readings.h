@@ -95,6 +95,11 @@ void gonio_i_value_name(const gonio_readings *readings, size_t channel, bool dev
 /* Fills in first_same for readings in any order. */
 gonio_status gonio_i_readings_group(gonio_context *context, gonio_readings *readings);
 
+/* How many readings with values are the same directions as another one but for an azimuth where
+ * theta is 0. */
+gonio_status gonio_i_readings_count_turned(gonio_context *context, const gonio_readings *readings,
+                                           size_t *turned);
+
 /* _DATA if a direction is listed more than once for a channel. */
 gonio_status gonio_i_readings_refuse_repeats(gonio_context *context, const gonio_readings *readings,
                                              bool measured);

@@ -1,4 +1,5 @@
 /* Readings at the same directions. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -53,6 +54,73 @@ gonio_status gonio_i_readings_group(gonio_context *context, gonio_readings *read
     readings->first_same = first_same;
     return GONIO_OK;
 }
+
+/* ---- at the normal, where azimuths mean nothing ---- */
+
+/* Nearer to the normal a direction has no azimuth, radians. */
+static const double POLE = 1e-6;
+
+static bool has_pole(const gonio_pair *pair)
+{
+    return pair->incident.theta < POLE || pair->outgoing.theta < POLE;
+}
+
+static bool has_value(const gonio_readings *readings, size_t reading)
+{
+    bool any = false;
+    for (size_t c = 0; c < readings->channels; c++) {
+        any = any || !isnan(readings->value[reading * readings->channels + c]);
+    }
+    return any;
+}
+
+/* Of the readings in `sorted`, whose azimuths are 0 about the normal: how many have the directions
+ * of the one before but other azimuths in the file. */
+static size_t count_turned(const gonio_readings *readings, const indexed_pair *sorted, size_t count)
+{
+    size_t turned = 0;
+    for (size_t k = 1; k < count; k++) {
+        const bool same = compare_pairs(sorted[k - 1].pair, sorted[k].pair) == 0;
+        turned += same && readings->first_same[sorted[k].index] == sorted[k].index;
+    }
+    return turned;
+}
+
+/* The readings at the normal, as pair[] has them with azimuths of 0 there. Returns how many. */
+static size_t find_poles(const gonio_readings *readings, gonio_pair *pair, indexed_pair *sorted)
+{
+    size_t count = 0;
+    for (size_t k = 0; k < readings->count; k++) {
+        if (has_pole(&readings->pair[k]) && has_value(readings, k)) {
+            pair[count] = readings->pair[k];
+            pair[count].incident.phi =
+                pair[count].incident.theta < POLE ? 0.0 : pair[count].incident.phi;
+            pair[count].outgoing.phi =
+                pair[count].outgoing.theta < POLE ? 0.0 : pair[count].outgoing.phi;
+            sorted[count] = (indexed_pair){&pair[count], k};
+            count++;
+        }
+    }
+    return count;
+}
+
+gonio_status gonio_i_readings_count_turned(gonio_context *context, const gonio_readings *readings,
+                                           size_t *turned)
+{
+    gonio_pair *pair = gonio_i_allocate(context, readings->count, sizeof *pair);
+    indexed_pair *sorted = gonio_i_allocate(context, readings->count, sizeof *sorted);
+    const bool done = pair != NULL && sorted != NULL;
+    if (done) {
+        const size_t count = find_poles(readings, pair, sorted);
+        qsort(sorted, count, sizeof *sorted, compare_indexed);
+        *turned = count_turned(readings, sorted, count);
+    }
+    free(pair);
+    free(sorted);
+    return done ? GONIO_OK : GONIO_ERROR_MEMORY;
+}
+
+/* ---- refusing repeats ---- */
 
 static bool channels_overlap(int a, int b)
 {

@@ -28,6 +28,9 @@ static const double LEFT = 1e-4;
 /* Square of the distance (basis/prior.h) up to which directions are the same. */
 static const double SAME = 1e-6;
 
+/* Nearer to the normal a direction has no azimuth, radians. */
+static const double POLE = 1e-6;
+
 enum { MOST_CANDIDATES = 100000, MOST_RANK = 500 };
 
 /* Deviation, log units, of what the model leaves open beside what it knows of, wherever one reads:
@@ -194,6 +197,51 @@ static gonio_status factorise_candidates(place_list *p, const float *f)
     return GONIO_OK;
 }
 
+/* ---- candidates that are the same ---- */
+
+/* A candidate with azimuths that count: 0 about the normal. */
+typedef struct named_pair {
+    double angle[4]; /* theta_i, phi_i, theta_o, phi_o */
+    size_t candidate;
+} named_pair;
+
+static double azimuth_of(gonio_angles a)
+{
+    const double phi = fmod(a.phi, 2.0 * M_PI);
+    return a.theta < POLE ? 0.0 : phi < 0.0 ? phi + 2.0 * M_PI : phi + 0.0; /* no -0 */
+}
+
+static int compare_named(const void *a, const void *b)
+{
+    const named_pair *x = a;
+    const named_pair *y = b;
+    int order = memcmp(x->angle, y->angle, sizeof x->angle);
+    return order != 0 ? order : (x->candidate > y->candidate) - (x->candidate < y->candidate);
+}
+
+/* Allows the first of candidates that are the same directions: repeats, and any azimuths about the
+ * normal. */
+static gonio_status allow_once(place_list *p, const gonio_plan_options *options)
+{
+    named_pair *named = gonio_i_allocate(p->context, p->rows, sizeof *named);
+    if (named == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    for (size_t k = 0; k < p->rows; k++) {
+        const gonio_pair *pair = &options->candidates[k];
+        named[k] = (named_pair){{pair->incident.theta, azimuth_of(pair->incident),
+                                 pair->outgoing.theta, azimuth_of(pair->outgoing)},
+                                k};
+    }
+    qsort(named, p->rows, sizeof *named, compare_named);
+    for (size_t k = 0; k < p->rows; k++) {
+        p->allowed[named[k].candidate] =
+            k == 0 || memcmp(named[k].angle, named[k - 1].angle, sizeof named[k].angle) != 0;
+    }
+    free(named);
+    return GONIO_OK;
+}
+
 static gonio_status list_candidates(place_list *p, const gonio_plan_options *options)
 {
     const size_t most = p->known != NULL ? p->prior->components : MOST_RANK;
@@ -207,8 +255,10 @@ static gonio_status list_candidates(place_list *p, const gonio_plan_options *opt
         p->at[k] = gonio_half_difference_from_pair(options->candidates[k]);
         gonio_i_prior_at(p->prior, p->at[k], 0, &p->mean[k], exact);
         to_float(exact, components, f + k * components);
-        p->allowed[k] = true;
         p->loss[k] = metric_weight(options->metric, p->at[k], p->mean[k], 0);
+    }
+    if (status == GONIO_OK) {
+        status = allow_once(p, options);
     }
     if (status == GONIO_OK && p->known != NULL) {
         memcpy(p->f, f, p->rows * p->components * sizeof *f);
@@ -267,28 +317,48 @@ static void fill_entry(const place_list *p, const gonio_plan_options *options, s
     *entry = gonio_i_plan_entry(view, row, options->phi_d);
 }
 
-static gonio_status check(gonio_context *context, const place_list *p,
-                          const gonio_plan_options *options)
+static size_t count_allowed(const place_list *p)
 {
     size_t allowed = 0;
     for (size_t row = 0; row < p->rows; row++) {
         allowed += p->allowed[row];
     }
-    if (options->count > allowed) {
+    return allowed;
+}
+
+/* How many readings to choose: those asked for, or all that there are if that many were only
+ * allowed. */
+static gonio_status choose_count(gonio_context *context, const place_list *p,
+                                 const gonio_plan_options *options, size_t *count)
+{
+    const size_t allowed = count_allowed(p);
+    const bool usual = options->count == GONIO_USUAL_COUNT;
+    const size_t asked = usual ? GONIO_I_USUAL_NEXT : options->count;
+    const bool all_of_file = options->candidates != NULL && asked == p->rows;
+    *count = asked < allowed ? asked : allowed;
+    if (*count == 0 || (asked > allowed && options->target == 0.0 && !all_of_file && !usual)) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
                             "%zu readings asked for, but there are only %zu directions to choose "
                             "from",
-                            options->count, allowed);
+                            asked, allowed);
     }
     return GONIO_OK;
 }
 
 /* As few readings as reach the target, if there is one. */
-static gonio_status cut(gonio_context *context, const gonio_plan_options *options, gonio_plan *plan)
+static gonio_status cut(const place_list *p, const gonio_plan_options *options, gonio_plan *plan)
 {
+    gonio_context *context = p->context;
     size_t n = 0;
     while (options->target > 0.0 && n < plan->count && plan->expected[n] > options->target) {
         n++;
+    }
+    if (options->target > 0.0 && n == plan->count && plan->count == count_allowed(p)) {
+        gonio_i_warn(context,
+                     "all %zu directions leave an expected error of %.2f %%, above the target of "
+                     "%.2f %%: all are planned",
+                     plan->count, plan->expected[plan->count - 1], options->target);
+        return GONIO_OK;
     }
     if (options->target > 0.0 && n == plan->count) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
@@ -364,7 +434,7 @@ static gonio_status fill_plan(const place_list *p, const gonio_plan_options *opt
     }
     free(chosen);
     free(remaining);
-    return status == GONIO_OK ? cut(p->context, options, plan) : status;
+    return status == GONIO_OK ? cut(p, options, plan) : status;
 }
 
 static gonio_status check_options(gonio_context *context, const gonio_basis *basis,
@@ -420,6 +490,7 @@ static gonio_status make_plan(gonio_context *context, const gonio_basis *basis,
 {
     place_list p = {.context = context, .known = known, .noise = NOISE};
     gonio_plan *made = NULL;
+    size_t count = 0;
     gonio_status status = check_options(context, basis, options);
     if (status == GONIO_OK) {
         status = gonio_i_prior_create(context, basis, &p.prior);
@@ -432,11 +503,11 @@ static gonio_status make_plan(gonio_context *context, const gonio_basis *basis,
         status = leave_out_read(&p);
     }
     if (status == GONIO_OK) {
-        status = check(context, &p, options);
+        status = choose_count(context, &p, options, &count);
     }
     if (status == GONIO_OK) {
         made = gonio_i_allocate_plan(context, p.prior->view, gonio_i_expected_error_method.name,
-                                     p.prior->components, options->count);
+                                     p.prior->components, count);
         status = made == NULL ? GONIO_ERROR_MEMORY : fill_plan(&p, options, made);
     }
     if (status == GONIO_OK) {

@@ -17,6 +17,8 @@ typedef struct gonio_i_known {
     double norm;     /* root of the sum of g^2 over the bins of the grid, which E6 is relative to */
 } gonio_i_known;
 
+enum { GONIO_I_USUAL_NEXT = 5 }; /* readings that come next, or as many as there are */
+
 /* As gonio_plan_create by expected-error, for a material of which something is known;
  * options->count readings of those that were not made. The plan's expected[] are per cent of the
  * material itself. */

@@ -57,13 +57,17 @@ void gonio_plan_options_default_of(gonio_plan_options *options, size_t size)
     gonio_i_give(&usual, sizeof usual, options, size);
 }
 
-/* The options that were asked for, with what is usual for those that were left open. */
+/* The options that were asked for, with what is usual for those that were left open: no more
+ * readings than there are candidates. */
 static gonio_status take(gonio_context *context, const gonio_plan_options *asked,
                          gonio_plan_options *options)
 {
     const gonio_status status = GONIO_I_TAKE(context, gonio_plan_options, asked, options);
     if (status == GONIO_OK && options->count == GONIO_USUAL_COUNT) {
         options->count = options->target > 0.0 ? 300 : 80;
+        if (options->candidates != NULL && options->candidate_count < options->count) {
+            options->count = options->candidate_count;
+        }
     }
     return status;
 }

@@ -2,8 +2,11 @@
 #include "observations.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "../measurement/readings.h"
 
 double gonio_i_dark_level_missing(const double *dark, size_t channel, double theta_i)
 {
@@ -138,15 +141,26 @@ void gonio_i_columns_free(gonio_i_columns *columns)
     *columns = (gonio_i_columns){0};
 }
 
-gonio_status gonio_i_columns_check(gonio_context *context, const gonio_i_columns *columns,
-                                   const char *path)
+/* The channel of a column for messages: the name of the readings' values if there are any. */
+static void name_of(const gonio_readings *readings, size_t channel, char name[GONIO_I_NAME_ROOM])
 {
-    const char *origin = path != NULL ? path : "readings";
+    if (readings != NULL) {
+        gonio_i_value_name(readings, channel, false, name);
+    } else {
+        snprintf(name, GONIO_I_NAME_ROOM, "channel %zu", channel + 1);
+    }
+}
+
+gonio_status gonio_i_columns_check(gonio_context *context, const gonio_i_columns *columns,
+                                   const gonio_readings *readings)
+{
+    const char *origin = readings != NULL ? gonio_readings_describe(readings)->path : "readings";
     for (size_t k = 0; k < columns->count; k++) {
         if (columns->column[k].count == 0) {
+            char name[GONIO_I_NAME_ROOM];
+            name_of(columns->count > 1 ? readings : NULL, k, name);
             return gonio_i_fail(context, GONIO_ERROR_UNDETERMINED,
-                                "%s: no reading in channel %zu: are the cells of its values empty?",
-                                origin, k + 1);
+                                "%s: no reading in %s: are its cells empty?", origin, name);
         }
     }
     return GONIO_OK;

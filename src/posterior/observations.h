@@ -40,9 +40,9 @@ void gonio_i_columns_free(gonio_i_columns *columns);
 void gonio_i_column_transform(const gonio_readings *readings, const gonio_i_noise *noise,
                               const gonio_i_transform *transform, gonio_i_column *column);
 
-/* _UNDETERMINED if a column has no reading. path: of the readings, for the message, or NULL. */
+/* _UNDETERMINED if a column has no reading. readings: whose names the message uses, or NULL. */
 gonio_status gonio_i_columns_check(gonio_context *context, const gonio_i_columns *columns,
-                                   const char *path);
+                                   const gonio_readings *readings);
 
 /* What is missing from a reading of a channel, 1/sr. dark: of the columns, or NULL for none. */
 double gonio_i_dark_level_missing(const double *dark, size_t channel, double theta_i);

@@ -61,7 +61,7 @@ static gonio_status find_posterior(next *n, const gonio_reconstruct_options *opt
         status = gonio_i_columns_create(n->context, n->view, n->readings, &noise, &n->columns);
     }
     if (status == GONIO_OK) {
-        status = gonio_i_columns_check(n->context, &n->columns, n->readings->path);
+        status = gonio_i_columns_check(n->context, &n->columns, n->readings);
     }
     if (status == GONIO_OK) {
         status = gonio_i_prior_create(n->context, n->basis, &n->prior);
@@ -90,7 +90,6 @@ static gonio_status plan_more(const next *n, const gonio_plan_options *options, 
                                  n->posterior.predicted_by_variance,
                                  n->posterior.norm};
     gonio_plan_options all = *options;
-    all.count = all.count != GONIO_USUAL_COUNT ? all.count : 5;
     all.target = 0.0; /* what was read counts; the plan is as long as asked for */
     return gonio_i_expected_error_next(n->context, n->basis, &all, &known, plan);
 }

@@ -103,7 +103,7 @@ static gonio_status from_readings(const gonio_i_reconstruct_task *task,
     gonio_reconstruction *made = NULL;
     gonio_status status = gonio_i_columns_create(context, view, readings, &noise, &columns);
     if (status == GONIO_OK) {
-        status = gonio_i_columns_check(context, &columns, gonio_readings_describe(readings)->path);
+        status = gonio_i_columns_check(context, &columns, readings);
     }
     if (status == GONIO_OK) {
         status = gonio_i_prior_create(context, basis, &prior);

@@ -82,10 +82,13 @@ static void test_own_lines_come_first(void **state)
                                        {45, 30, 45, 210, 5.1, 1, 1},
                                        {45, 180, 45, 0, 4.9, 1, 1},
                                        {45, 0, 45, 180.001, 4.8, 1, 1}};
+    static const double pole[][7] = {
+        {30, 0, 0, 0, 0.1, 1, 1}, {30, 0, 0, 10, 0.2, 1, 1}, {30, 0, 0, 20, 0.3, 1, 1}};
     static const double between[][7] = {{30, 0, 50, 40, 1, 1, 1}, {50, 40, 30, 0, 2, 1, 1}};
     assert_finds_itself(reciprocal, 3);
     assert_finds_itself(turned, 4);
     assert_finds_itself(between, 2);
+    assert_finds_itself(pole, 3);
 }
 
 /* Rounded in the fifth decimal of a degree; phi_d is anything near the mirror direction. */
@@ -238,6 +241,34 @@ static void test_errors_between_readings(void **state)
     }
     gonio_readings_free(&a);
     gonio_readings_free(&b);
+}
+
+static void test_channels_without_values_go(void **state)
+{
+    (void)state;
+    static const double wave[] = {400, 500, 600};
+    static const double rows[][7] = {{30, 0, 50, 40, NAN, 0.2, NAN}, {5, 0, 5, 40, NAN, 0.4, NAN}};
+    static const double spectra[][7] = {{30, 0, 50, 40, NAN, NAN, 0.3},
+                                        {5, 0, 5, 40, 0.1, NAN, NAN}};
+    static const double deviations[] = {NAN, 0.1, NAN, NAN, 0.2, NAN};
+    gonio_readings *one = made_colours(rows, 2);
+    gonio_readings *two = made_spectra(&spectra[0][0], 2, 3, wave, true);
+    gonio_readings *none = made_directions((const double[][4]){{30, 0, 50, 40}}, 1);
+    assert_int_equal(gonio_readings_set_deviations(NULL, one, deviations), GONIO_OK);
+    assert_int_equal(gonio_readings_drop_empty_channels(NULL, one), GONIO_OK);
+    assert_int_equal(gonio_readings_drop_empty_channels(NULL, two), GONIO_OK);
+    assert_int_equal(gonio_readings_drop_empty_channels(NULL, none), GONIO_OK);
+    assert_int_equal(gonio_readings_describe(one)->channels, 1);
+    assert_close(gonio_readings_value(one, 1, 0), 0.4, 0.0);
+    assert_close(gonio_readings_describe(one)->deviation[1], 0.2, 0.0);
+    assert_int_equal(gonio_readings_describe(two)->channels, 2);
+    assert_close(gonio_readings_describe(two)->wavelength[1], 600.0, 0.0);
+    assert_close(gonio_readings_value(two, 1, 0), 0.1, 0.0);
+    assert_true(isnan(gonio_readings_value(two, 1, 1)));
+    assert_int_equal(gonio_readings_describe(none)->channels, 3);
+    gonio_readings_free(&none);
+    gonio_readings_free(&two);
+    gonio_readings_free(&one);
 }
 
 /* Brings b into the channels of a, or both into colours, and frees both. */
@@ -412,6 +443,7 @@ int main(void)
         cmocka_unit_test(test_what_was_not_read_stays_so),
         cmocka_unit_test(test_spectra_are_looked_up_too),
         cmocka_unit_test(test_errors_between_readings),
+        cmocka_unit_test(test_channels_without_values_go),
         cmocka_unit_test(test_channels_in_common),
         cmocka_unit_test(test_readings_that_cannot_be_compared),
         cmocka_unit_test(test_spectra_as_colours),
