@@ -57,15 +57,24 @@ const char *gonio_kind_format(gonio_kind kind, int index)
     return row != NULL && index >= 0 ? row->format_name(index) : NULL;
 }
 
-static gonio_kind kind_of(const gonio_i_file *file, const char **format)
+/* The first of these kinds that a file is of. */
+static gonio_kind first_of(const gonio_i_file *file, unsigned these, const char **format)
 {
     for (int k = 0; k < KINDS; k++) {
-        *format = kinds[k].format_of(file);
+        *format = (kinds[k].kind & these) != 0 ? kinds[k].format_of(file) : NULL;
         if (*format != NULL) {
             return kinds[k].kind;
         }
     }
     return GONIO_KIND_UNKNOWN;
+}
+
+/* A file may be of two kinds, as an RGL .bsdf is a material and has readings in it: those that are
+ * wanted go first. */
+static gonio_kind kind_of(const gonio_i_file *file, unsigned wanted, const char **format)
+{
+    const gonio_kind kind = first_of(file, wanted, format);
+    return kind != GONIO_KIND_UNKNOWN ? kind : first_of(file, ~wanted, format);
 }
 
 static bool is_built_in(const char *path)
@@ -81,8 +90,8 @@ static bool is_pipe(const char *path)
 }
 
 /* Looks at a file, and says what it is. The file of a built-in material or a pipe stays empty. */
-static gonio_status look(gonio_context *context, const char *path, gonio_i_file *file,
-                         gonio_kind *kind, const char **format)
+static gonio_status look(gonio_context *context, const char *path, unsigned wanted,
+                         gonio_i_file *file, gonio_kind *kind, const char **format)
 {
     if (is_built_in(path)) {
         *kind = GONIO_KIND_MATERIAL;
@@ -96,7 +105,7 @@ static gonio_status look(gonio_context *context, const char *path, gonio_i_file 
     }
     const gonio_status status = gonio_i_file_look(context, path, file);
     if (status == GONIO_OK) {
-        *kind = kind_of(file, format);
+        *kind = kind_of(file, wanted, format);
     }
     return status;
 }
@@ -106,7 +115,7 @@ gonio_status gonio_file_kind(gonio_context *context, const char *path, gonio_kin
 {
     gonio_i_file file = {0};
     const char *found = NULL;
-    const gonio_status status = look(context, path, &file, kind, &found);
+    const gonio_status status = look(context, path, ~0U, &file, kind, &found);
     if (status == GONIO_OK && format != NULL) {
         *format = found;
     }
@@ -184,7 +193,7 @@ gonio_status gonio_file_expect(gonio_context *context, const char *path, unsigne
     gonio_i_file file = {0};
     gonio_kind found = GONIO_KIND_UNKNOWN;
     const char *format = NULL;
-    const gonio_status status = look(context, path, &file, &found, &format);
+    const gonio_status status = look(context, path, wanted, &file, &found, &format);
     if (status != GONIO_OK) {
         return status;
     }

@@ -244,6 +244,54 @@ static void test_curet(void **state)
     free(table);
 }
 
+/* ---- RGL ---- */
+
+/* The samples are where the material's own parameterisation has its nodes: there nothing is
+ * interpolated. The file is a material all the same. */
+static void test_rgl_samples(void **state)
+{
+    (void)state;
+    char path[256];
+    char *folder = support_folder();
+    gonio_material *material = NULL;
+    gonio_readings *samples = NULL;
+    gonio_readings *known = NULL;
+    gonio_kind kind = GONIO_KIND_UNKNOWN;
+    snprintf(path, sizeof path, "%s/x.bsdf", folder);
+    assert_int_equal(gonio_material_open(NULL, "atlas:red-cotton", &material), GONIO_OK);
+    assert_int_equal(gonio_material_write(NULL, material, path, NULL), GONIO_OK);
+    gonio_material_free(&material);
+    assert_int_equal(gonio_file_kind(NULL, path, &kind, NULL), GONIO_OK);
+    assert_int_equal(kind, GONIO_KIND_MATERIAL);
+    assert_int_equal(gonio_file_expect(NULL, path, GONIO_KIND_READINGS, &kind), GONIO_OK);
+    assert_int_equal(kind, GONIO_KIND_READINGS);
+
+    assert_int_equal(gonio_material_open(NULL, path, &material), GONIO_OK);
+    assert_int_equal(gonio_readings_read(NULL, path, NULL, &samples), GONIO_OK);
+    assert_int_equal(gonio_readings_read(NULL, path, NULL, &known), GONIO_OK);
+    assert_int_equal(gonio_measure_material(NULL, known, material, NULL), GONIO_OK);
+    const gonio_readings_view *view = gonio_readings_describe(samples);
+    double error = 0.0;
+    double all = 0.0;
+    assert_true(view->count > 50000);
+    for (size_t k = 0; k < view->count; k++) {
+        assert_true(view->pair[k].incident.theta <= 80.0001 * M_PI / 180.0);
+        assert_true(view->pair[k].outgoing.theta <= 80.0001 * M_PI / 180.0);
+        for (size_t c = 0; c < 3; c++) {
+            const double is = gonio_readings_value(samples, k, c);
+            const double was = gonio_readings_value(known, k, c);
+            const double off = log1p(1500.0 * is) - log1p(1500.0 * was);
+            error += isnan(off) ? 0.0 : off * off;
+            all += isnan(off) ? 0.0 : pow(log1p(1500.0 * was), 2.0);
+        }
+    }
+    assert_true(sqrt(error / all) < 1e-3); /* half vectors along the normal have several samples */
+    gonio_readings_free(&samples);
+    gonio_readings_free(&known);
+    gonio_material_free(&material);
+    support_remove(folder);
+}
+
 /* ---- bad files ---- */
 
 static void test_bad_files(void **state)
@@ -324,6 +372,7 @@ int main(void)
         cmocka_unit_test(test_json_round_trips),
         cmocka_unit_test(test_open_material),
         cmocka_unit_test(test_curet),
+        cmocka_unit_test(test_rgl_samples),
         cmocka_unit_test(test_bad_files),
         cmocka_unit_test(test_deep_json),
     };

@@ -49,19 +49,19 @@ static double look_up(const float *value, size_t width, gonio_i_step x, gonio_i_
     return (1.0 - y.share) * low + y.share * high;
 }
 
-static double look_up_image(const gonio_i_rgl_image *i, double x, double y)
+double gonio_i_rgl_image_at(const gonio_i_rgl_image *i, double x, double y)
 {
     return look_up(i->value, i->width, gonio_i_step_evenly(i->width, x),
                    gonio_i_step_evenly(i->height, y));
 }
 
-static double place_of_theta(double theta)
+double gonio_i_rgl_place_of_theta(double theta)
 {
     return sqrt(fmax(theta, 0.0) * (2.0 / M_PI));
 }
 
 /* In [0, 1). */
-static double place_of_phi(double phi)
+double gonio_i_rgl_place_of_phi(double phi)
 {
     const double place = (phi + M_PI) / (2.0 * M_PI);
     return place - floor(place);
@@ -135,13 +135,15 @@ static void evaluate_pair(const gonio_i_rgl *r, gonio_pair pair, double *values)
     const gonio_angles incident = to_angles(i);
     const gonio_angles half = to_angles((vector){i.x + o.x, i.y + o.y, i.z + o.z});
     const gonio_i_blend blend = blend_incidences(r, incident);
-    const double u[2] = {place_of_theta(half.theta),
-                         place_of_phi(r->isotropic ? half.phi - incident.phi : half.phi)};
+    const double u[2] = {
+        gonio_i_rgl_place_of_theta(half.theta),
+        gonio_i_rgl_place_of_phi(r->isotropic ? half.phi - incident.phi : half.phi)};
     double s[2];
     gonio_i_warp_invert(&r->vndf, &blend, u, s);
-    const double area =
-        look_up_image(&r->sigma, place_of_theta(incident.theta), place_of_phi(incident.phi));
-    const double factor = r->jacobian ? look_up_image(&r->ndf, u[0], u[1]) / (4.0 * area) : 1.0;
+    const double area = gonio_i_rgl_image_at(&r->sigma, gonio_i_rgl_place_of_theta(incident.theta),
+                                             gonio_i_rgl_place_of_phi(incident.phi));
+    const double factor =
+        r->jacobian ? gonio_i_rgl_image_at(&r->ndf, u[0], u[1]) / (4.0 * area) : 1.0;
     evaluate_values(r, &blend, s, factor / o.z, values);
 }
 
