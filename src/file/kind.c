@@ -57,7 +57,6 @@ const char *gonio_kind_format(gonio_kind kind, int index)
     return row != NULL && index >= 0 ? row->format_name(index) : NULL;
 }
 
-/* The first of these kinds that a file is of. */
 static gonio_kind first_of(const gonio_i_file *file, unsigned these, const char **format)
 {
     for (int k = 0; k < KINDS; k++) {
@@ -69,12 +68,19 @@ static gonio_kind first_of(const gonio_i_file *file, unsigned these, const char 
     return GONIO_KIND_UNKNOWN;
 }
 
-/* A file may be of two kinds, as an RGL .bsdf is a material and has readings in it: those that are
- * wanted go first. */
+/* An RGL .bsdf is a material and has readings in it: readings where only these are wanted. CSV is
+ * what any text may be. */
 static gonio_kind kind_of(const gonio_i_file *file, unsigned wanted, const char **format)
 {
-    const gonio_kind kind = first_of(file, wanted, format);
-    return kind != GONIO_KIND_UNKNOWN ? kind : first_of(file, ~wanted, format);
+    const gonio_kind kind = first_of(file, ~0U, format);
+    const char *readings = (wanted & GONIO_KIND_READINGS) != 0 && (kind & wanted) == 0
+                               ? gonio_i_readings_format_of(file)
+                               : NULL;
+    if (readings == NULL || strcmp(readings, gonio_i_readings_csv.name) == 0) {
+        return kind;
+    }
+    *format = readings;
+    return GONIO_KIND_READINGS;
 }
 
 static bool is_built_in(const char *path)

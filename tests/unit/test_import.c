@@ -31,7 +31,7 @@ static void test_conventions_from_text(void **state)
     assert_int_equal(c.wavelengths, GONIO_MICROMETRES);
     assert_int_equal(c.zeros, GONIO_ZEROS_DARK);
     assert_int_equal(c.sample, 12);
-    assert_string_equal(c.format, gonio_readings_format_word(0));
+    assert_string_equal(c.format, "scattered");
     assert_null(gonio_readings_format_word(-1));
 }
 
