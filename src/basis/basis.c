@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../core/number.h"
 #include "../direction/grid.h"
 
 size_t gonio_i_basis_row_count(size_t cells, gonio_channel_model channels)
@@ -193,7 +194,7 @@ static void add_identity(const gonio_basis *basis, gonio_fingerprint *fingerprin
     for (size_t k = 0; k < basis->components; k++) {
         char text[32] = "";
         if (basis->variances[k] > 1e-6 * basis->variances[0]) {
-            snprintf(text, sizeof text, "%.5e", basis->variances[k]);
+            gonio_i_print(text, sizeof text, "%.5e", basis->variances[k]);
         }
         gonio_fingerprint_add(fingerprint, text, sizeof text);
     }

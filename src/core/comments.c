@@ -25,17 +25,11 @@ static bool append(gonio_i_comments *comments, char *text)
 
 bool gonio_i_comments_add(gonio_i_comments *comments, const char *format, ...)
 {
-    gonio_i_plain_numbers plain;
-    char *text = NULL;
     va_list arguments;
-    if (!gonio_i_plain_numbers_begin(&plain)) {
-        return false;
-    }
     va_start(arguments, format);
-    const int length = vasprintf(&text, format, arguments);
+    char *text = gonio_i_format_list(format, arguments);
     va_end(arguments);
-    gonio_i_plain_numbers_end(&plain);
-    return length >= 0 && append(comments, text);
+    return append(comments, text);
 }
 
 bool gonio_i_comments_add_text(gonio_i_comments *comments, const char *text, size_t length)

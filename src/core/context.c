@@ -1,5 +1,6 @@
 /* The context: messages, progress, threads; and the library's status texts and version. */
 #include "core.h"
+#include "number.h"
 #include "options.h"
 
 #include <ctype.h>
@@ -195,7 +196,7 @@ static void send(gonio_context *context, gonio_message_level level, const char *
                  va_list arguments)
 {
     char text[4096];
-    vsnprintf(text, sizeof text, format, arguments);
+    gonio_i_print_list(text, sizeof text, format, arguments);
     for (; context != NULL && context->above != NULL; context = context->above) {
         if (context->piece != NULL) {
             put_in_front(context->piece, text, sizeof text);
@@ -289,11 +290,10 @@ void *gonio_i_allocate(gonio_context *context, size_t count, size_t size)
 char *gonio_i_format(const char *format, ...)
 {
     va_list arguments;
-    char *text = NULL;
     va_start(arguments, format);
-    const int length = vasprintf(&text, format, arguments);
+    char *text = gonio_i_format_list(format, arguments);
     va_end(arguments);
-    return length < 0 ? NULL : text;
+    return text;
 }
 
 char *gonio_i_base_name(const char *path, bool keep_extension)

@@ -66,20 +66,6 @@ static bool append(char ***strings, size_t *count, char *text)
     return true;
 }
 
-/* A formatted string with decimal points, whatever the program's locale; NULL when out of memory.
- */
-static char *format_plain(const char *format, va_list arguments)
-{
-    gonio_i_plain_numbers plain;
-    char *text = NULL;
-    if (!gonio_i_plain_numbers_begin(&plain)) {
-        return NULL;
-    }
-    const int length = vasprintf(&text, format, arguments);
-    gonio_i_plain_numbers_end(&plain);
-    return length < 0 ? NULL : text;
-}
-
 bool gonio_i_csv_add_column(gonio_i_csv *csv, const char *name)
 {
     const size_t old = csv->columns;
@@ -127,7 +113,7 @@ bool gonio_i_csv_set(gonio_i_csv *csv, size_t row, size_t column, const char *fo
 {
     va_list arguments;
     va_start(arguments, format);
-    char *text = format_plain(format, arguments);
+    char *text = gonio_i_format_list(format, arguments);
     va_end(arguments);
     if (text == NULL) {
         return false;

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "../core/options.h"
+#include "../core/number.h"
 #include "../plan/plan_file.h"
 #include "rules.h"
 
@@ -110,7 +111,7 @@ void gonio_i_value_name(const gonio_readings *readings, size_t channel, bool dev
 {
     const char *end = deviation ? "_deviation_per_sr" : "_per_sr";
     if (readings->wavelength != NULL) {
-        snprintf(name, GONIO_I_NAME_ROOM, "%.10gnm%s", readings->wavelength[channel], end);
+        gonio_i_print(name, GONIO_I_NAME_ROOM, "%.10gnm%s", readings->wavelength[channel], end);
     } else if (gonio_readings_are_colours(readings)) {
         snprintf(name, GONIO_I_NAME_ROOM, "%c%s", "RGB"[channel], end);
     } else if (readings->channels == 1) {

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../core/number.h"
 #include "../core/options.h"
 #include "../core/output.h"
 #include "page.h"
@@ -111,10 +112,21 @@ static gonio_status collect(page *p)
 
 /* ---- writing ---- */
 
+static char *dump(const json_t *data)
+{
+    gonio_i_plain_numbers plain;
+    if (!gonio_i_plain_numbers_begin(&plain)) {
+        return NULL;
+    }
+    char *text = json_dumps(data, JSON_COMPACT | JSON_REAL_PRECISION(9));
+    gonio_i_plain_numbers_end(&plain);
+    return text;
+}
+
 /* JSON that can stand in HTML: "</script>" in a name must not end the element. */
 static char *safe_json(const json_t *data)
 {
-    char *plain = json_dumps(data, JSON_COMPACT | JSON_REAL_PRECISION(9));
+    char *plain = dump(data);
     size_t angles = 0;
     for (const char *c = plain; c != NULL && *c != '\0'; c++) {
         angles += *c == '<';

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "../core/options.h"
+#include "../core/number.h"
 #include "image.h"
 
 enum { GAP = 8, MARGIN = 14, MOST_SIDE = 32767, SCALE_HEIGHT = 10 }; /* pixels */
@@ -208,13 +209,13 @@ static void put_errors(const drawing *d, const gonio_sheet_cell *cell,
     char e6[48] = "";
     char rendered[96];
     if (isfinite(cell->e6)) {
-        snprintf(e6, sizeof e6, "E6 %.2f %%", cell->e6);
+        gonio_i_print(e6, sizeof e6, "E6 %.2f %%", cell->e6);
     }
     if (isfinite(error->psnr)) {
-        snprintf(rendered, sizeof rendered,
-                 "PSNR %.1f dB, \xce\x94"
-                 "E %.2f",
-                 error->psnr, error->delta_e_itp);
+        gonio_i_print(rendered, sizeof rendered,
+                      "PSNR %.1f dB, \xce\x94"
+                      "E %.2f",
+                      error->psnr, error->delta_e_itp);
     } else {
         snprintf(rendered, sizeof rendered, "equal");
     }
@@ -290,10 +291,10 @@ static void put_scale(const drawing *d)
         }
     }
     cairo_surface_mark_dirty(d->surface);
-    snprintf(text, sizeof text,
-             "\xce\x94"
-             "E_ITP 0 to %g",
-             d->largest);
+    gonio_i_print(text, sizeof text,
+                  "\xce\x94"
+                  "E_ITP 0 to %g",
+                  d->largest);
     put_text(d, text, left + 0.5 * width, top + SCALE_HEIGHT + 1.3 * d->at.font, width, false);
 }
 

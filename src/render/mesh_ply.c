@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../core/number.h"
 #include "mesh.h"
 
 enum { MOST_ELEMENTS = 16, MOST_PROPERTIES = 64, NAME = 32, PLACES = 6 };
@@ -166,7 +167,7 @@ static gonio_status read_header(reading *r)
 static bool read_text(reading *r, double *value)
 {
     char *end = NULL;
-    *value = strtod((const char *)r->at, &end);
+    *value = gonio_i_number((const char *)r->at, &end);
     if (end == (const char *)r->at || (const unsigned char *)end > r->end) {
         return false;
     }
