@@ -34,7 +34,7 @@ typedef struct gonio_i_atlas_material {
     double opposition;              /* height of the surge towards the light, 0: none */
     double opposition_width;        /* tangent of half the phase angle at which it halves */
 
-    /* Relief: facets whose slopes crowd around one value (weave, emboss, crystal faces). */
+    /* Relief: facets with slopes close to one value (weave, emboss, crystal faces). */
     double relief[GONIO_CHANNELS]; /* reflectance, 0: none */
     double relief_slope;
     double relief_width; /* half width at 1/e, in slope */

@@ -1,4 +1,4 @@
-/* A basis in memory: making, describing, and the row that a reading sees. */
+/* A basis in memory: creation, description, and the row that a reading observes. */
 #include "basis.h"
 
 #include <math.h>
@@ -78,7 +78,7 @@ void gonio_basis_free(gonio_basis **basis)
     *basis = NULL;
 }
 
-/* The cell of the basis nearest to a cell of the grid, as far as it is known. */
+/* The nearest cell of the basis that is known so far for a cell of the grid. */
 typedef struct nearest {
     int32_t position; /* -1: none yet */
     int32_t distance; /* squared, in index space */
@@ -101,7 +101,7 @@ static void consider(nearest candidate, size_t step, nearest *best)
     }
 }
 
-/* Goes outwards from k until nothing farther can be nearer. */
+/* Searches outwards from k, until no farther cell can be nearer. */
 static nearest nearest_in_line(const nearest *line, const axis *a, size_t k)
 {
     nearest best = {-1, 0};
@@ -117,7 +117,7 @@ static nearest nearest_in_line(const nearest *line, const axis *a, size_t k)
     return best;
 }
 
-/* Looks along one axis for nearer cells than those known so far. */
+/* Searches along one axis for nearer cells than those known so far. */
 static void search_axis(gonio_context *context, const axis *a, nearest *cells, size_t count)
 {
 #pragma omp parallel for schedule(static) num_threads(gonio_context_threads(context))
@@ -133,8 +133,8 @@ static void search_axis(gonio_context *context, const axis *a, nearest *cells, s
     }
 }
 
-/* Squared distances add up over the axes, so the nearest cell is found one axis after another.
- * Invalid bins of the full grid get a neighbour too: interpolation may touch them. */
+/* Squared distances add up over the axes. So the nearest cell is found one axis after another.
+ * Invalid bins of the full grid get a nearest cell too, because interpolation may use them. */
 gonio_status gonio_i_basis_map_cells(gonio_context *context, gonio_basis *basis)
 {
     const size_t all = (size_t)gonio_grid_cells(basis->representation);
@@ -165,8 +165,7 @@ gonio_status gonio_i_basis_map_cells(gonio_context *context, gonio_basis *basis)
     return GONIO_OK;
 }
 
-/* A basis in the first mapping with a mean has the fingerprint that it had before there were
- * others.
+/* A basis in log space with a mean has the fingerprint that it had before other mappings existed.
  */
 static void add_kind(const gonio_basis *basis, gonio_fingerprint *fingerprint)
 {
@@ -183,8 +182,8 @@ static void add_kind(const gonio_basis *basis, gonio_fingerprint *fingerprint)
     gonio_fingerprint_add(fingerprint, basis->cell, basis->cells * sizeof *basis->cell);
 }
 
-/* Processors round differently, so the identity of a basis is in its materials' names and in the
- * leading variances to six digits; those of a different database differ in the first. */
+/* Processors round differently. So the materials' names and the leading variances to six digits
+ * identify a basis. Variances of another database differ in the first digits. */
 static void add_identity(const gonio_basis *basis, gonio_fingerprint *fingerprint)
 {
     add_kind(basis, fingerprint);
@@ -280,8 +279,8 @@ const gonio_basis_view *gonio_basis_describe(const gonio_basis *basis)
 
 /* ---- rows of V ---- */
 
-/* Doubles to floats in the same memory, from the front: what is written lies behind what is still
- * to be read. */
+/* Converts doubles to floats in the same memory. Forward order is safe: a float is written before
+ * the doubles that are still to be read. */
 static void round_in_place(double *values, size_t count)
 {
     enum { CHUNK = 1024 };

@@ -1,4 +1,4 @@
-/* The inside of a basis, shared by learning, files and look-ups. */
+/* The struct of a basis, shared by learning, files and look-ups. */
 #ifndef GONIO_BASIS_INTERNAL_H
 #define GONIO_BASIS_INTERNAL_H
 
@@ -22,49 +22,49 @@ struct gonio_basis {
     size_t rows;
     size_t components;
     double *mean;
-    const float *vectors;      /* [rows][components], in one of the next two */
+    const float *vectors;      /* [rows][components], in `kept` or in `file` */
     float *kept;               /* NULL where V is in a file */
     gonio_i_safetensors *file; /* NULL where V is in memory */
     size_t variance_count;
     double *variances;
     double *loadings;          /* NULL where a file has none */
     int32_t *parents;          /* [mixtures][2]; NULL without mixtures, or where a file has none */
-    uint64_t fingerprint;      /* what it is, the same on every processor */
+    uint64_t fingerprint;      /* identifies the basis, the same on every processor */
     uint64_t vectors_checksum; /* of every bit of V */
     uint64_t checksum;         /* of every bit of cells, mean, V and variances */
     char *program;
     char *command;
-    int32_t *position; /* of the whole grid: which of `cell` stands for it */
+    int32_t *position; /* of each cell of the grid: the position of the nearest in `cell` */
     gonio_basis_view view;
 };
 
-/* The name of the format that a file is of; NULL if it is no basis. */
+/* The name of a file's format; NULL if the file is no basis. */
 const char *gonio_i_basis_format_of(const gonio_i_file *file);
 
-/* Whether a file that is not recognised may be a basis all the same, one that is damaged. */
+/* Whether a file that is not recognised may be a damaged basis. */
 bool gonio_i_basis_may_be(const gonio_i_file *file);
 
 /* The names of the formats that are read; NULL past the last. */
 const char *gonio_i_basis_format_name(int index);
 
-/* Allocates everything of a basis but V, with no contents; NULL after a message. */
+/* Allocates all arrays of a basis except V, zeroed; NULL after a message. */
 gonio_basis *gonio_i_basis_allocate(gonio_context *context, size_t materials, size_t mixtures,
                                     size_t cells, gonio_channel_model channels, size_t components,
                                     size_t variance_count);
 
-/* gonio_basis_learn before its last steps: a basis without V, and V ([rows][components]) as it was
- * computed. */
+/* The first part of gonio_basis_learn: a basis without V, and V ([rows][components]) in double
+ * precision. */
 gonio_status gonio_i_basis_learn_exact(gonio_context *context, const gonio_database *database,
                                        const gonio_basis_options *options, gonio_basis **basis,
                                        double **vectors);
 
-/* V ([rows][components], as gonio_i_allocate gave it, the basis's in any case) rounded to single
- * precision, so that a basis in memory is what its file holds. Errors: _MEMORY. */
+/* Rounds V ([rows][components], from gonio_i_allocate) to single precision and puts it into the
+ * basis, which owns it in any case. So a basis in memory equals its file. Errors: _MEMORY. */
 gonio_status gonio_i_basis_keep_vectors(gonio_context *context, gonio_basis *basis,
                                         double *vectors);
 
-/* The last step of making one, with V known: its fingerprint, its checksum, the map of nearest
- * cells and the view of it. */
+/* The last step of creation, when V is set: the fingerprint, the checksum, the map of nearest cells
+ * and the view. */
 gonio_status gonio_i_basis_finish(gonio_context *context, gonio_basis *basis);
 
 /* Reads a basis file of an older gonio. Errors: as gonio_basis_read. */
@@ -74,9 +74,9 @@ gonio_status gonio_i_basis_read_hdf5(gonio_context *context, const char *path, g
 gonio_status gonio_i_basis_hash(gonio_context *context, const void *data, size_t size,
                                 uint64_t *value);
 
-/* What a basis from a file of any format has to be: cells in order, plausible numbers, V and W
- * orthonormal, V of its checksum, parents among the measured columns. Messages name `path`.
- * Errors: _FORMAT, _MEMORY. */
+/* Checks a basis from a file of any format: cells ascend, numbers are plausible, V and W are
+ * orthonormal, V has its checksum, parents are measured columns. Messages name `path`. Errors:
+ * _FORMAT, _MEMORY. */
 gonio_status gonio_i_basis_check(gonio_context *context, const char *path,
                                  const gonio_basis *basis);
 
@@ -91,23 +91,23 @@ void gonio_i_basis_rows(const gonio_basis *basis, size_t first, size_t count, si
 void gonio_i_basis_row_at(const gonio_basis *basis, gonio_half_difference coordinates, int channel,
                           size_t components, double *mean, double *row);
 
-/* S_k of k below view->variance_count. */
+/* The singular value S_k, k below view->variance_count. */
 double gonio_i_singular_value(const gonio_basis_view *view, size_t k);
 
-/* The first `components` values of a row of V times c. */
+/* The dot product of c and the first `components` values of a row of V. */
 double gonio_i_basis_dot(const gonio_basis *basis, size_t row, const double *c, size_t components);
 
-/* The cell that a row is of. */
+/* The cell of a row. */
 static inline int32_t gonio_i_row_cell(const gonio_basis_view *view, size_t row)
 {
     return view->cell[gonio_i_position_of(view->channels, row)];
 }
 
-/* How many valid bins of the grid a row stands for. */
+/* The number of valid bins of a row's cell. */
 int gonio_i_row_bins(const gonio_basis_view *view, size_t row);
 
-/* The direction that a row stands for, of a bivariate one that at phi_d = 90 degrees, and its
- * channel (joint) or 0. */
+/* The direction that represents a row (phi_d = 90 degrees if bivariate), and the row's channel
+ * (joint) or 0. */
 gonio_half_difference gonio_i_row_coordinates(const gonio_basis_view *view, size_t row,
                                               int *channel);
 
@@ -117,11 +117,12 @@ typedef struct gonio_i_row_weight {
     double weight; /* >= 0; the weights add up to 1 */
 } gonio_i_row_weight;
 
-/* The rows that a reading in one channel at a direction sees; returns how many. */
+/* The rows that a reading in one channel at a direction observes. Returns their number. */
 int gonio_i_rows_around(const gonio_basis *basis, gonio_half_difference at, int channel,
                         gonio_i_row_weight around[GONIO_I_MOST_POINTS]);
 
-/* Finds the cell that stands for each one of the grid: part of _finish, of use before. */
+/* Finds the nearest cell for each cell of the grid. A part of _finish that may be called before it.
+ */
 gonio_status gonio_i_basis_map_cells(gonio_context *context, gonio_basis *basis);
 
 #endif

@@ -83,7 +83,7 @@ static char *join_names(const gonio_basis *basis, size_t *size)
     return joined;
 }
 
-/* Data and shapes of all arrays; those that are not there have no data. */
+/* Lists data and shapes of all arrays. An array that the basis lacks has no data. */
 static void list_arrays(const gonio_basis *basis, const double *scale, const char *names,
                         size_t names_size, gonio_i_array arrays[ARRAYS])
 {
@@ -116,7 +116,7 @@ static void list_arrays(const gonio_basis *basis, const double *scale, const cha
     }
 }
 
-/* Texts of the metadata that are made for a file. */
+/* The computed texts of the metadata. */
 typedef struct made_texts {
     char mixtures[24];
     char fingerprint[HASH_SIZE];
@@ -207,7 +207,7 @@ gonio_status gonio_basis_write(gonio_context *context, const gonio_basis *basis,
 
 /* ---- reading ---- */
 
-/* A file, the basis that it becomes, and its arrays; NULL where the file has none. */
+/* A file, the basis that is read from it, and its arrays; NULL for an array that it lacks. */
 typedef struct reader {
     gonio_context *context;
     const char *path;
@@ -222,7 +222,7 @@ static gonio_status damaged(const reader *r, const char *what, const char *probl
                         remedy);
 }
 
-/* It is a basis, and of a version that this program knows. */
+/* Checks that the file is a basis of a known version. */
 static gonio_status check_kind(const reader *r)
 {
     const char *format = gonio_i_safetensors_text(r->file, "format");
@@ -290,7 +290,7 @@ static gonio_status read_words(const reader *r)
     return status;
 }
 
-/* The arrays by their names, each of the type and rank that it has to have. */
+/* Finds the arrays by their names, and checks their types and ranks. */
 static gonio_status find_arrays(reader *r)
 {
     for (size_t k = 0; k < ARRAYS; k++) {
@@ -325,7 +325,7 @@ static gonio_status read_mixtures(const reader *r)
     return GONIO_OK;
 }
 
-/* The sizes of a basis from the shapes, which have to fit each other. */
+/* Sets the sizes of a basis from the shapes, and checks that these fit each other. */
 static gonio_status read_shapes(const reader *r)
 {
     gonio_basis *basis = r->basis;
@@ -361,7 +361,7 @@ static gonio_status read_shapes(const reader *r)
                                                     : damaged(r, "log_scale", "has a wrong shape");
 }
 
-/* Another scale would be another log space. */
+/* Refuses another scale, which is another log space. */
 static gonio_status check_log_scale(const reader *r)
 {
     const double *scale = r->arrays[LOG_SCALE]->data;
@@ -398,7 +398,7 @@ static gonio_status read_names(const reader *r)
                         : damaged(r, "material_names", "has more names than there are materials");
 }
 
-/* A copy, which nobody can change after it is checked; NULL where the file has no such array. */
+/* Copies an array, so that it cannot change after it is checked; NULL if the file lacks it. */
 static gonio_status copy_array(const reader *r, int which, void *copy)
 {
     const gonio_i_array *array = r->arrays[which];
@@ -414,7 +414,7 @@ static gonio_status copy_array(const reader *r, int which, void *copy)
     return GONIO_OK;
 }
 
-/* All but V, which stays in the file. */
+/* Copies all arrays except V, which stays in the file. */
 static gonio_status copy_arrays(const reader *r)
 {
     gonio_basis *basis = r->basis;
@@ -451,7 +451,7 @@ static gonio_status read_texts(const reader *r)
 static gonio_status compare_hash(const reader *r, const char *key, uint64_t value)
 {
 #ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
-    (void)r; /* what lies behind the hashes is to be found too */
+    (void)r; /* fuzzing has to reach the code after the hashes */
     (void)key;
     (void)value;
     return GONIO_OK;
@@ -465,7 +465,7 @@ static gonio_status compare_hash(const reader *r, const char *key, uint64_t valu
 #endif
 }
 
-/* Of the arrays but V as they are used, so of the copies. */
+/* Checks the hashes of the arrays except V, of the copies if there are copies. */
 static gonio_status compare_hashes(const reader *r)
 {
     const gonio_basis *basis = r->basis;
@@ -490,7 +490,7 @@ static gonio_status compare_hashes(const reader *r)
     return status;
 }
 
-/* From the header to a basis of which nothing is known but that its arrays have the right sizes. */
+/* Reads a file into a basis whose arrays have the right sizes. Values are not checked yet. */
 static gonio_status read_header(reader *r)
 {
     static gonio_status (*const steps[])(const reader *) = {read_shapes, check_log_scale,
@@ -554,7 +554,7 @@ const char *gonio_i_basis_format_name(int index)
     return index == 0 ? format_name : NULL; /* older ones are converted, not read */
 }
 
-/* What is no safetensors file: an older basis, or no basis. */
+/* Refuses files that are not safetensors: older bases, and files that are no bases. */
 static gonio_status check_beginning(gonio_context *context, const gonio_i_file *file)
 {
     if (is_hdf5(file) && is_marked(file)) {

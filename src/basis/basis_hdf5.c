@@ -20,7 +20,7 @@ static const char *const channel_models[] = {"joint", "separate", NULL};
 static const char *const mappings[] = {"log", "relative", NULL};
 static const char *const centrings[] = {"mean", "none", NULL};
 
-/* What a file holds, before it becomes a basis. */
+/* The contents of a file, before they become a basis. */
 typedef struct contents {
     gonio_context *context;
     const char *path;
@@ -55,7 +55,7 @@ static gonio_status read_word(const contents *c, hid_t parent, const char *name,
     return *value >= 0 ? GONIO_OK : damaged(c, name, "is missing or unknown");
 }
 
-/* What a file of gonio 0.1.0 does not say: then it is the first of the words. */
+/* An attribute that files of gonio 0.1.0 lack. It then has the first of the words. */
 static gonio_status read_new_word(const contents *c, const char *name, const char *const *words,
                                   int64_t *value)
 {
@@ -69,7 +69,7 @@ static gonio_status read_space(contents *c)
     return status == GONIO_OK ? read_new_word(c, "centring", centrings, &c->without_mean) : status;
 }
 
-/* Columns that are no materials', which files of gonio 0.1.0 do not have. */
+/* The number of mixtures, which files of gonio 0.1.0 lack. */
 static gonio_status read_mixtures(contents *c)
 {
     int64_t mixtures = 0;
@@ -142,7 +142,7 @@ static gonio_status read_materials(contents *c)
     return problem != NULL ? damaged(c, "materials/fingerprint", problem) : GONIO_OK;
 }
 
-/* Another scale would be another log space. */
+/* Refuses another scale, which is another log space. */
 static gonio_status check_log_scale(const contents *c)
 {
     void *scale = NULL;
@@ -164,7 +164,8 @@ static gonio_status check_log_scale(const contents *c)
 
 static gonio_status read_numbers(contents *c)
 {
-    /* Each size limits the next, so that no file asks for more memory than its grid needs. */
+    /* Each size limits the next one. So no file causes more memory to be allocated than its grid
+     * needs. */
     const size_t rows = gonio_i_basis_row_count(c->cells, (gonio_channel_model)c->channels);
     size_t shape[2] = {0, 0};
     const char *what = "mean";
@@ -189,7 +190,7 @@ static gonio_status read_numbers(contents *c)
     return problem != NULL ? damaged(c, what, problem) : GONIO_OK;
 }
 
-/* It is one of ours, and of a version that this program knows. */
+/* Checks that the file is a basis of a known version. */
 static gonio_status check_kind(const contents *c)
 {
     char **text = NULL;
@@ -251,7 +252,7 @@ static gonio_status read_loadings(contents *c)
                            : read_hash(c, "loadings_checksum", &c->loadings_checksum);
 }
 
-/* What mixtures are made of, which older files lack. */
+/* The parents of the mixtures, which older files lack. */
 static gonio_status read_parents(contents *c)
 {
     size_t shape[2] = {0, 0};
@@ -336,7 +337,8 @@ static gonio_status check_hash(const contents *c, const char *name, uint64_t sto
                            : damaged(c, name, "does not fit the contents (the file was changed)");
 }
 
-/* Hashes of these files are of V in double precision, so they come before it is rounded. */
+/* The hashes of these files are of V in double precision. So they are checked before V is rounded.
+ */
 static gonio_status check_hashes(const contents *c)
 {
     const int32_t kind[2] = {(int32_t)c->representation, (int32_t)c->channels};
@@ -389,7 +391,7 @@ static gonio_status check_all_hashes(const contents *c)
     return status;
 }
 
-/* Moves what was read into a basis. */
+/* Moves the contents into a basis. */
 static gonio_status move_contents(contents *c, gonio_basis *basis)
 {
     *basis = (gonio_basis){

@@ -1,4 +1,4 @@
-/* What a basis from a file has to be before it is used: see gonio_i_basis_check. */
+/* Checks of a basis from a file, before it is used: see gonio_i_basis_check. */
 #include "basis.h"
 
 #include <float.h>
@@ -14,7 +14,7 @@ static const double LARGEST_MEAN = 1e4;
 static const double LARGEST_VARIANCE = 1e16;
 static const double ORTHONORMAL_LOADINGS = 1e-6; /* max |W'W - I| */
 
-/* Fuzzing is to find what lies behind the hashes too. */
+/* Fuzzing has to reach the code after the hashes. */
 #ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
 enum { HASHES_MAY_DIFFER = true };
 #else
@@ -47,7 +47,7 @@ static bool cells_in_order(const gonio_basis *basis)
     return basis->cells > 0;
 }
 
-/* NaN is not. */
+/* Whether all values are within the limits. NaN is not. */
 static bool all_within(const double *values, size_t count, double least, double most)
 {
     bool within = true;
@@ -57,7 +57,7 @@ static bool all_within(const double *values, size_t count, double least, double 
     return within;
 }
 
-/* Computed ones may differ in the last digits. */
+/* Whether variances descend. Computed ones may differ in the last digits. */
 static bool descending(const double *values, size_t count)
 {
     for (size_t k = 1; k < count; k++) {
@@ -79,7 +79,7 @@ static bool parents_are_measured(const gonio_basis *basis)
     return true;
 }
 
-/* W'W = I, which finite numbers alone fulfil. */
+/* Checks W'W = I. Numbers that are not finite fail. */
 static gonio_status check_loadings(const check *c)
 {
     const size_t k = c->basis->components;
@@ -102,17 +102,17 @@ static gonio_status check_loadings(const check *c)
 
 /* ---- V'V = I ---- */
 
-/* V'V x = x for a few vectors x of random signs, which a V'V that is not I fails by as much as a
- * row of V'V - I is long. It costs two products with a vector instead of V'V. Parts of the rows are
- * added up one after another, for the same sum on any number of threads. */
-enum { PROBES = 4, PARTS = 16 };
+/* Checks V'V x = x for a few vectors x of random signs. If V'V is not I, V'V x differs from x by
+ * the length of a row of V'V - I. This takes two products with a vector instead of V'V. Blocks of
+ * rows are summed in order, so the sum is the same on any number of threads. */
+enum { VECTORS = 4, BLOCKS = 16 };
 
-typedef struct probe {
+typedef struct vector_test {
     const gonio_basis *basis;
-    double *x;   /* [PROBES][K]: the vectors */
-    double *sum; /* [PARTS][PROBES][K]: V'V x */
-    double *row; /* [PARTS][K]: scratch */
-} probe;
+    double *x;   /* [VECTORS][K]: the vectors */
+    double *sum; /* [BLOCKS][VECTORS][K]: V'V x */
+    double *row; /* [BLOCKS][K]: scratch */
+} vector_test;
 
 /* sum += v (v'x). */
 GONIO_I_VECTORISED static void add_row(const double *v, const double *x, size_t n, double *sum)
@@ -127,16 +127,16 @@ GONIO_I_VECTORISED static void add_row(const double *v, const double *x, size_t 
     }
 }
 
-static void add_part(const probe *p, size_t part)
+static void add_block(const vector_test *p, size_t block)
 {
     const size_t k = p->basis->components;
-    const size_t first = p->basis->rows * part / PARTS;
-    const size_t end = p->basis->rows * (part + 1) / PARTS;
-    double *row = p->row + part * k;
+    const size_t first = p->basis->rows * block / BLOCKS;
+    const size_t end = p->basis->rows * (block + 1) / BLOCKS;
+    double *row = p->row + block * k;
     for (size_t i = first; i < end; i++) {
         gonio_i_basis_rows(p->basis, i, 1, k, row);
-        for (size_t j = 0; j < PROBES; j++) {
-            add_row(row, p->x + j * k, k, p->sum + (part * PROBES + j) * k);
+        for (size_t j = 0; j < VECTORS; j++) {
+            add_row(row, p->x + j * k, k, p->sum + (block * VECTORS + j) * k);
         }
     }
 }
@@ -151,14 +151,14 @@ static void draw_signs(double *x, size_t count)
 }
 
 /* Rounding V to single precision moves V'V x by at most K 2^-23. */
-static bool probes_agree(const probe *p)
+static bool products_agree(const vector_test *p)
 {
     const size_t k = p->basis->components;
     const double tolerance = 2.0 * FLT_EPSILON * (double)k;
-    for (size_t j = 0; j < PROBES * k; j++) {
+    for (size_t j = 0; j < VECTORS * k; j++) {
         double sum = 0.0;
-        for (size_t part = 0; part < PARTS; part++) {
-            sum += p->sum[part * PROBES * k + j];
+        for (size_t block = 0; block < BLOCKS; block++) {
+            sum += p->sum[block * VECTORS * k + j];
         }
         if (!(fabs(sum - p->x[j]) <= tolerance)) {
             return false;
@@ -167,17 +167,17 @@ static bool probes_agree(const probe *p)
     return true;
 }
 
-/* The hash of V as well: both read all of it, and the hash is one thread's. */
-static gonio_status read_vectors(const check *c, const probe *p, uint64_t *hash)
+/* Checks V and computes its hash in parallel: both read all of V. */
+static gonio_status read_vectors(const check *c, const vector_test *p, uint64_t *hash)
 {
     const size_t size = c->basis->rows * c->basis->components * sizeof *c->basis->vectors;
     gonio_status status = GONIO_OK;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(gonio_context_threads(c->context))
-    for (size_t part = 0; part <= PARTS; part++) {
-        if (part == 0) {
+    for (size_t block = 0; block <= BLOCKS; block++) {
+        if (block == 0) {
             status = gonio_i_basis_hash(c->context, c->basis->vectors, size, hash);
         } else {
-            add_part(p, part - 1);
+            add_block(p, block - 1);
         }
     }
     return status;
@@ -187,20 +187,20 @@ static gonio_status check_vectors(const check *c)
 {
     uint64_t hash = 0;
     const size_t k = c->basis->components;
-    const probe p = {.basis = c->basis,
-                     .x = gonio_i_allocate(c->context, PROBES * k, sizeof *p.x),
-                     .sum = gonio_i_allocate(c->context, PARTS * PROBES * k, sizeof *p.sum),
-                     .row = gonio_i_allocate(c->context, PARTS * k, sizeof *p.row)};
+    const vector_test p = {.basis = c->basis,
+                           .x = gonio_i_allocate(c->context, VECTORS * k, sizeof *p.x),
+                           .sum = gonio_i_allocate(c->context, BLOCKS * VECTORS * k, sizeof *p.sum),
+                           .row = gonio_i_allocate(c->context, BLOCKS * k, sizeof *p.row)};
     gonio_status status =
         p.x == NULL || p.sum == NULL || p.row == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
     if (status == GONIO_OK) {
-        draw_signs(p.x, PROBES * k);
+        draw_signs(p.x, VECTORS * k);
         status = read_vectors(c, &p, &hash);
     }
     if (status == GONIO_OK && !HASHES_MAY_DIFFER && hash != c->basis->vectors_checksum) {
         status = damaged(c, "components", "are not those of the checksum (the file was changed)");
     }
-    if (status == GONIO_OK && !probes_agree(&p)) {
+    if (status == GONIO_OK && !products_agree(&p)) {
         status = damaged(c, "components", "are not orthonormal");
     }
     free(p.x);

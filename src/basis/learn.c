@@ -7,7 +7,7 @@
  * Accuracy G squares the condition number, which costs V some orthogonality. V'V is summed while V
  *          is made; where it is not I to `ORTHOGONAL`, dividing V by the Cholesky factor of V'V
  *          restores it to rounding.
- * The tiles and the order in which they are added depend on the matrix only, never on the threads.
+ * The tiles and the order of their sums depend on the matrix only, not on the threads.
  */
 #include "basis.h"
 
@@ -36,7 +36,7 @@ typedef struct learner {
     size_t measured;                  /* columns of the materials, which come first */
     const gonio_i_mixtures *mixtures; /* NULL without */
     double weight[2];                 /* of a measured column and of a mixture; on average 1 */
-    bool any_rank;                    /* fewer components will do */
+    bool any_rank;                    /* fewer components than asked for are accepted */
     gonio_basis *basis;
     double *vectors; /* V before it is rounded */
     size_t tiles;
@@ -50,7 +50,7 @@ void gonio_basis_options_default_of(gonio_basis_options *options, size_t size)
     gonio_i_give(&usual, sizeof usual, options, size);
 }
 
-/* What a thread works on. */
+/* Buffers of a thread. */
 typedef struct workspace {
     float *values; /* a tile, [column][row] */
     double *h;     /* the same, less m */
@@ -120,7 +120,8 @@ static int compare_values(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* The middle value of sorted g = ln(1 + x), or of two middle ones the g of the mean of their x. */
+/* The median of sorted g = ln(1 + x). Between two middle values it is the g of the mean of their x.
+ */
 static double median_of(const double *sorted, size_t count)
 {
     const double upper = sorted[count / 2];
@@ -130,7 +131,7 @@ static double median_of(const double *sorted, size_t count)
     return log1p(0.5 * (expm1(sorted[count / 2 - 1]) + expm1(upper)));
 }
 
-/* Of each row; `row` is scratch of `columns` values. */
+/* The median of each row; `row` is scratch of `columns` values. */
 static void find_medians(const float *values, size_t rows, size_t columns, double *row,
                          double *median)
 {
@@ -154,7 +155,7 @@ static void find_origin(const learner *l, gonio_i_row_range rows, const workspac
     }
 }
 
-/* Reads a tile and takes m out of it, which the first pass finds. */
+/* Reads a tile and subtracts m. The first pass computes m. */
 static gonio_status read_centred(const learner *l, size_t tile, gonio_i_row_range rows,
                                  const workspace *w, bool first_pass)
 {
@@ -204,7 +205,7 @@ static gonio_status report_batch(const learner *l)
     return gonio_i_progress(l->context, "learning", (double)done / (double)(2 * l->batches));
 }
 
-/* Goes through all tiles; sum (n x n): what the work has added to w->part, in order. */
+/* Runs the work on all tiles. sum (n x n): the sum of w->part, in order. */
 static gonio_status for_each_tile(const learner *l, tile_work *work, const double *p, double *sum,
                                   size_t n)
 {
@@ -272,7 +273,7 @@ static double distance_from_identity(const double *c, size_t n)
     return most;
 }
 
-/* Rows of V that are worked on together once it is made. */
+/* The number of rows of V that are processed together. */
 enum { BLOCK_ROWS = 4096 };
 
 static size_t block_rows(const gonio_basis *basis, size_t block)
@@ -302,8 +303,7 @@ static gonio_status orthonormalise(const learner *l, double *c)
     return GONIO_OK;
 }
 
-/* Entries of the largest size in each of the k columns of v, with their signs; the first of equals
- * stays. */
+/* The entry of largest absolute value in each of the k columns of v, the first of equals. */
 GONIO_I_VECTORISED static void find_largest(const double *v, size_t rows, size_t k, double *largest)
 {
     for (size_t i = 0; i < rows; i++) {
@@ -438,7 +438,7 @@ static gonio_status describe_origin(const learner *l)
     return done ? GONIO_OK : gonio_i_fail(l->context, GONIO_ERROR_MEMORY, "out of memory");
 }
 
-/* Mixtures are made of rows of other cells, found by the map of cells. */
+/* Mixtures use rows of other cells, which the map of cells finds. */
 static gonio_status prepare_mixtures(learner *l, const gonio_basis_options *options,
                                      gonio_i_mixtures **mixtures)
 {
@@ -478,7 +478,7 @@ static gonio_status learn(learner *l, const gonio_basis_options *options)
     return status;
 }
 
-/* Where mixtures serve, as many as are usual. */
+/* The default number of mixtures, for bases that use mixtures. */
 static size_t count_mixtures(const gonio_database_view *view, const gonio_basis_options *options)
 {
     const bool usual = view->representation == GONIO_SECTORED && view->mapping == GONIO_LOG &&
@@ -488,7 +488,7 @@ static size_t count_mixtures(const gonio_database_view *view, const gonio_basis_
                                                      : 0;
 }
 
-/* The kinds of bases that mixtures are made for. */
+/* Whether mixtures are implemented for a kind of basis. */
 static gonio_status check_mixtures(gonio_context *context, const gonio_database_view *view,
                                    const gonio_basis_options *options)
 {
@@ -513,7 +513,7 @@ static gonio_status check_subset(gonio_context *context, const gonio_database_vi
     return GONIO_OK;
 }
 
-/* K: what was asked for, or as many as the default and the columns allow. */
+/* K: the number that was asked for, or the default, limited by the columns. */
 static gonio_status choose_components(gonio_context *context, size_t columns,
                                       const gonio_basis_options *options, size_t *components)
 {

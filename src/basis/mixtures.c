@@ -8,19 +8,19 @@
 #include "../core/vector_math.h"
 #include "../database/tiles.h"
 
-/* Of ln f and ln t. */
+/* Standard deviations of ln f and ln t. */
 static const double WIDTH_DEVIATION = 0.3;
 static const double TILT_DEVIATION = 0.25;
 
 enum { CHUNK = 256 }; /* rows that are mixed together */
 
-/* Between two of several bins: low and the next one. */
+/* Interpolation between two neighbouring bins. */
 typedef struct between {
     int low;
     double share; /* of the next one */
 } between;
 
-/* A measured column, varied: where its value at each bin of theta_h and theta_d comes from. */
+/* A varied measured column: the bins from which its value at each theta_h and theta_d comes. */
 typedef struct half {
     size_t column;
     double share;
@@ -39,7 +39,7 @@ struct gonio_i_mixtures {
     float *measured; /* [column][row] */
 };
 
-/* At so many bins from the middle of the first: constant beyond the ends. */
+/* Interpolation at a distance in bins from the centre of the first; constant beyond the ends. */
 static between place(double at, int bins)
 {
     const double inside = fmin(fmax(at, 0.0), bins - 1.0);
@@ -47,7 +47,7 @@ static between place(double at, int bins)
     return (between){low, inside - low};
 }
 
-/* theta_h / f, which is spaced by a square root. */
+/* The bins of theta_h / f; theta_h is spaced by a square root. */
 static void widen(double f, between *theta_h)
 {
     for (int k = 0; k < GONIO_THETA_H_BINS; k++) {
@@ -55,7 +55,7 @@ static void widen(double f, between *theta_h)
     }
 }
 
-/* theta_d, bent by t. */
+/* The bins of 90 degrees (theta_d / 90 degrees)^t. */
 static void bend(double t, between *theta_d)
 {
     for (int k = 0; k < GONIO_THETA_D_BINS; k++) {
@@ -154,7 +154,7 @@ void gonio_i_mixtures_parents(const gonio_i_mixtures *mixtures, int32_t *parents
     }
 }
 
-/* Rows that are mixed together: where each is on the grid. */
+/* Rows that are mixed together, with their places on the grid. */
 typedef struct row_run {
     size_t count;
     int32_t phi_cells;
@@ -173,7 +173,7 @@ static void find_rows(const gonio_basis *basis, size_t first, size_t count, row_
     }
 }
 
-/* A row of a column that is varied: between four cells. */
+/* A row of a varied column: interpolated between four cells. */
 static double stretched(const gonio_i_mixtures *m, const half *h, const row_run *run, size_t i)
 {
     const gonio_i_cell_indices at = run->at[i];
@@ -195,7 +195,7 @@ static double stretched(const gonio_i_mixtures *m, const half *h, const row_run 
     return sum;
 }
 
-/* share (e^g - 1) of a half. */
+/* share (e^g - 1) of one of the two columns. */
 static void reflectance(const gonio_i_mixtures *m, const half *h, const row_run *run, double *x)
 {
     for (size_t i = 0; i < run->count; i++) {

@@ -1,4 +1,4 @@
-/* Made-up columns: mixtures of measured ones, varied before. See basis.h. */
+/* Mixtures: computed columns, each of two varied measured columns (docs/method.md). */
 #ifndef GONIO_MIXTURES_H
 #define GONIO_MIXTURES_H
 
@@ -6,16 +6,16 @@
 
 typedef struct gonio_i_mixtures gonio_i_mixtures;
 
-/* Draws options->mixtures of the materials options->subset (NULL: all) of the database. `basis`
- * knows its cells and their map, and outlives the result, which keeps the measured columns in
- * memory. Errors: _MEMORY, _IO. */
+/* Draws options->mixtures mixtures of the materials options->subset (NULL: all) of the database.
+ * `basis` has its cells and their map set, and must outlive the result. The result keeps the
+ * measured columns in memory. Errors: _MEMORY, _IO. */
 gonio_status gonio_i_mixtures_create(gonio_context *context, const gonio_basis *basis,
                                      const gonio_database *database,
                                      const gonio_basis_options *options,
                                      gonio_i_mixtures **mixtures);
 void gonio_i_mixtures_free(gonio_i_mixtures **mixtures);
 
-/* The two columns that each one is made of: parents[count][2]. */
+/* The two measured columns of each mixture: parents[count][2]. */
 void gonio_i_mixtures_parents(const gonio_i_mixtures *mixtures, int32_t *parents);
 
 /* Rows first .. first + count - 1 of all mixtures: values[mixture][count]. Thread-safe. */

@@ -1,4 +1,4 @@
-/* Learning from materials by a recipe: the default one, the paper's and variants of them. */
+/* Learning from materials by a recipe: the default, the paper's, and variants. */
 #include <gonio/basis.h>
 
 #include "../core/options.h"

@@ -8,7 +8,7 @@
 
 #include "number.h"
 
-/* Takes the text, which is freed where it cannot be kept. */
+/* Adds a line. Takes ownership of the text, and frees it when out of memory. */
 static bool append(gonio_i_comments *comments, char *text)
 {
     char **more = text != NULL

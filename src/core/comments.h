@@ -1,4 +1,4 @@
-/* The comment lines of a table as text; some have the form "key: value". */
+/* The comment lines of a table as texts. Some have the form "key: value". */
 #ifndef GONIO_COMMENTS_H
 #define GONIO_COMMENTS_H
 
@@ -9,13 +9,14 @@ typedef struct gonio_i_comments {
     char **line; /* without the leading '#' and blanks */
 } gonio_i_comments;
 
-/* Text is copied, numbers have decimal points in any locale; false when out of memory. */
+/* Text is copied. Numbers are printed with decimal points in any locale. False when out of memory.
+ */
 bool gonio_i_comments_add(gonio_i_comments *comments, const char *format, ...) GONIO_I_PRINTF(2, 3);
 bool gonio_i_comments_add_text(gonio_i_comments *comments, const char *text, size_t length);
 bool gonio_i_comments_copy(gonio_i_comments *to, const gonio_i_comments *from);
 void gonio_i_comments_free(gonio_i_comments *comments);
 
-/* The text behind "key:"; NULL if there is none. */
+/* The text after "key:"; NULL if there is none. */
 const char *gonio_i_comments_value(const gonio_i_comments *comments, const char *key);
 
 /* Removes the comments that begin with "key:". */

@@ -26,7 +26,7 @@ struct gonio_context {
     const char *piece;    /* of a piece: what its messages begin with */
 };
 
-/* More threads than this for each processor cost memory and gain nothing. */
+/* More threads than this a processor cost memory and are not faster. */
 enum { MOST_THREADS_PER_PROCESSOR = 16 };
 
 #define TEXT(x) #x
@@ -175,7 +175,7 @@ static bool is_first_error(gonio_context *shared)
     return first;
 }
 
-/* Names and cells of files may hold anything; a message is one line. */
+/* Names and cells of files may contain control characters. A message is one line. */
 static void keep_to_one_line(char *text)
 {
     for (char *c = text; *c != '\0'; c++) {
@@ -183,7 +183,7 @@ static void keep_to_one_line(char *text)
     }
 }
 
-/* "name: text", cut where there is no room. */
+/* Changes `text` to "name: text", truncated to its size. */
 static void put_in_front(const char *name, char *text, size_t size)
 {
     char longer[4096 + 256];
@@ -264,8 +264,8 @@ gonio_status gonio_i_progress(gonio_context *context, const char *task, double f
 
 enum { LARGE = 64 << 20 }; /* bytes */
 
-/* Asks for large pages for what is large: a basis of the full grid has a million small ones, and
- * their faults would take as long as its arithmetic. */
+/* Asks for large pages for large blocks. A basis of the full grid has a million small pages, and
+ * their page faults would take as long as its arithmetic. */
 static void use_large_pages(void *made, size_t bytes)
 {
     const uintptr_t page = (uintptr_t)sysconf(_SC_PAGESIZE);

@@ -8,8 +8,8 @@
 
 #include <gonio/context.h>
 
-/* Functions whose inner loops pay for wider vectors are compiled several times and chosen at run
- * time (not under the sanitizers, whose start-up does not stand the resolvers). */
+/* Functions that gain from wider vectors are compiled for several processors; one is chosen at run
+ * time. (Not under the sanitizers: their start-up fails with the resolvers.) */
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__linux__) &&       \
     !defined(GONIO_NO_CLONES)
 #define GONIO_I_VECTORISED __attribute__((target_clones("avx512f", "avx2", "default")))
@@ -43,12 +43,12 @@ void gonio_i_piece_end(gonio_context *piece);
  * `task` must last as long as the context. */
 gonio_status gonio_i_progress(gonio_context *context, const char *task, double fraction);
 
-/* Has OpenBLAS run each call on one thread, process-wide, because gonio runs threads of its own.
- * Called before threads are started and before every call of OpenBLAS. Thread-safe. */
+/* Limits OpenBLAS to one thread a call, process-wide, because gonio runs its own threads. To be
+ * called before threads are started and before every call of OpenBLAS. Thread-safe. */
 void gonio_i_keep_blas_on_one_thread(void);
 
-/* Zeroed memory for count x size bytes, the product checked, or NULL after a message; released with
- * free(). */
+/* Zeroed memory for count x size bytes, with the product checked for overflow. NULL after a
+ * message. Released with free(). */
 void *gonio_i_allocate(gonio_context *context, size_t count, size_t size);
 
 /* A formatted string; NULL when out of memory. */

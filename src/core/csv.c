@@ -44,8 +44,7 @@ void gonio_i_csv_free(gonio_i_csv **csv)
 
 /* ---- building ---- */
 
-/* The block with room for one more item, capacities being powers of two; NULL when out of memory.
- */
+/* The block with room for one more item. Capacities are powers of two. NULL when out of memory. */
 static void *grow(void *block, size_t count, size_t size)
 {
     if (count > 0 && (count & (count - 1)) != 0) {

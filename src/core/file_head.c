@@ -8,7 +8,7 @@
 
 #include "gzip.h"
 
-/* Of a text compressed with gzip, the text's beginning. Other content stays as it is. */
+/* Replaces the head of a text compressed with gzip by the text's beginning. Other content stays. */
 static void decompress_head(gonio_i_file *file)
 {
     char text[GONIO_I_HEAD];

@@ -33,7 +33,7 @@ size_t gonio_i_gzip_head(const void *bytes, size_t size, char *text, size_t room
     return room - stream.avail_out;
 }
 
-/* A text that grows. */
+/* A growing block of text. */
 typedef struct growing {
     char *text;
     size_t length;
@@ -52,7 +52,7 @@ static bool make_room(growing *g)
     return more != NULL;
 }
 
-/* Whether only zeros are left, with which tapes are filled up. */
+/* Whether only zeros remain: tapes are padded with zeros. */
 static bool only_zeros(const z_stream *stream)
 {
     uInt k = 0;
@@ -62,8 +62,8 @@ static bool only_zeros(const z_stream *stream)
     return k == stream->avail_in;
 }
 
-/* A file is one compressed member after another, as of files that were appended. What follows the
- * last of them is an error, so that nothing is left out in silence. */
+/* A file is a sequence of compressed members, as when files are concatenated. Other data after the
+ * last member is an error, so that no data is lost silently. */
 static int begin_next(z_stream *stream)
 {
     if (only_zeros(stream)) {

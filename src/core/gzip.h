@@ -1,4 +1,4 @@
-/* Texts that were compressed with gzip are read as if they were not. */
+/* Decompression of texts compressed with gzip. */
 #ifndef GONIO_GZIP_H
 #define GONIO_GZIP_H
 
@@ -7,13 +7,12 @@
 /* Whether bytes are the beginning of a gzip file. */
 bool gonio_i_gzip_begins(const void *bytes, size_t size);
 
-/* Decompresses the beginning of a gzip file: at most `room` bytes. Returns how many. */
+/* Decompresses the beginning of a gzip file, at most `room` bytes. Returns their number. */
 size_t gonio_i_gzip_head(const void *bytes, size_t size, char *text, size_t room);
 
-/* Decompresses a whole gzip file, all of its members, into a new block, followed by a zero; the
- * caller frees it.
- * Errors: _FORMAT (damaged, cut short, something behind it that is not compressed, more than `most`
- * bytes), _MEMORY. */
+/* Decompresses a whole gzip file, with all of its members, into a new block, followed by a zero.
+ * The caller frees it. Errors: _FORMAT (damaged, truncated, followed by uncompressed data, more
+ * than `most` bytes), _MEMORY. */
 gonio_status gonio_i_gzip_text(gonio_context *context, const char *path, const void *bytes,
                                size_t size, size_t most, char **text, size_t *length);
 

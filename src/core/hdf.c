@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* HDF5 keeps global state that is not safe for threads, so its lock has to be global as well. */
+/* HDF5 has global state that is not thread-safe. So its lock is global too. */
 static pthread_mutex_t hdf_lock = PTHREAD_MUTEX_INITIALIZER;
 
 void gonio_i_hdf_enter(gonio_i_hdf_session *session)
@@ -17,7 +17,7 @@ void gonio_i_hdf_enter(gonio_i_hdf_session *session)
 
 void gonio_i_hdf_leave(gonio_i_hdf_session *session)
 {
-    /* Errors are kept by thread; HDF5 cannot end while a thread that is gone holds any. */
+    /* HDF5 keeps errors for each thread. It cannot close while a finished thread has any. */
     H5Eclear2(H5E_DEFAULT);
     H5Eset_auto2(H5E_DEFAULT, session->handler, session->data);
     pthread_mutex_unlock(&hdf_lock);

@@ -1,6 +1,5 @@
-/* Reading and writing HDF5 with checks. The HDF5 library is not safe for threads: every use stands
- * between gonio_i_hdf_enter and gonio_i_hdf_leave, which take a lock and keep HDF5 from printing.
- */
+/* Reading and writing HDF5 with checks. The HDF5 library is not thread-safe. So every use is
+ * between gonio_i_hdf_enter and gonio_i_hdf_leave. They take a lock and keep HDF5 from printing. */
 #ifndef GONIO_HDF_H
 #define GONIO_HDF_H
 
@@ -16,19 +15,19 @@ typedef struct gonio_i_hdf_session {
 void gonio_i_hdf_enter(gonio_i_hdf_session *session);
 void gonio_i_hdf_leave(gonio_i_hdf_session *session);
 
-/* A list of strings (fixed or variable length, rank 0 or 1) of an attribute, or of a dataset if
- * `dataset` is set. The result is one block: release with free(). Returns false if it is not there
- * or is something else. */
+/* Reads a list of strings (fixed or variable length, rank 0 or 1) from an attribute, or from a
+ * dataset if `dataset` is set. The result is one block, released with free(). False if it is
+ * missing or is not a list of strings. */
 bool gonio_i_hdf_read_strings(hid_t parent, const char *name, bool dataset, char ***strings,
                               size_t *count);
 
-/* A numeric dataset of `rank` dimensions, at most `limit` values, converted to `type` (element size
- * H5Tget_size(type)). dimensions[rank] is filled in. Released with free(). Returns NULL on success,
- * otherwise what is wrong with it. */
+/* Reads a numeric dataset of `rank` dimensions and at most `limit` values, converted to `type`
+ * (element size H5Tget_size(type)). Fills in dimensions[rank]. The values are released with free().
+ * Returns NULL on success, otherwise a text that says what is wrong. */
 const char *gonio_i_hdf_read_array(hid_t parent, const char *name, int rank, size_t limit,
                                    hid_t type, void **data, size_t *dimensions);
 
-/* A new file in memory; what it holds so far as bytes, which last until it is changed or closed. */
+/* A new file in memory, and its bytes. They are valid until the file is changed or closed. */
 hid_t gonio_i_hdf_create_image(void);
 bool gonio_i_hdf_read_image(hid_t file, const void **image, size_t *size);
 

@@ -1,5 +1,5 @@
-/* Structs that callers fill in and that begin with their size, so that fields can be added at their
- * end: a caller of an older build gives fewer, and the others keep their defaults. */
+/* Structs that callers fill in. They begin with their size, so that fields can be added at the end:
+ * a caller that was built with an older header gives fewer fields, and the others get defaults. */
 #ifndef GONIO_OPTIONS_H
 #define GONIO_OPTIONS_H
 
@@ -7,12 +7,12 @@
 
 #include "core.h"
 
-/* A size outside of these was not set, in bytes. */
+/* The limits of a size in bytes. Outside of them it was not set. */
 enum { GONIO_I_SMALLEST_STRUCT = sizeof(size_t), GONIO_I_LARGEST_STRUCT = 4096 };
 
-/* Copies the fields of *given that both builds know of over *taken, which is of `size` bytes and
- * holds the defaults; both begin with their size. given may be NULL. False, and nothing is copied,
- * if the size of *given was not set. */
+/* Copies the fields that both builds know from *given to *taken. *taken has `size` bytes and holds
+ * the defaults. Both begin with their size. given may be NULL. False, without copying, if the size
+ * of *given was not set. */
 static inline bool gonio_i_copy_known(const void *given, void *taken, size_t size)
 {
     size_t known = size;
@@ -27,8 +27,8 @@ static inline bool gonio_i_copy_known(const void *given, void *taken, size_t siz
     return set;
 }
 
-/* The other way: as much of the defaults as the caller's build knows of, *given being of `size`
- * bytes, and its size. */
+/* The other direction: copies the defaults that the caller's build knows, and sets the size. *given
+ * has `size` bytes. */
 static inline void gonio_i_give(const void *usual, size_t known, void *given, size_t size)
 {
     memset(given, 0, size);
@@ -36,18 +36,19 @@ static inline void gonio_i_give(const void *usual, size_t known, void *given, si
     memcpy(given, &size, sizeof size);
 }
 
-/* Takes a caller's struct, with a message. `type` is the struct's name, `remedy` what the caller
- * should do. Errors: _ARGUMENT if the size of *given was not set. */
+/* Copies a caller's struct, with a message on failure. `type` is the struct's name, `remedy` says
+ * what the caller should do. Errors: _ARGUMENT if the size of *given was not set. */
 gonio_status gonio_i_take(gonio_context *context, const char *type, const char *remedy,
                           const void *given, void *taken, size_t size);
 
-/* A struct with a function of defaults: GONIO_I_TAKE(context, gonio_plan_options, given, &options).
+/* For a struct with a _default function: GONIO_I_TAKE(context, gonio_plan_options, given,
+ * &options).
  */
 #define GONIO_I_TAKE(context, type, given, taken)                                                  \
     (type##_default(taken),                                                                        \
      gonio_i_take(context, #type, "call " #type "_default first", given, taken, sizeof *(taken)))
 
-/* A struct without one, whose defaults are zeros. */
+/* For a struct without a _default function. Its defaults are zeros. */
 #define GONIO_I_TAKE_PLAIN(context, type, given, taken)                                            \
     (*(taken) = (type){0},                                                                         \
      gonio_i_take(context, #type, "set .size = sizeof(" #type ")", given, taken, sizeof *(taken)))

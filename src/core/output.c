@@ -14,7 +14,7 @@ static gonio_status cannot_write(gonio_context *context, const char *path)
     return gonio_i_fail(context, GONIO_ERROR_IO, "%s: cannot write: %s", path, strerror(errno));
 }
 
-/* A new file beside the target that nobody else has. */
+/* A new file beside the target, with a name of its own. */
 static int create_beside(const char *path, char **temporary)
 {
     for (int attempt = 0; attempt < 100; attempt++) {
@@ -47,8 +47,8 @@ static bool is_standard_output(const char *path)
     return is;
 }
 
-/* Whether writers cannot seek in what is open, or may not: standard output may be a file with
- * something in it already. Devices like /dev/null take any offset. */
+/* Whether writers must not seek in the open file. It may be a pipe, or standard output may be a
+ * file that has contents already. Devices like /dev/null accept any offset. */
 static bool is_sequential(int descriptor)
 {
     struct stat status;
@@ -56,7 +56,7 @@ static bool is_sequential(int descriptor)
            (fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode));
 }
 
-/* A file without a name; -1 if there can be none. */
+/* A temporary file without a name; -1 if it cannot be created. */
 static int create_nameless(void)
 {
     FILE *stream = tmpfile();
@@ -67,7 +67,7 @@ static int create_nameless(void)
     return descriptor;
 }
 
-/* What is written to standard output, a device or a pipe. */
+/* Opens standard output, a device or a pipe. */
 static void open_special(const char *path, gonio_i_output *output)
 {
     output->descriptor = is_standard_output(path) ? fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0)
@@ -160,7 +160,7 @@ gonio_status gonio_i_output_write_at(gonio_context *context, gonio_i_output *out
     return GONIO_OK;
 }
 
-/* File systems that cannot do it say so; writing tells the rest. */
+/* A file system that does not support this is no error; other errors show when writing. */
 gonio_status gonio_i_output_reserve(gonio_context *context, gonio_i_output *output, off_t size)
 {
 #ifdef __linux__
@@ -201,7 +201,7 @@ gonio_status gonio_i_output_flush(gonio_context *context, gonio_i_output *output
     return GONIO_OK;
 }
 
-/* Copies the nameless file, which is whole, to where it was meant for. */
+/* Copies the finished nameless file to its target. */
 static gonio_status copy_to_final(gonio_context *context, gonio_i_output *output)
 {
     char block[1 << 16];

@@ -1,6 +1,6 @@
-/* Output files that appear whole or not at all: written beside the target under another name, then
- * renamed over it. What goes to a pipe or to standard output ("/dev/stdout", "-") is kept in a
- * temporary file until it is whole, because writers seek. */
+/* Output files that appear whole or not at all. A file is written beside the target under another
+ * name, then renamed over it. Output to a pipe or to standard output ("/dev/stdout", "-") is
+ * written to a temporary file first, because writers seek, and copied when it is whole. */
 #ifndef GONIO_OUTPUT_H
 #define GONIO_OUTPUT_H
 
@@ -10,9 +10,9 @@
 
 typedef struct gonio_i_output {
     char *path;      /* the target, links resolved */
-    char *temporary; /* what is written; NULL when it is not a file beside the target */
-    int descriptor;  /* of what is written */
-    int final;       /* what the temporary file without a name is copied to; -1 without one */
+    char *temporary; /* the file that is written; NULL if it is not beside the target */
+    int descriptor;  /* of the file that is written */
+    int final;       /* where the nameless temporary file is copied to; -1 without one */
     bool flushed;    /* all of it has reached the disk */
 } gonio_i_output;
 
@@ -25,20 +25,19 @@ gonio_status gonio_i_output_write(gonio_context *context, gonio_i_output *output
 gonio_status gonio_i_output_write_at(gonio_context *context, gonio_i_output *output,
                                      const void *data, size_t size, off_t offset);
 
-/* Sets room aside for a file of known size: a full disk shows at once, and writing in any order
- * leaves the file in one piece. Errors: _IO. */
+/* Allocates the disk space of a file of known size. A full disk is reported at once, and the file
+ * is contiguous whatever the order of writing. Errors: _IO. */
 gonio_status gonio_i_output_reserve(gonio_context *context, gonio_i_output *output, off_t size);
 
-/* Begins to move a written part to the disk and does not wait for it, so that the flush at the end
- * has less to wait for. */
+/* Starts writing a part to the disk without waiting, so that the final flush takes less time. */
 void gonio_i_output_start_flush(const gonio_i_output *output, off_t offset, off_t size);
 
-/* Waits until all is on the disk, which gonio_i_output_close then need not: nothing may be written
- * any more. Errors: _IO. */
+/* Waits until all is on the disk. gonio_i_output_close then does not wait. Nothing may be written
+ * afterwards. Errors: _IO. */
 gonio_status gonio_i_output_flush(gonio_context *context, gonio_i_output *output);
 
-/* Puts the file in place if `status` is GONIO_OK, removes what was written otherwise; closes in any
- * case. Returns status, or _IO if the last step failed. */
+/* Closes the file. If `status` is GONIO_OK, puts it in place; otherwise removes it. Returns status,
+ * or _IO if the last step failed. */
 gonio_status gonio_i_output_close(gonio_context *context, gonio_i_output *output,
                                   gonio_status status);
 

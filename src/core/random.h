@@ -23,8 +23,8 @@ double gonio_i_random_uniform(gonio_i_random *random);
 /* Standard normal (Box and Muller 1958). */
 double gonio_i_random_normal(gonio_i_random *random);
 
-/* `count` different numbers below n, ascending: count <= n. `used` is scratch of n bytes, zeroed.
- */
+/* `count` different numbers below n, in ascending order; count <= n. `used` is scratch of n zeroed
+ * bytes. */
 void gonio_i_random_subset(gonio_i_random *random, size_t n, size_t count, unsigned char *used,
                            size_t *subset);
 

@@ -46,7 +46,7 @@ static size_t size_of(const gonio_i_array *array)
     return size;
 }
 
-/* A JSON string; what is not UTF-8 loses its bytes beyond ASCII. */
+/* A JSON string. In a text that is not UTF-8 every byte beyond ASCII becomes U+FFFD. */
 static json_t *json_of(const char *text)
 {
     static const char unknown[] = "\xEF\xBF\xBD"; /* U+FFFD */
@@ -95,7 +95,7 @@ static json_t *describe_array(const gonio_i_array *array, size_t begin)
                      "data_offsets", (json_int_t)begin, end);
 }
 
-/* The header's JSON, arrays in the order in which they are given. */
+/* The header's JSON, with the arrays in the given order. */
 static char *make_header(const gonio_i_metadata *metadata, size_t texts,
                          const gonio_i_array *const *arrays, size_t count)
 {
@@ -111,7 +111,7 @@ static char *make_header(const gonio_i_metadata *metadata, size_t texts,
     return text;
 }
 
-/* By the size of their numbers, larger ones first; otherwise as they are. */
+/* Sorts arrays by the size of their numbers, larger first; equals keep their order. */
 static void sort_arrays(const gonio_i_array *arrays, size_t count, const gonio_i_array **sorted)
 {
     size_t done = 0;
@@ -124,7 +124,7 @@ static void sort_arrays(const gonio_i_array *arrays, size_t count, const gonio_i
     }
 }
 
-/* Length and header, filled up with spaces so that the arrays begin at a multiple of ALIGNMENT. */
+/* Length and header, padded with spaces so that the arrays begin at a multiple of ALIGNMENT. */
 static gonio_status write_header(gonio_context *context, const char *header, gonio_i_output *output)
 {
     static const char spaces[ALIGNMENT + 1] =
@@ -200,7 +200,7 @@ static gonio_status no_header(const gonio_i_safetensors *f, const char *problem)
                         problem, f->remedy);
 }
 
-/* Numbers of a JSON array, at most `most` of them; false if it is something else. */
+/* Reads a JSON array of at most `most` numbers; false if it is something else. */
 static bool read_sizes(const json_t *json, size_t most, size_t *sizes, size_t *count)
 {
     *count = json_array_size(json);
@@ -217,7 +217,7 @@ static bool read_sizes(const json_t *json, size_t most, size_t *sizes, size_t *c
     return true;
 }
 
-/* The place in `types`; TYPES if it is none. */
+/* The index in `types`; TYPES if there is none. */
 static int read_type(const json_t *json)
 {
     const char *name = json_string_value(json);
@@ -228,7 +228,7 @@ static int read_type(const json_t *json)
     return type;
 }
 
-/* Bytes of an array, without overflow. */
+/* The bytes of an array, checked for overflow. */
 static bool multiply(size_t element, const size_t *shape, size_t rank, size_t *size)
 {
     *size = element;
@@ -240,7 +240,7 @@ static bool multiply(size_t element, const size_t *shape, size_t rank, size_t *s
     return true;
 }
 
-/* One entry of the header against the bytes data[size] of all arrays. */
+/* Reads one entry of the header and checks it against the bytes data[size] of all arrays. */
 static gonio_status read_array(const gonio_i_safetensors *f, const char *name, const json_t *json,
                                const char *data, size_t size, gonio_i_array *array)
 {
@@ -298,7 +298,7 @@ static int compare_places(const void *a, const void *b)
     return p != q ? (p > q) - (p < q) : (x->size > y->size) - (x->size < y->size);
 }
 
-/* The arrays follow one another from the first byte to the last. */
+/* Checks that the arrays follow one another from the first byte to the last. */
 static gonio_status check_places(const gonio_i_safetensors *f, const char *data, size_t size)
 {
     const char *end = data;

@@ -5,10 +5,10 @@
  * array by its name, and under "__metadata__" texts by their keys. Numbers are little-endian, and
  * the last index of an array runs fastest.
  *
- * Files are mapped into memory and take no lock. A file is to be replaced (as output.h does), not
- * changed, while it is open: values then change under the reader, and the system ends a program
- * that reads beyond the end of a file that became shorter. Who uses values as indices copies them
- * before checking them. */
+ * Files are mapped into memory and take no lock. While a file is open it may be replaced (as
+ * output.h does) but must not be changed: values would change under the reader, and the system ends
+ * a program that reads beyond the end of a file that became shorter. So values that serve as
+ * indices are copied before they are checked. */
 #ifndef GONIO_SAFETENSORS_H
 #define GONIO_SAFETENSORS_H
 
@@ -39,19 +39,19 @@ typedef struct gonio_i_metadata {
     const char *text;
 } gonio_i_metadata;
 
-/* Writes arrays[count] (their `size` is not looked at) and metadata[texts], both with names that
- * occur once. Arrays of larger numbers come first, so that all are aligned; otherwise both keep
- * their order, so that the same contents are the same bytes. In a text that is not UTF-8 every byte
- * beyond ASCII becomes U+FFFD. The file appears whole or not at all. Errors: _IO, _MEMORY. */
+/* Writes arrays[count] (their `size` is ignored) and metadata[texts], both with unique names.
+ * Arrays of larger numbers come first, so that all are aligned. Otherwise both keep their order, so
+ * that the same contents give the same bytes. In a text that is not UTF-8 every byte beyond ASCII
+ * becomes U+FFFD. The file appears whole or not at all. Errors: _IO, _MEMORY. */
 gonio_status gonio_i_safetensors_write(gonio_context *context, const gonio_i_metadata *metadata,
                                        size_t texts, const gonio_i_array *arrays, size_t count,
                                        const char *path);
 
 typedef struct gonio_i_safetensors gonio_i_safetensors;
 
-/* Opens a file of which every array is known to lie within it, aligned, and nothing to lie between
- * two arrays; values are not looked at. Messages of damage end with `remedy`. Errors: _IO; _FORMAT
- * for another kind of file and for damage; _MEMORY. */
+/* Opens a file and checks its header: every array lies in the file, is aligned, and follows the one
+ * before it without a gap. Values are not checked. Messages of damage end with `remedy`. Errors:
+ * _IO; _FORMAT for another kind of file and for damage; _MEMORY. */
 gonio_status gonio_i_safetensors_open(gonio_context *context, const char *path, const char *remedy,
                                       gonio_i_safetensors **file);
 
@@ -62,11 +62,11 @@ gonio_status gonio_i_safetensors_parse(gonio_context *context, const char *path,
 
 void gonio_i_safetensors_close(gonio_i_safetensors **file);
 
-/* What a file holds, valid until it is closed; NULL if it is not there. */
+/* An array or a text of the file, valid until the file is closed; NULL if it is missing. */
 const gonio_i_array *gonio_i_safetensors_array(const gonio_i_safetensors *file, const char *name);
 const char *gonio_i_safetensors_text(const gonio_i_safetensors *file, const char *key);
 
-/* Whether a file that begins with head[size], 9 bytes or more, can be one. */
+/* Whether a file that begins with head[size], 9 bytes or more, can be a safetensors file. */
 bool gonio_i_safetensors_begin(const void *head, size_t size);
 
 #endif

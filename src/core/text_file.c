@@ -12,7 +12,7 @@
 
 enum { MOST_BYTES = 1 << 30, LEAST_ROOM = 1 << 16 };
 
-/* What a regular file holds, and a byte more that tells its end; a guess for others. */
+/* The size of a regular file and one more byte, which detects its end; a guess for other files. */
 static size_t first_room(int descriptor)
 {
     struct stat info;
@@ -29,7 +29,7 @@ static bool enlarge(char **text, size_t *room)
     return more != NULL;
 }
 
-/* Reads to the end; the text stays the caller's after an error too. */
+/* Reads to the end. The caller owns the text, after an error too. */
 static gonio_status read_descriptor(gonio_context *context, const char *path, int descriptor,
                                     char **text, size_t *size)
 {
@@ -60,7 +60,7 @@ static gonio_status read_descriptor(gonio_context *context, const char *path, in
     return gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", path);
 }
 
-/* Puts the decompressed text in place of a gzip file. */
+/* Replaces the text of a gzip file by the decompressed text. */
 static gonio_status decompress(gonio_context *context, const char *path, char **text, size_t *size)
 {
     char *plain = NULL;

@@ -1,6 +1,6 @@
 /* Elementary functions of whole arrays. This file alone is compiled with -ffast-math, which lets
- * the compiler call glibc's vector functions (within 4 units in the last place); hence no
- * infinities or NaNs here. */
+ * the compiler call glibc's vector functions (within 4 units in the last place). So arguments must
+ * not be infinite or NaN. */
 #include "vector_math.h"
 
 #include <math.h>

@@ -1,12 +1,13 @@
-/* The observation matrix: materials read once, in log space, kept in unlinked scratch files.
+/* The observation matrix: materials are read once, mapped to log space, and kept in unlinked
+ * scratch files.
  *
- * Only cells that can hold data are stored: of the full grid the valid bins, of the bivariate one
- * all cells. They are cut into tiles of neighbouring cells of one slab. Scratch layout:
+ * Only cells that can hold data are stored: the valid bins of the full grid, all cells of the
+ * bivariate one. They are divided into tiles of neighbouring cells of one slab. Scratch layout:
  * [tile][material][column of the material][row in the tile], where a tile's rows are those of all
  * its stored cells, in the order of the matrix; a cell without data holds NaN.
  *
- * Stored as float32: its relative error of 6e-8 is far below the noise of any measurement (and what
- * float32 leaves out of a basis is as random as that noise), and the matrix is read twice. */
+ * Values are float32, because the matrix is read twice. The relative error of 6e-8 is far below the
+ * noise of any measurement, and its effect on a basis is as random as that noise. */
 #include <gonio/database.h>
 
 #include <math.h>
@@ -22,10 +23,11 @@
 #include "slab_mean.h"
 #include "tiles.h"
 
-/* A tile of all materials is to stay in a processor's cache, and one of a material worth a call. */
+/* A tile of all materials fits into a processor's cache. A tile of one material is large enough for
+ * a system call. */
 enum { TILE_VALUES = 1 << 19, LARGEST_TILE = 1024, SMALLEST_TILE = 64 };
 
-/* What some material has in a cell. */
+/* Bits: whether some material has data in a cell, and whether some material lacks it. */
 enum { HAS_DATA = 1, LACKS_DATA = 2 };
 
 typedef struct cell_tile {
@@ -72,7 +74,7 @@ static size_t tile_cells(const gonio_database *database)
     return cells < SMALLEST_TILE ? SMALLEST_TILE : cells > LARGEST_TILE ? LARGEST_TILE : cells;
 }
 
-/* 1/s of the channels; bins with a scale of their own are divided by it before. */
+/* 1/s of the channels. Bins with a scale of their own are divided by that scale before. */
 static void find_scales(gonio_database *database)
 {
     for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
@@ -89,8 +91,8 @@ static void find_valid_bins(gonio_database *database)
     }
 }
 
-/* Lists the stored cells of one slab: those with valid bins, and all bivariate ones. Returns how
- * many. */
+/* Lists the stored cells of one slab: those with valid bins, and all bivariate ones. Returns their
+ * number. */
 static size_t list_cells(const gonio_database *database, int theta_h, int32_t *stored)
 {
     const gonio_representation representation = database->options.representation;
@@ -134,7 +136,7 @@ static gonio_status lay_out(gonio_context *context, gonio_database *database)
     return GONIO_OK;
 }
 
-/* Where a tile's rows of a material begin in the scratch file. */
+/* The offset of a material's rows of a tile in the scratch file. */
 static off_t tile_offset(const gonio_database *database, const cell_tile *t, size_t material)
 {
     const size_t values = database->materials * t->first + material * t->count;
@@ -143,7 +145,7 @@ static off_t tile_offset(const gonio_database *database, const cell_tile *t, siz
 
 /* ---- reading materials ---- */
 
-/* What one thread needs to read materials. */
+/* Buffers of one thread that reads materials. */
 typedef struct reader {
     double *rho;   /* one slab */
     double *scale; /* of its bins, where each has its own */
@@ -176,7 +178,7 @@ static void free_reader(reader *r)
     free(r->seen);
 }
 
-/* How the values of a slab lie in reader.g. */
+/* The storage order of a slab in reader.g. */
 typedef struct strides {
     size_t cell;
     size_t channel;
@@ -189,7 +191,7 @@ GONIO_I_VECTORISED static void scale_run(const double *rho, size_t count, double
     }
 }
 
-/* Divides a slab by the scale of each bin; what holds no data stays below 0. */
+/* Divides a slab by the scale of each bin. Bins without data stay below 0. */
 GONIO_I_VECTORISED static void divide_slab(const double *scale, double *rho)
 {
     for (size_t plane = 0; plane < GONIO_SLAB_VALUES; plane += GONIO_SLAB_BINS) {
@@ -228,7 +230,7 @@ static strides full_rows(const gonio_database *database, int theta_h, const read
     return (strides){1, GONIO_SLAB_BINS};
 }
 
-/* A sector's mean over its bins with data, which lie from `first` to `end` of [channel][bin]. */
+/* The mean over a sector's bins with data, in `first` .. `end` - 1 of [channel][bin]. */
 static void reduce_sector(const reader *r, size_t first, size_t end, size_t cell)
 {
     size_t count = 0;
@@ -245,8 +247,8 @@ static void reduce_sector(const reader *r, size_t first, size_t end, size_t cell
     r->data[cell] = count > 0;
 }
 
-/* The cells of a slab of the sectored grid, [channel][cell]: those of the full grid, reduced in
- * place, as a sector's place is never behind its bins'. */
+/* The cells of a slab of the sectored grid, [channel][cell]: the bins of the full grid are reduced
+ * in place. A sector's index is never larger than that of its bins. */
 static strides sectored_rows(const gonio_database *database, int theta_h, const reader *r)
 {
     const strides step = full_rows(database, theta_h, r);
@@ -291,7 +293,7 @@ GONIO_I_VECTORISED static void to_float(const double *g, size_t step, const bool
     }
 }
 
-/* Writes a slab's tiles; from is its first stored cell. */
+/* Writes a slab's tiles; `from` is the slab's first stored cell. */
 static gonio_status write_tiles(gonio_context *context, const gonio_database *database,
                                 size_t column, int theta_h, const reader *r, strides step)
 {
@@ -313,7 +315,7 @@ static gonio_status write_tiles(gonio_context *context, const gonio_database *da
     return status;
 }
 
-/* Marks what a slab of a material has; returns its cells with data. */
+/* Marks the cells of a slab in which a material has or lacks data. Returns the number with data. */
 GONIO_I_VECTORISED static size_t mark_seen(const bool *data, size_t count, uint8_t *seen)
 {
     size_t with_data = 0;
@@ -444,8 +446,8 @@ static gonio_status read_materials(gonio_context *context, gonio_database *datab
     return result;
 }
 
-/* A cell stays if all materials have data there. Warns where that costs much, naming who lacks
- * most. */
+/* Keeps the cells in which all materials have data. Warns if many are lost, and names the material
+ * that lacks most. */
 static gonio_status keep_common_cells(gonio_context *context, gonio_database *database,
                                       const uint8_t *seen)
 {
@@ -663,7 +665,7 @@ size_t gonio_i_database_tile_room(const gonio_database *database)
     return per_cell(database) * tile_cells(database);
 }
 
-/* Closes the gaps that the cells that are left out make in the columns of a tile. */
+/* Removes the cells that are left out from the columns of a tile. */
 static void drop_rows(const gonio_database *database, size_t tile, size_t columns, float *block)
 {
     const size_t rows = per_cell(database);
@@ -724,7 +726,7 @@ static gonio_status check_request(gonio_context *context, const gonio_database_v
     return GONIO_OK;
 }
 
-/* The rows of a tile that lie in first .. first + count - 1, into block[column][count]. */
+/* Copies the rows of a tile that are in first .. first + count - 1 to block[column][count]. */
 static void copy_rows(gonio_i_row_range rows, const float *values, size_t columns, size_t first,
                       size_t count, double *block)
 {

@@ -8,8 +8,8 @@
 static const struct {
     const char *name;
     int phi_bins; /* of a cell */
-    int middle;   /* which of them stands for the cell */
-    /* Between these bins; returns of how many. */
+    int middle;   /* the bin that represents the cell */
+    /* Weights of interpolation between these bins; returns the number of bins. */
     int (*interpolate)(gonio_half_difference at, gonio_i_stencil *stencil);
 } representations[] = {
     [GONIO_BIVARIATE] = {"bivariate", GONIO_PHI_D_BINS, 0, gonio_i_bilinear},

@@ -1,4 +1,5 @@
-/* The mappings of reflectance to log space, g = ln(1 + rho/s), and back. All of gonio maps here. */
+/* The mappings of reflectance to log space, g = ln(1 + rho/s), and their inverses. All of gonio
+ * uses these. */
 #include <gonio/database.h>
 
 #include <math.h>
@@ -9,7 +10,7 @@
 #include "../direction/grid.h"
 #include "../material/formats/merl.h"
 
-/* Of the relative mapping (Nielsen et al. 2015, section 4): e in 1/sr, the least w. */
+/* Constants of the relative mapping (Nielsen et al. 2015, section 4): e in 1/sr, the least w. */
 static const double relative_floor = 0.001;
 static const double least_weight = 0.01;
 

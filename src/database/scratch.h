@@ -9,21 +9,21 @@
 
 enum { GONIO_I_SCRATCH_FILES = 8 };
 
-/* Several files, because the kernel lets one thread at a time write to a file: what lies at the
- * same place in two of them does not wait for each other. */
+/* There are several files, because the kernel lets only one thread at a time write to a file. */
 typedef struct gonio_i_scratch {
     int descriptor[GONIO_I_SCRATCH_FILES]; /* -1 where not open */
 } gonio_i_scratch;
 
-/* Opens none; so that _close may follow in any case. */
+/* Opens no file. _close may follow in any case. */
 void gonio_i_scratch_init(gonio_i_scratch *scratch);
 
-/* In `folder`, or if it is NULL in $TMPDIR or /tmp. Errors: _IO, _MEMORY. */
+/* Opens the files in `folder`, or in $TMPDIR or /tmp if it is NULL. Errors: _IO, _MEMORY. */
 gonio_status gonio_i_scratch_open(gonio_context *context, const char *folder,
                                   gonio_i_scratch *scratch);
 void gonio_i_scratch_close(gonio_i_scratch *scratch);
 
-/* Bytes offset .. offset + size - 1 of file number file % GONIO_I_SCRATCH_FILES. Errors: _IO. */
+/* Transfer bytes offset .. offset + size - 1 of the file file % GONIO_I_SCRATCH_FILES. Errors: _IO.
+ */
 gonio_status gonio_i_scratch_write(gonio_context *context, const gonio_i_scratch *scratch,
                                    size_t file, const void *data, size_t size, off_t offset);
 gonio_status gonio_i_scratch_read(gonio_context *context, const gonio_i_scratch *scratch,

@@ -1,8 +1,9 @@
 /* The bivariate average of one slab: see slab_mean.h.
  *
- * A mean of logarithms is the logarithm of a product, so the 180 values of a cell cost 8 logarithms
- * instead of 180: each of 8 lanes multiplies up to 23 factors 1 + rho/s. With factors below 1e13 no
- * lane overflows; a cell with a larger one (no real material has it) is summed one by one. */
+ * A mean of logarithms is the logarithm of a product. So the 180 values of a cell take 8 logarithms
+ * instead of 180: each of 8 lanes multiplies up to 23 factors 1 + rho/s. Factors below 1e13 do not
+ * overflow a lane. A cell with a larger factor, which no real material has, is summed one by one.
+ */
 #include "slab_mean.h"
 
 #include <float.h>
@@ -14,7 +15,7 @@
 
 enum { LANES = 8, LANE_ROWS = GONIO_THETA_D_BINS * GONIO_CHANNELS };
 
-/* Eight lanes as one value (an extension of gcc and clang), so that they stay in registers. */
+/* Eight lanes as one vector (an extension of gcc and clang), so that they stay in registers. */
 typedef double lane_vector __attribute__((vector_size(LANES * sizeof(double))));
 typedef int64_t lane_mask __attribute__((vector_size(LANES * sizeof(int64_t))));
 
@@ -49,7 +50,7 @@ GONIO_I_VECTORISED static int count_data(const double *rho, int first, int last)
     return count;
 }
 
-/* The plain way, for factors that might overflow a product. */
+/* The sum of single logarithms, for factors that might overflow a product. */
 static double sum_logs(const double *rho, int first, int last, double inverse_scale)
 {
     double sum = 0.0;
@@ -63,7 +64,7 @@ void gonio_i_slab_mean(const uint8_t *first_phi, const double *rho,
                        const double inverse_scale[GONIO_CHANNELS], double *mean)
 {
     double lanes[LANE_ROWS][LANES];
-    double rest[LANE_ROWS] = {0}; /* sums made the plain way */
+    double rest[LANE_ROWS] = {0}; /* sums of single logarithms */
     int count[GONIO_THETA_D_BINS];
     for (int theta_d = 0; theta_d < GONIO_THETA_D_BINS; theta_d++) {
         const int first = first_phi[theta_d];

@@ -1,4 +1,4 @@
-/* The bivariate average of one slab, fast: what learning spends its time on. */
+/* The bivariate average of one slab, made fast because learning spends its time on it. */
 #ifndef GONIO_SLAB_MEAN_H
 #define GONIO_SLAB_MEAN_H
 

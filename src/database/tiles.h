@@ -1,11 +1,11 @@
-/* The observation matrix tile by tile: the pieces in which it is written, and in which it is read
- * fastest. */
+/* The observation matrix by tiles. It is written in tiles, and tiles are the fastest way to read
+ * it. */
 #ifndef GONIO_TILES_H
 #define GONIO_TILES_H
 
 #include <gonio/database.h>
 
-/* Tiles follow each other in the order of the rows. */
+/* The number of tiles. Tiles are in the order of the rows. */
 size_t gonio_i_database_tiles(const gonio_database *database);
 
 /* The rows of a tile: `count` from `first`; none if all its cells are left out. */
@@ -16,7 +16,7 @@ typedef struct gonio_i_row_range {
 
 gonio_i_row_range gonio_i_database_tile_rows(const gonio_database *database, size_t tile);
 
-/* The most values a column that gonio_i_database_read_tile needs room for. */
+/* The largest number of values a column that gonio_i_database_read_tile needs space for. */
 size_t gonio_i_database_tile_room(const gonio_database *database);
 
 /* Reads the rows of a tile into block[column][count] for the given materials, as

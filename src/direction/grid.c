@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-/* Rounding may put a point that is meant to lie on an edge on either side of it. */
+/* Rounding may move a point that lies on an edge to either side of it. */
 static const double edge = 1e-6;
 
 static int clamp_index(double position, int bins)

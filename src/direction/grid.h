@@ -36,7 +36,7 @@ int gonio_i_bilinear(gonio_half_difference coordinates, gonio_i_stencil stencil[
 int gonio_i_trilinear(gonio_half_difference coordinates,
                       gonio_i_stencil stencil[GONIO_I_MOST_POINTS]);
 
-/* The same between the centres of sectors of phi_d; the bins are those in the middle of them. */
+/* The same between the centres of sectors of phi_d. A sector is represented by its middle bin. */
 int gonio_i_trilinear_sectors(gonio_half_difference coordinates,
                               gonio_i_stencil stencil[GONIO_I_MOST_POINTS]);
 

@@ -66,7 +66,7 @@ static int blend_with_mean(const gonio_i_stencil plane[GONIO_I_BILINEAR], double
     return points;
 }
 
-/* Between the middles of runs of `depth` bins of phi_d. */
+/* Interpolates between the middles of runs of `depth` bins of phi_d. */
 static int trilinear(gonio_half_difference c, int depth,
                      gonio_i_stencil stencil[GONIO_I_MOST_POINTS])
 {

@@ -10,7 +10,7 @@
 #include <cblas.h>
 #include <lapacke.h>
 
-/* What every call of OpenBLAS begins with. LAPACK counts in 32-bit integers. */
+/* Every call of OpenBLAS begins with this. LAPACK counts in 32-bit integers. */
 static gonio_status check_size(gonio_context *context, size_t rows, size_t columns)
 {
     gonio_i_keep_blas_on_one_thread();

@@ -83,9 +83,9 @@ gonio_status gonio_i_least_squares(gonio_context *context, const double *a, size
                                    const double *b, size_t columns, double *x, size_t *rank,
                                    double *condition);
 
-/* One step of QR with row pivoting: finds the longest of the rows (rows x n, row-major) and takes
- * its direction out of all of them. GONIO_ERROR_DATA if all are 0 to rounding; `step` is the number
- * of directions already taken out. */
+/* One step of QR with row pivoting: finds the longest of the rows (rows x n, row-major) and
+ * projects all rows onto the complement of its direction. `step` is the number of steps made
+ * before. GONIO_ERROR_DATA if all rows are 0 to rounding. */
 gonio_status gonio_i_take_farthest(gonio_context *context, double *a, size_t rows, size_t n,
                                    size_t step, size_t *farthest);
 

@@ -64,7 +64,7 @@ static double equal_energy(double wavelength)
     return 1.0;
 }
 
-/* CIE D65, every 10 nm from 380 nm on; between them linear. */
+/* CIE D65, every 10 nm from 380 nm on, to be interpolated linearly. */
 static double daylight(double wavelength)
 {
     static const double power[] = {
@@ -115,7 +115,7 @@ static sample *sort_samples(gonio_context *context, const double *wavelength, si
     return samples;
 }
 
-/* Adds what a power at one wavelength is worth to the samples around it. */
+/* Distributes a power at one wavelength to the weights of the samples around it. */
 static void share_out(const sample *samples, size_t count, double wavelength, double power,
                       double *weight)
 {

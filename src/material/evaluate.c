@@ -1,4 +1,4 @@
-/* A material at any directions: by its own source, or by its table. */
+/* A material evaluated at any directions: from its own source, or from its table. */
 #include <gonio/material.h>
 
 #include <math.h>
@@ -16,7 +16,7 @@ enum {
 
 /* ---- by the source ---- */
 
-/* Nothing below the horizon, nor beyond what was measured; a negative value is none. */
+/* Marks values without data: below the horizon, beyond the measured angles, or negative. */
 static void take_out(const gonio_material_view *view, const gonio_pair *pair, double *values)
 {
     const double most = fmax(pair->incident.theta, pair->outgoing.theta);
@@ -69,7 +69,7 @@ static int compare_places(const void *a, const void *b)
                                 : (x->index > y->index) - (x->index < y->index);
 }
 
-/* The slabs that are in memory: the two of a stencil, whose places alternate. */
+/* The two slabs of a stencil, which are in memory. Even and odd slabs have a place each. */
 typedef struct window {
     double *buffer[2];
     int held[2];

@@ -1,4 +1,4 @@
-/* The inside of a material. */
+/* The struct of a material, for this stage's files. */
 #ifndef GONIO_MATERIAL_INSIDE_H
 #define GONIO_MATERIAL_INSIDE_H
 

@@ -38,7 +38,7 @@ static gonio_status check_source(gonio_context *context, const gonio_material_so
     return GONIO_OK;
 }
 
-/* Wavelengths of the material's own, and what they weigh in its colours. */
+/* Copies the wavelengths, and finds their weights in the material's colours. */
 static gonio_status keep_wavelengths(gonio_context *context, gonio_material *material)
 {
     const size_t channels = material->source.channels;
@@ -283,8 +283,8 @@ gonio_status gonio_fingerprint_create(gonio_fingerprint **fingerprint)
     return GONIO_OK;
 }
 
-/* The same for the widest vectors of the processor at hand, four times as fast. Only the shared
- * xxhash of some systems has it, so it may be missing; only x86 needs it. */
+/* The same for the processor's widest vectors, four times as fast. Only the shared xxhash library
+ * of some systems has it. Only x86 needs it. */
 #if defined(__x86_64__) && defined(__ELF__)
 extern XXH_errorcode XXH3_64bits_update_dispatch(XXH3_state_t *state, const void *data, size_t size)
     __attribute__((weak));

@@ -1,4 +1,4 @@
-/* A material looked up at any directions, many times: see sampler.h. */
+/* Repeated look-ups of a material at any directions: see sampler.h. */
 #include "sampler.h"
 
 #include <math.h>

@@ -9,7 +9,7 @@
 
 enum { AZIMUTHS = 8 /* of the half vector of an anisotropic material */ };
 
-/* A row of bins along phi_d, and what its directions were found to be. */
+/* A row of bins along phi_d, with the directions of each bin and their values. */
 typedef struct row {
     const gonio_material_source *source;
     const double *weight;
@@ -39,7 +39,8 @@ static void set_directions(row *r, gonio_bin bin)
     }
 }
 
-/* The mean of a bin's directions in each channel, NaN where none has data; whether any has. */
+/* The mean over a bin's directions in each channel, 0 without data. False if no channel has data.
+ */
 static bool average(const row *r, int phi_d)
 {
     const double *value = r->value + (size_t)phi_d * r->directions * r->channels;
@@ -79,7 +80,7 @@ static bool is_inside(const row *r, gonio_bin bin)
            (limit <= 0.0 || fmax(pair.incident.theta, pair.outgoing.theta) <= limit);
 }
 
-/* Evaluates the bins first .. 179 - first, which are inside, and leaves the others empty. */
+/* Evaluates the bins first .. 179 - first, which are inside; the others have no data. */
 static gonio_status fill_row(gonio_context *context, row *r, int theta_h, int theta_d, double *rho)
 {
     int first = 0;

@@ -8,12 +8,12 @@
 
 gonio_material_source gonio_i_material_source(const gonio_material *material);
 
-/* Whether gonio_i_material_colour looks the material up: it can be evaluated, in channels that are
- * not too many. */
+/* Whether gonio_i_material_colour works: the material can be evaluated, and has not too many
+ * channels. */
 bool gonio_i_material_is_direct(const gonio_material *material);
 
-/* The colour of one pair of directions as gonio_material_evaluate finds its channels, on the
- * calling thread. A channel without data where others have some is 0. False, and 0, without data.
+/* The colour of one pair of directions, with channels as by gonio_material_evaluate, on the calling
+ * thread. A channel without data is 0 where others have data. False, and all 0, without any data.
  */
 bool gonio_i_material_colour(const gonio_material *material, gonio_pair pair,
                              double rgb[GONIO_CHANNELS]);

@@ -1,4 +1,4 @@
-/* A material read whole: trilinear look-ups and the albedo. */
+/* A material read whole into a table: trilinear look-ups and the albedo. */
 #include <gonio/material.h>
 
 #include <math.h>
@@ -87,8 +87,9 @@ bool gonio_table_value(const gonio_table *table, gonio_half_difference coordinat
     return gonio_i_look_up(table->slab, coordinates, rho);
 }
 
-/* Outgoing directions are drawn through the half vector, h = (theta_h, phi) with theta_h spaced
- * like the grid, so that the narrowest peak of a table is resolved: d omega_o = 4 (i.h) d omega_h.
+/* The integral over outgoing directions is over half vectors h = (theta_h, phi), with theta_h
+ * spaced like the grid. So it resolves the narrowest peak of a table: d omega_o = 4 (i.h) d
+ * omega_h.
  */
 void gonio_table_albedo(const gonio_table *table, double theta_i, double albedo[GONIO_CHANNELS])
 {

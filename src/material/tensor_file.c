@@ -83,7 +83,7 @@ static gonio_status read_bytes(gonio_context *context, const gonio_i_tensor_file
     return GONIO_OK;
 }
 
-/* A place in the header, moved on by what is read there. */
+/* A position in the header; reading moves it forward. */
 typedef struct reader {
     gonio_context *context;
     const gonio_i_tensor_file *file;

@@ -49,38 +49,38 @@ typedef struct gonio_i_tensor_file {
     gonio_i_tensor *field;
 } gonio_i_tensor_file;
 
-/* Bytes of a number of a type. */
+/* The bytes of one number of a type. */
 size_t gonio_i_tensor_size(gonio_i_tensor_type type);
 
-/* Between the byte order of files and that of the machine, in either direction. */
+/* Converts between the byte order of files and that of the machine, in both directions. */
 void gonio_i_tensor_byte_order(void *values, size_t count, size_t size);
 
 /* Whether a file's first bytes are those of a tensor file. */
 bool gonio_i_tensor_probe(const unsigned char *head, size_t size);
 
 /* Opens a file and reads the table of its fields. To be closed after success.
- * Errors: _IO; _FORMAT (another version, a field that goes on beyond the end, too many fields,
- * names or dimensions, a type that does not exist, a size that overflows); _MEMORY. */
+ * Errors: _IO; _FORMAT (another version, a field that ends beyond the file, too many fields,
+ * names or dimensions, an unknown type, a size that overflows); _MEMORY. */
 gonio_status gonio_i_tensor_open(gonio_context *context, const char *path,
                                  gonio_i_tensor_file *file);
 void gonio_i_tensor_close(gonio_i_tensor_file *file);
 
-/* The field of a name; NULL if there is none. */
+/* The field with a name; NULL if there is none. */
 const gonio_i_tensor *gonio_i_tensor_find(const gonio_i_tensor_file *file, const char *name);
 
-/* The field of a name, a type and a number of dimensions, whose numbers are all in the file.
- * Errors: _FORMAT, naming the field and what it should be. */
+/* The field with a name, which must have a type and a number of dimensions and lie in the file.
+ * Errors: _FORMAT; the message names the field and what it should be. */
 gonio_status gonio_i_tensor_expect(gonio_context *context, const gonio_i_tensor_file *file,
                                    const char *name, gonio_i_tensor_type type, int dimensions,
                                    const gonio_i_tensor **field);
 
-/* Reads numbers first .. first + count - 1 of a field as they are stored, in the byte order of the
+/* Reads the numbers first .. first + count - 1 of a field as its type, in the byte order of the
  * machine. Thread-safe. Errors: _IO, _FORMAT (beyond the end of field or file). */
 gonio_status gonio_i_tensor_read(gonio_context *context, const gonio_i_tensor_file *file,
                                  const gonio_i_tensor *field, uint64_t first, size_t count,
                                  void *values);
 
-/* All of a field of f32 that are finite, allocated; the caller frees them. Errors: as _read,
+/* Reads all numbers of a field of f32 into a new block, which the caller frees. Errors: as _read,
  * _MEMORY, _FORMAT (a number that is not finite). */
 gonio_status gonio_i_tensor_floats(gonio_context *context, const gonio_i_tensor_file *file,
                                    const gonio_i_tensor *field, float **values);

@@ -23,7 +23,7 @@ static uint64_t bytes_of(const gonio_i_tensor_field *field)
     return bytes;
 }
 
-/* Of a field in the table of fields. */
+/* The bytes of a field's entry in the table of fields. */
 static uint64_t entry_size(const gonio_i_tensor_field *field)
 {
     return 2 + strlen(field->name) + 2 + 1 + 8 + 8 * (uint64_t)field->dimensions;
@@ -62,7 +62,7 @@ static unsigned char *put_entry(unsigned char *to, const gonio_i_tensor_field *f
     return to;
 }
 
-/* Fills in the header and where each field's numbers begin. */
+/* Fills in the header, and the offset of each field's numbers. */
 static void lay_out(const gonio_i_tensor_field *fields, size_t count, unsigned char *header,
                     uint64_t *offset)
 {

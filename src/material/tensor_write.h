@@ -13,8 +13,8 @@ typedef struct gonio_i_tensor_field {
     const void *data;
 } gonio_i_tensor_field;
 
-/* Writes a file of these fields, each from a multiple of 8 bytes on. It appears whole or not at
- * all. Errors: _IO, _MEMORY. */
+/* Writes a file of these fields. Each begins at a multiple of 8 bytes. The file appears whole or
+ * not at all. Errors: _IO, _MEMORY. */
 gonio_status gonio_i_tensor_write(gonio_context *context, const char *path,
                                   const gonio_i_tensor_field *fields, size_t count);
 

@@ -1,4 +1,4 @@
-/* Text made in memory and written whole: see text_output.h. */
+/* A text that is printed to memory and then written whole: see text_output.h. */
 #include "text_output.h"
 
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* Text of a known end, made in memory and written whole, with decimal points in any locale. */
+/* A text that is printed to memory and then written whole, with decimal points in any locale. */
 #ifndef GONIO_TEXT_OUTPUT_H
 #define GONIO_TEXT_OUTPUT_H
 

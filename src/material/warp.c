@@ -35,7 +35,8 @@ gonio_i_step gonio_i_step_evenly(size_t count, double at)
 
 /* ---- making one ---- */
 
-/* Integrals along a row, by the trapezoidal rule with cells of unit length: returns the last. */
+/* The integral along a row up to each node, by the trapezoidal rule with cells of unit length.
+ * Returns the integral of the whole row. */
 static double integrate_row(const double *density, size_t width, double *row)
 {
     row[0] = 0.0;
@@ -122,7 +123,7 @@ static double blended(const double *values, size_t nodes, const gonio_i_blend *b
     return sum;
 }
 
-/* What is needed of the cell that holds a point: values at its corners and integrals before it. */
+/* The cell that holds a point: densities at its corners and integrals up to it. */
 typedef struct cell {
     double density[2][2]; /* [y][x] */
     double row[2];        /* along either row up to the cell */
@@ -134,13 +135,14 @@ static double mix(double from, double to, double share)
     return (1.0 - share) * from + share * to;
 }
 
-/* Of a function that is linear from `from` to `to` over a cell: its integral up to `share`. */
+/* The integral up to `share` of a function that is linear from `from` to `to` over a cell. */
 static double partial(double from, double to, double share)
 {
     return share * (from + 0.5 * share * (to - from));
 }
 
-/* Where that integral reaches `area`: the root of a quadratic, in the form that does not cancel. */
+/* The share at which that integral is `area`: the root of a quadratic, in the form without
+ * cancellation. */
 static double where_partial(double from, double to, double area)
 {
     const double root = sqrt(fmax(from * from + 2.0 * area * (to - from), 0.0));

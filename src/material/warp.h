@@ -4,11 +4,11 @@
  * spans the square, bilinear between them, for several slices: one for each incidence. With P the
  * density of a point u = (x, y), the warp maps u to
  *
- *     s = (integral of P along its row up to x over that of the whole row,
- *          integral of the rows' integrals up to y over that of all rows),
+ *     s = (integral of P along its row up to x / integral of the whole row,
+ *          integral of the rows' integrals up to y / integral of all rows),
  *
- * which is uniform where u is distributed like P. Between slices densities and integrals alike are
- * interpolated linearly (Dupuy and Jakob 2018, section 4). */
+ * s is uniform if u is distributed with the density P. Densities and integrals are interpolated
+ * linearly between slices (Dupuy and Jakob 2018, section 4). */
 #ifndef GONIO_WARP_H
 #define GONIO_WARP_H
 
@@ -27,7 +27,7 @@ typedef struct gonio_i_warp {
 
 enum { GONIO_I_BLEND = 4 };
 
-/* Slices and what each counts for: the weights add up to 1. */
+/* Slices and their weights, which add up to 1. */
 typedef struct gonio_i_blend {
     int count;
     size_t slice[GONIO_I_BLEND];
@@ -41,24 +41,24 @@ gonio_status gonio_i_warp_create(gonio_context *context, const float *values, si
                                  size_t height, size_t width, gonio_i_warp *warp);
 void gonio_i_warp_free(gonio_i_warp *warp);
 
-/* The place s of a point u of the square, and the density there. */
+/* Maps a point u of the square to s; also gives the density at u. */
 double gonio_i_warp_invert(const gonio_i_warp *warp, const gonio_i_blend *blend, const double u[2],
                            double s[2]);
 
-/* The point u of a place s of the square, and the density there: the inverse of the above. */
+/* The inverse: maps s to u; also gives the density at u. */
 double gonio_i_warp_sample(const gonio_i_warp *warp, const gonio_i_blend *blend, const double s[2],
                            double u[2]);
 
-/* A place on an axis of nodes: index of the node before it and how far it is towards the next. */
+/* A position on an axis of nodes: the node before it, and the fraction of the way to the next. */
 typedef struct gonio_i_step {
     size_t before; /* at most count - 2, or 0 if there is one node */
     double share;  /* 0 .. 1 */
 } gonio_i_step;
 
-/* Of `at` among ascending nodes; beyond the ends the end. */
+/* The position of `at` among ascending nodes, clamped to the first and last. */
 gonio_i_step gonio_i_step_among(const double *node, size_t count, double at);
 
-/* Of `at` in 0 .. 1 among nodes that are evenly spaced over it. */
+/* The position of `at` in 0 .. 1 among evenly spaced nodes. */
 gonio_i_step gonio_i_step_evenly(size_t count, double at);
 
 #endif

@@ -1,4 +1,4 @@
-/* Materials as files: the table of formats, chosen by name or by the file's extension. */
+/* Writing materials: the table of formats, chosen by name or by the file's extension. */
 #include <gonio/material.h>
 
 #include <string.h>

@@ -1,5 +1,5 @@
-/* The relative root mean square error of the cube root, T = cbrt(rho c), near to what people see
- * (Fores et al. 2012). */
+/* The relative root mean square error of the cube root, T = cbrt(rho c). It is close to what people
+ * see (Fores et al. 2012). */
 #include <math.h>
 
 #include "../core/vector_math.h"
@@ -18,8 +18,8 @@ static void terms(const gonio_i_compared *v, double *difference, double *referen
     }
 }
 
-/* dT/dg = cbrt(c) (rho + s) rho^(-2/3) / 3, but for a constant and with rho + s for rho: it stays
- * finite in the dark. */
+/* dT/dg = cbrt(c) (rho + s) rho^(-2/3) / 3, without the constant, and with rho + s in place of rho
+ * so that it is finite at rho = 0. */
 static double loss(double rho, double scale, double cosines)
 {
     return pow(cosines, 2.0 / 3.0) * pow(rho + scale, 2.0 / 3.0);

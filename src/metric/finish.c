@@ -1,4 +1,4 @@
-/* From sums to an error, and the slope of terms: what several metrics share. */
+/* Functions that several metrics share: from sums to an error, and the slope of terms. */
 #include "../core/vector_math.h"
 #include "metric.h"
 

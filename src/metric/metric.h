@@ -1,8 +1,8 @@
-/* What an error metric is to the code: a row of the table in metrics.c, filled in by the metric's
- * own file.
+/* The interface of an error metric: a row of the table in metrics.c, which the metric's own file
+ * defines.
  *
- * A metric compares values by their terms d = T(rho, c) - T(rho', c), c = c_i c_o, and is found
- * from sums over these. */
+ * A metric compares values by the terms d = T(rho, c) - T(rho', c), c = c_i c_o. It is computed
+ * from sums over these terms. */
 #ifndef GONIO_I_METRIC_H
 #define GONIO_I_METRIC_H
 
@@ -40,8 +40,8 @@ typedef struct gonio_i_metric {
     void (*terms)(const gonio_i_compared *values, double *difference, double *reference);
     /* The error from the sums over so many values. */
     double (*finish)(const gonio_i_metric_sums *sums, double values);
-    /* a(c) of terms that are a(c) times what they are at c = 1. NULL of any other, which depend on
-     * clip(c, 0.01, 1) only, smoothly. */
+    /* The factor a(c), if the terms are a(c) times the terms at c = 1. NULL otherwise; the terms
+     * then are a smooth function of clip(c, 0.01, 1). */
     double (*proportion)(double cosines);
     /* (dT/dg)^2: how fast d^2 grows with the square of an error of g. NULL if no plan can be made
      * for the metric. */
@@ -51,7 +51,7 @@ typedef struct gonio_i_metric {
 #define GONIO_I_DECLARE_METRIC(name) extern const gonio_i_metric gonio_i_metric_##name;
 GONIO_I_METRICS(GONIO_I_DECLARE_METRIC)
 
-/* How many there are, and the one at a place below that. */
+/* The number of metrics, and the metric at an index. */
 int gonio_i_metric_count(void);
 const gonio_i_metric *gonio_i_metric_at(int metric);
 

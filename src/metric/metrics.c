@@ -1,4 +1,5 @@
-/* The table of error metrics, and the sums over values that they are found from: see metric.h. */
+/* The table of error metrics, and the sums over values that they are computed from: see metric.h.
+ */
 #include "metric.h"
 
 #include <string.h>

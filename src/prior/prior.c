@@ -8,7 +8,7 @@
 
 static const double WIDTH = M_PI / 180.0;
 
-/* The weight that learning gave a column, on average 1 (basis.h, mixtures). */
+/* The weight of a column in learning, on average 1 (docs/method.md, mixtures). */
 static double weight_of(const gonio_basis_view *view, size_t column)
 {
     const double all = (double)view->columns;
@@ -19,7 +19,7 @@ static double weight_of(const gonio_basis_view *view, size_t column)
     return 0.5 * all / ((double)column < measured ? measured : (double)view->mixtures);
 }
 
-/* H - m = V S W' with every column times the root of its weight, so that z of column j is
+/* H - m = V S W' with every column times the root of its weight. So z of column j is
  * W_j ((columns - 1) / weight)^(1/2). */
 static void find_samples(gonio_i_prior *prior)
 {

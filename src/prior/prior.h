@@ -1,12 +1,12 @@
-/* What a basis says of a material before anything of it was read.
+/* The prior: the distribution of a material, given a basis and no readings.
  *
  * In the basis's log space a channel of a material is
  *
  *     g(x) = m(x) + f(x) z + r(x),   f(x) = row x of V diag(lambda)^(1/2),
  *
- * z the database's part, of mean 0 and covariance I; r a smooth remainder that the database has
- * never seen, of mean 0 and covariance alpha^2 k(x, x') below. The columns that the basis was
- * learned from are samples of z. */
+ * z describes the part that the database spans. It has mean 0 and covariance I. r is a smooth
+ * remainder that the database does not span. It has mean 0 and covariance alpha^2 k(x, x') (below).
+ * The columns that the basis was learned from are samples of z. */
 #ifndef GONIO_PRIOR_H
 #define GONIO_PRIOR_H
 
@@ -39,13 +39,12 @@ void gonio_i_prior_row(const gonio_i_prior *prior, size_t row, double *f);
  *     k = exp(-|p - p'|^2/2) + peak^2 exp(-(theta_h^2 + theta_h'^2)/(2 WIDTH^2)) exp(-2 |p -
  * p'|^2):
  *
- * near the mirror direction, within about a degree (WIDTH), peaks can be narrower than any in the
- * database.
+ * The second term allows peaks that are narrower than any in the database, within about a degree
+ * (WIDTH) of the mirror direction.
  *
- * Half/difference coordinates in which the remainder is smooth: lengths of 10 bins of theta_h
- * (which crowd around the mirror direction), 20 degrees of theta_d, and phi_d as far as it matters
- * there: two directions that differ in phi_d alone are the closer the nearer h is to the normal or
- * d to h. */
+ * p are half/difference coordinates scaled by the length scales: 10 bins of theta_h (which are
+ * dense around the mirror direction) and 20 degrees of theta_d. The distance in phi_d becomes small
+ * where phi_d matters little: where h is near the normal, or d near h. */
 typedef struct gonio_i_place {
     double p[4];
     double peak; /* exp(-theta_h^2/(2 WIDTH^2)) */
@@ -56,12 +55,13 @@ gonio_i_place gonio_i_place_of(gonio_half_difference at);
 /* |p - p'|^2. */
 double gonio_i_place_distance(const gonio_i_place *a, const gonio_i_place *b);
 
-/* The two parts of k: k = smooth + peak^2 peaked, for a `peak` of 0 or more. */
+/* The two terms of k: k = smooth + peak^2 peaked, for a `peak` of 0 or more. */
 double gonio_i_smooth(const gonio_i_place *a, const gonio_i_place *b);
 double gonio_i_peaked(const gonio_i_place *a, const gonio_i_place *b);
 double gonio_i_remainder(const gonio_i_place *a, const gonio_i_place *b, double peak);
 
-/* Every so manieth row makes a sample of some 4,096 rows, of all channels and sectors alike. */
+/* The step between rows that gives a sample of some 4,096 rows, evenly of all channels and sectors.
+ */
 size_t gonio_i_sample_step(size_t rows);
 
 #endif
