@@ -1,4 +1,4 @@
-/* Materials digested for the errors of bivariate estimates: see digest.h. */
+/* Digests of materials for the errors of bivariate estimates: see digest.h. */
 #include "digest.h"
 
 #include <math.h>
@@ -33,7 +33,7 @@ static void place_nodes(double low, double high, nodes *n)
     }
 }
 
-/* The node at t, if t is one or there is only one; else how many nodes there are. */
+/* The index of the node at t, or 0 if there is only one; the number of nodes if none is at t. */
 static size_t node_at(const nodes *n, double t)
 {
     size_t j = 0;
@@ -50,7 +50,7 @@ GONIO_I_VECTORISED static void divide_by_distance(const nodes *n, double t, doub
     }
 }
 
-/* How much each node's value counts at t. */
+/* The weight of each node's value at t. */
 static void interpolate(const nodes *n, double t, double *share)
 {
     const size_t at = node_at(n, t);
@@ -71,7 +71,7 @@ static void interpolate(const nodes *n, double t, double *share)
 
 /* ---- reading a material ---- */
 
-/* A slab, and what its bins are worth by one metric. */
+/* A slab, and the terms of its bins by one metric. */
 typedef struct slab {
     double *rho;        /* 0 where there is no data */
     double *g;          /* log space */
@@ -315,7 +315,7 @@ static bool allocate(gonio_context *context, gonio_i_digest *d)
     return done;
 }
 
-/* Gives back what the nodes did not need. */
+/* Returns the memory that the nodes did not need. */
 static void shrink(const gonio_i_digest *d, gonio_i_digest_metric *m)
 {
     double **const arrays[] = {&m->node,      &m->linear,    &m->square,
@@ -495,7 +495,7 @@ static void fill_changes(const gonio_i_digest *d, int metric, int channel, estim
     gonio_i_metric_at(metric)->terms(&values, e->change, e->reference);
 }
 
-/* Adds what D changes of the sums of d_b - D(c_b) and of their squares. */
+/* Adds the terms with D of the sums of d_b - D(c_b) and of their squares. */
 GONIO_I_VECTORISED static void add_changes(size_t n, const gonio_i_digest_metric *m,
                                            const double *moment, const double *change,
                                            gonio_i_metric_sums *sums)

@@ -1,6 +1,6 @@
-/* A material digested to what the errors of a bivariate estimate need: such an estimate has one
- * value for all phi_d bins of a cell, and the errors are then sums over the cells, not over the
- * bins. A material is read once and compared with as many estimates as one likes. */
+/* A digest of a material: the sums that errors of bivariate estimates need. Such an estimate has
+ * one value for all phi_d bins of a cell. So its errors are sums over cells instead of bins. The
+ * material is read once and can be compared with any number of estimates. */
 #ifndef GONIO_DIGEST_H
 #define GONIO_DIGEST_H
 
@@ -8,17 +8,17 @@
 
 #include "../metric/metric.h"
 
-/* What one metric needs. With x_0 = s (e^m - 1), m a cell's mean of g, let d_b = T(rho_b, c_b) -
+/* The sums for one metric. With x_0 = s (e^m - 1), m a cell's mean of g, let d_b = T(rho_b, c_b) -
  * T(x_0, c_b) be the terms of its bins and D(c) = T(x, c) - T(x_0, c) that of an estimate x. The
  * terms of the estimate are d_b - D(c_b). D is known at all bins from its values at the cell's
  * nodes: D(c_b) = sum of share_bj D(node_j). There is one node, c = 1, where terms are a(c) times
- * their value there (metric.h); otherwise Chebyshev interpolation in ln w stands for the bins, of D
- * and of D^2. */
+ * their value there (metric.h). Otherwise D and D^2 are interpolated by Chebyshev polynomials in
+ * ln w. */
 typedef struct gonio_i_digest_metric {
     size_t *first;  /* [cells + 1]: a cell's nodes are first[i] .. first[i + 1] - 1 */
     double *node;   /* [first[cells]]: c */
-    double *linear; /* sum over bins of what makes D(c_b) of D(node) */
-    double *square; /* and of what makes D(c_b)^2 of D(node)^2 */
+    double *linear; /* sum over bins of the factors from D(node) to D(c_b) */
+    double *square; /* and of those from D(node)^2 to D(c_b)^2 */
     double *moment[GONIO_CHANNELS]; /* sum of share_bj d_b */
 } gonio_i_digest_metric;
 
@@ -40,8 +40,8 @@ gonio_status gonio_i_digest_create(gonio_context *context, const gonio_material 
                                    gonio_i_digest **digest);
 void gonio_i_digest_free(gonio_i_digest **digest);
 
-/* The errors of the estimate g[GONIO_CELLS][GONIO_CHANNELS] in log space, clamped as a table would
- * hold it: what gonio_compare finds for gonio_reconstruction_material, to 1e-8. Errors: _MEMORY. */
+/* The errors of the estimate g[GONIO_CELLS][GONIO_CHANNELS] in log space, clamped as in a table.
+ * They agree with gonio_compare of gonio_reconstruction_material to 1e-8. Errors: _MEMORY. */
 gonio_status gonio_i_digest_compare(gonio_context *context, const gonio_i_digest *digest,
                                     const double *g, gonio_error *error);
 

@@ -1,4 +1,4 @@
-/* What a file is: every stage's formats, asked in turn. */
+/* The kind of a file: asks the formats of every stage in order. */
 #include <gonio/file.h>
 
 #include <stdio.h>
@@ -16,14 +16,14 @@ typedef struct kind_row {
     gonio_kind kind;
     const char *name;
     const char *article; /* of the name in a sentence */
-    /* The name of the format that a file is of; NULL if of none. */
+    /* The name of a file's format; NULL if it is none of this kind. */
     const char *(*format_of)(const gonio_i_file *file);
     /* The names of the formats that are read; NULL past the last. */
     const char *(*format_name)(int index);
 } kind_row;
 
-/* In the order in which they are asked. A basis may be an HDF5 file, as a material may be. Texts
- * come last, because anything may look like one. */
+/* In the order in which they are asked. Bases and materials may both be HDF5 files. Texts are last,
+ * because many files look like texts. */
 static const kind_row kinds[] = {
     {GONIO_KIND_BASIS, "basis", "a ", gonio_i_basis_format_of, gonio_i_basis_format_name},
     {GONIO_KIND_MATERIAL, "material", "a ", gonio_i_material_format_of,
@@ -88,14 +88,16 @@ static bool is_built_in(const char *path)
     return strncmp(path, "atlas:", 6) == 0;
 }
 
-/* What can be read only once. */
+/* Whether a file can be read only once. */
 static bool is_pipe(const char *path)
 {
     struct stat status;
     return stat(path, &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
 }
 
-/* Looks at a file, and says what it is. The file of a built-in material or a pipe stays empty. */
+/* Reads the beginning of a file and finds its kind. Nothing is read of a built-in material or a
+ * pipe.
+ */
 static gonio_status look(gonio_context *context, const char *path, unsigned wanted,
                          gonio_i_file *file, gonio_kind *kind, const char **format)
 {
@@ -209,7 +211,7 @@ gonio_status gonio_file_expect(gonio_context *context, const char *path, unsigne
     if (file.path != NULL && file.size == 0) {
         return gonio_i_fail(context, GONIO_ERROR_FORMAT, "%s: the file is empty", path);
     }
-    /* An HDF5 file may be a basis that is cut short: its reader says more. */
+    /* An HDF5 file may be a truncated basis. The reader of bases gives a better message. */
     if ((wanted & GONIO_KIND_BASIS) != 0 && (wanted & GONIO_KIND_MATERIAL) == 0 &&
         gonio_i_basis_may_be(&file)) {
         found = GONIO_KIND_BASIS;

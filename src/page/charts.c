@@ -11,11 +11,11 @@ enum { MOST_ROWS = 50000 };
 
 enum { MOST_COLUMNS = 8 + GONIO_MOST_METRICS };
 
-/* What the charts need of each table; other columns stay out of the page. */
+/* The columns of each table that the charts need. Other columns are left out of the page. */
 typedef struct chart_table {
     const char *name;
     const char *columns[8]; /* ends with NULL */
-    bool errors;            /* and those of errors, by whichever metrics there are */
+    bool errors;            /* and the columns of errors, for the metrics that the table has */
 } chart_table;
 
 static const chart_table tables[] = {

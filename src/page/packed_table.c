@@ -1,9 +1,9 @@
-/* Tables for the page, small: logarithms in steps, predicted from their neighbours, deflated.
+/* Compressed tables for the page: logarithms in steps, predicted from their neighbours, deflated.
  *
  * A code is 1 + round(g/step) in 16 bits. Each row of 180 phi_d bins is predicted in one of three
- * ways, whichever leaves least (as PNG does): the bin before; the same bin of the row before; left
- * + above - above left. The differences are small or zero and deflate well; noise does not, and is
- * given coarser steps until the table fits. docs/report-page.md has the layout. */
+ * ways, whichever gives the smallest differences (as PNG does): the bin before; the same bin of the
+ * row before; left + above - above left. The differences are small or zero and compress well. Noise
+ * does not. It gets coarser steps until the table fits. docs/report-page.md has the layout. */
 #include "page.h"
 
 #include <math.h>
@@ -39,7 +39,7 @@ static const double *row_values(const packing *p, int row, int channel)
            (size_t)theta_d * ROW;
 }
 
-/* What is put in steps. */
+/* The value that is rounded to steps. */
 static double coordinate(const packing *p, int channel, double value)
 {
     return p->kind == GONIO_I_WEB_LOG ? log1p(value / gonio_log_scale(channel)) : value;
@@ -106,7 +106,7 @@ static long predict_row(int predictor, const uint16_t *wanted, const uint16_t *a
     return sum;
 }
 
-/* By the predictor that leaves least. */
+/* Uses the predictor with the smallest differences. */
 static void write_row(const packing *p, int at, const uint16_t *wanted)
 {
     static const uint16_t nothing[ROW] = {0};
@@ -181,7 +181,7 @@ static char *base64(const uint8_t *data, size_t size)
     return text;
 }
 
-/* Coarser and coarser until it fits; a table of one step, all zeros, does in any case. */
+/* Tries coarser steps until the table fits. A table of one step, all zeros, fits in any case. */
 static gonio_status fit(gonio_context *context, packing *p, size_t budget, uLong *size)
 {
     write_mask(p);

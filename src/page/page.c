@@ -1,4 +1,4 @@
-/* The interactive page: its template with the data put in. */
+/* The interactive page: puts the data into the template. */
 #include <gonio/page.h>
 
 #include <stdlib.h>
@@ -26,7 +26,7 @@ static const char *const table_names[3] = {"reference", "reconstruction", "devia
 
 /* ---- collecting ---- */
 
-/* Loads a material, packs it, and puts what is known of it into the data. */
+/* Loads a material, packs it, and adds it to the data. */
 static gonio_status add_material(page *p, int which, const gonio_material *material, size_t budget,
                                  gonio_table **table)
 {
@@ -42,8 +42,8 @@ static gonio_status add_material(page *p, int which, const gonio_material *mater
     return status;
 }
 
-/* A MERL table whose numbers, as they are in the file, are standard deviations of g: what the
- * reader has made 1/sr of is undone. */
+/* Reads a MERL table whose numbers are standard deviations of g. The reader converts numbers to
+ * 1/sr; this is undone. */
 static gonio_status add_deviation(page *p)
 {
     gonio_table *table = NULL;
@@ -123,7 +123,7 @@ static char *dump(const json_t *data)
     return text;
 }
 
-/* JSON that can stand in HTML: "</script>" in a name must not end the element. */
+/* JSON that is safe in HTML: "</script>" in a name must not end the element. */
 static char *safe_json(const json_t *data)
 {
     char *plain = dump(data);
@@ -153,7 +153,7 @@ static gonio_status put(page *p, gonio_i_output *output, const char *text)
     return gonio_i_output_write(p->context, output, text, strlen(text));
 }
 
-/* An element that holds text which no browser runs. */
+/* An element whose text is data and is not run by browsers. */
 static gonio_status put_element(page *p, gonio_i_output *output, const char *type, const char *id,
                                 const char *text)
 {

@@ -1,4 +1,4 @@
-/* The interactive page: what goes into its template. docs/report-page.md has the format. */
+/* The interactive page: the data of its template. docs/report-page.md has the format. */
 #ifndef GONIO_PAGE_PAGE_H
 #define GONIO_PAGE_PAGE_H
 
@@ -11,7 +11,7 @@
 extern const char gonio_i_web_template[];
 extern const char gonio_i_web_template_end[];
 
-/* What the template has where the data go. */
+/* The text that the template has in place of the data. */
 #define GONIO_I_WEB_PLACE "<!--gonio-data-->"
 
 /* A table packed for the page: text of `size` characters (base64), values in steps of `step`. */
@@ -21,7 +21,7 @@ typedef struct gonio_i_web_table {
     double step;
 } gonio_i_web_table;
 
-/* What is packed of a table's numbers. */
+/* Which numbers of a table are packed. */
 typedef enum gonio_i_web_kind {
     GONIO_I_WEB_LOG,      /* rho as g = ln(1 + rho/s_c) */
     GONIO_I_WEB_DEVIATION /* standard deviations of g, as they are */
@@ -32,11 +32,11 @@ typedef enum gonio_i_web_kind {
 gonio_status gonio_i_web_pack(gonio_context *context, const double *values, gonio_i_web_kind kind,
                               size_t budget, gonio_i_web_table *packed);
 
-/* A material's name, format and values at a few directions, by which the page checks its own
- * look-ups: rows of [theta_h, theta_d, phi_d, R, G, B]. NULL when out of memory. */
+/* A material's name, format and values at a few directions. The page checks its own look-ups by
+ * these: rows of [theta_h, theta_d, phi_d, R, G, B]. NULL when out of memory. */
 json_t *gonio_i_web_material(const gonio_material *material, const gonio_table *table, double step);
 
-/* What a number of an error is: key, title, unit, digits, summary. */
+/* The description of each error: key, title, unit, digits, summary. */
 json_t *gonio_i_web_metric(const gonio_metric_view *metric);
 
 /* Errors of all channels and of each. */

@@ -1,4 +1,4 @@
-/* What the page is told about materials, errors and readings, as JSON: see page.h. */
+/* Materials, errors and readings as JSON for the page: see page.h. */
 #include "page.h"
 
 #include <math.h>
@@ -35,7 +35,7 @@ static gonio_half_difference check_direction(int k)
     return (gonio_half_difference){u * u * M_PI / 2.0, v * M_PI / 2.0, w * M_PI};
 }
 
-/* Directions below the horizon, and those without data, are left out. */
+/* Values at directions; those below the horizon and those without data are left out. */
 static json_t *checks(const gonio_table *table)
 {
     json_t *array = json_array();
@@ -78,7 +78,7 @@ json_t *gonio_i_web_metric(const gonio_metric_view *metric)
                      "unit", metric->unit, "digits", metric->digits, "summary", metric->summary);
 }
 
-/* What the numbers of an error are, in their order. */
+/* The descriptions of the errors, in their order. */
 static json_t *metrics(void)
 {
     json_t *list = json_array();
@@ -108,7 +108,7 @@ json_t *gonio_i_web_comparison(const gonio_comparison *c)
 
 /* ---- readings ---- */
 
-enum { MOST_READINGS = 4000 }; /* on a page of bounded size; who needs more reads the table */
+enum { MOST_READINGS = 4000 }; /* so that the page's size is bounded */
 
 static json_t *direction(gonio_angles angles)
 {

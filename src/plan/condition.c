@@ -1,5 +1,6 @@
-/* Condition-number plans (Ali et al., section 3.8): from each of several starts, swaps of chosen
- * rows for others until no single swap lowers kappa (swap_search.h); the best of the ends is kept.
+/* Condition-number plans (Ali et al., section 3.8). From each of several starts the search swaps
+ * chosen rows for others until no single swap lowers kappa (swap_search.h). The best result is
+ * kept.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -12,7 +13,7 @@
 
 static gonio_i_selector select_by_condition;
 
-/* The choice to begin with: by a start, or (NULL) the one that is given. */
+/* The first choice: from a start, or (NULL) the given one. */
 static gonio_status begin_with(gonio_i_swap_search *s, const gonio_i_start *by, int restart)
 {
     const gonio_i_selection_problem *p = s->problem;
@@ -30,7 +31,7 @@ static gonio_status begin_with(gonio_i_swap_search *s, const gonio_i_start *by, 
     return status;
 }
 
-/* The start asked for, or where its rows do not span K dimensions one whose rows do. */
+/* Makes the chosen start. If its rows do not span K dimensions, makes a start whose rows do. */
 static gonio_status start(gonio_i_swap_search *s, int restart)
 {
     gonio_i_random_seed(&s->random, s->problem->seed, 2 * (uint64_t)restart + 1);
@@ -48,7 +49,7 @@ static gonio_status start(gonio_i_swap_search *s, int restart)
     return status;
 }
 
-/* All starts, with what they share. */
+/* The state that all starts share. */
 typedef struct starts {
     const gonio_i_selection_problem *problem;
     const gonio_i_packed_rows *packed;
@@ -119,9 +120,9 @@ static void run_unless_failed(starts *all, int restart)
     }
 }
 
-/* Several starts at a time: they share nothing but the rows, while threads within one start wait
- * for each other at every step. Threads left over go into the starts. (One at a time is no parallel
- * region of one: regions inside another make their threads anew each time.) */
+/* Runs several starts in parallel: they share only the rows, while threads within one start wait
+ * for each other at every step. The remaining threads work within the starts. (A single start is
+ * not run in a parallel region, because nested regions create their threads each time.) */
 static void run_all(starts *all)
 {
     const int restarts = all->problem->restarts;

@@ -12,7 +12,7 @@ typedef struct sums {
     bool on_pole;      /* some d_k = x */
 } sums;
 
-/* (Pointers of its own, or the compiler gathers values one by one.) */
+/* (Local pointers, otherwise the compiler gathers values one by one.) */
 GONIO_I_VECTORISED static sums sums_at(const gonio_i_exchange *e, double x)
 {
     const double *restrict d = e->d;

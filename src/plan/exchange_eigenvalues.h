@@ -12,20 +12,20 @@
 
 typedef struct gonio_i_exchange {
     const double *d; /* [n], ascending, all > 0 */
-    const double *y; /* [n], what is taken out */
-    const double *z; /* [n], what is put in */
+    const double *y; /* [n], the removed row */
+    const double *z; /* [n], the added row */
     size_t n;        /* at least 2 */
 } gonio_i_exchange;
 
-/* Eigenvalues of H above x. */
+/* The number of eigenvalues of H above x. */
 int gonio_i_exchange_count_above(const gonio_i_exchange *exchange, double x);
 
 /* Whether lambda_max(H)/lambda_min(H) < limit. */
 bool gonio_i_exchange_beats(const gonio_i_exchange *exchange, double limit);
 
-/* False only if H does not beat the limit, by the first `part` of z and its last value alone (the
- * rest may be anything): by Cauchy's interlacing, lambda_min of a principal submatrix is no less
- * than H's. */
+/* A test that uses only the first `part` values of z and its last one. False only if H does not
+ * beat the limit: by Cauchy's interlacing, lambda_min of a principal submatrix is no less than H's.
+ */
 bool gonio_i_exchange_may_beat(const gonio_i_exchange *exchange, size_t part, double limit);
 
 /* The k-th eigenvalue of H (from 0, ascending), less at most a relative 1e-10. */

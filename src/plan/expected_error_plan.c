@@ -12,20 +12,20 @@
 #include "method.h"
 #include "plan.h"
 
-/* Deviation of a reading, log units: noise, and what the model leaves open around it; by errors of
- * left-out materials: with 0.03 or 0.05 plans trust single readings too much. Less where a
- * remainder is part of the covariance. */
+/* Standard deviation of a reading, log units: noise and the error of the model near the reading.
+ * Chosen by errors of left-out materials: with 0.03 or 0.05 plans trust single readings too much.
+ * Smaller where the covariance includes a remainder. */
 static const double NOISE = 0.08;
 static const double NOISE_BESIDE_REMAINDER = 0.05;
 
-/* Of the remainder that the database has never seen, log units, between candidates. */
+/* alpha and peak of the remainder between candidates, log units (prior.h). */
 static const double SMOOTHNESS = 0.2;
 static const double PEAK = 8.0;
 
-/* Variance that may stay out of the covariance between candidates. */
+/* Variance that the factor of the candidates' covariance may omit. */
 static const double LEFT = 1e-4;
 
-/* Square of the distance (basis/prior.h) up to which directions are the same. */
+/* Square of the distance (prior.h) up to which directions are the same. */
 static const double SAME = 1e-6;
 
 /* Nearer to the normal a direction has no azimuth, radians. */
@@ -33,15 +33,15 @@ static const double POLE = 1e-6;
 
 enum { MOST_CANDIDATES = 100000, MOST_RANK = 500 };
 
-/* Deviation, log units, of what the model leaves open beside what it knows of, wherever one reads:
- * by it the expected error is that of left-out materials (docs/experiments.md). */
+/* Standard deviation, log units, of the error that remains whatever is read. Chosen so that the
+ * expected error is that of left-out materials (docs/experiments.md). */
 static const double LEFT_OPEN = 0.05;
 
 typedef struct place_list {
     gonio_context *context;
     gonio_i_prior *prior;
     size_t rows;
-    size_t components; /* of f below: K, or as many as there are candidates */
+    size_t components; /* of f below: K, or the rank of the candidates' covariance */
     float *f;
     double *mean; /* [rows] */
     double *loss;
@@ -90,7 +90,7 @@ static gonio_status allocate_places(place_list *p)
     return done ? GONIO_OK : GONIO_ERROR_MEMORY;
 }
 
-/* How much a metric's square grows with that of g, at the mean of the prior. */
+/* The squared slope of a metric in g, at the mean of the prior. */
 static double metric_weight(gonio_metric metric, gonio_half_difference at, double mean, int channel)
 {
     double incident = 0.0;
@@ -146,7 +146,7 @@ static gonio_status list_rows(place_list *p, gonio_metric metric)
 /* Given    f[rows][K] and places of candidates, whose covariance is C = f f' + alpha^2 k
  * Returned p->f[rows][p->components], p->f p->f' = C to within LEFT of every variance
  * Method   Cholesky with pivoting on the largest variance left (Higham 2002, sec. 10.3); columns of
- *          C are made as they are needed */
+ *          C are computed when they are needed */
 static void factorise(place_list *p, const float *f, const gonio_i_place *place, double *left)
 {
     const size_t most = p->components;
@@ -271,7 +271,7 @@ static gonio_status list_candidates(place_list *p, const gonio_plan_options *opt
     return status;
 }
 
-/* Mean over the measured columns of the database of 1/|g|, by the weights of the rows. */
+/* The mean of 1/|g| over the measured columns of the database; |g| with the weights of the rows. */
 static gonio_status mean_reciprocal(const place_list *p, double *mean)
 {
     const gonio_i_prior *prior = p->prior;
@@ -345,7 +345,7 @@ static gonio_status choose_count(gonio_context *context, const place_list *p,
     return GONIO_OK;
 }
 
-/* As few readings as reach the target, if there is one. */
+/* The fewest readings that reach the target, if there is one. */
 static gonio_status cut(const place_list *p, const gonio_plan_options *options, gonio_plan *plan)
 {
     gonio_context *context = p->context;
@@ -370,7 +370,7 @@ static gonio_status cut(const place_list *p, const gonio_plan_options *options, 
     return GONIO_OK;
 }
 
-/* What the model leaves open, as a part of E6, per cent; `reciprocal`: 1/|g|. */
+/* The part of E6, per cent, that remains whatever is read; `reciprocal`: 1/|g|. */
 static double open_part(const place_list *p, double reciprocal)
 {
     double all = 0.0;
@@ -463,7 +463,7 @@ static gonio_status check_options(gonio_context *context, const gonio_basis *bas
     return GONIO_OK;
 }
 
-/* Directions that were read are not read again. */
+/* Excludes directions that were read. */
 static gonio_status leave_out_read(place_list *p)
 {
     const size_t count = p->known->count;

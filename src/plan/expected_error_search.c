@@ -1,18 +1,18 @@
-/* The plan that leaves the least expected error: greedy choice with exchanges, nested.
+/* The plan of least expected error: greedy, with exchanges, nested.
  *
  * Given     F, rows f(x) of the prior (basis/prior.h), loss weights w(x) over them, and the noise
  *           variance sigma^2 of a reading
  * Returned  rows in the order in which to read them
  * Method    With P the posterior covariance of z, reading x leaves the expected loss
  *           trace(P W) - t(x)/(q(x) + sigma^2), W = F' diag(w) F, q = f P f', t = f P W P f'
- *           (the V- or I-optimal design of Chaloner and Verdinelli 1995; METHOD of greedy choice
- *           with exact updates: Fedorov 1972). Each reading is the best next one. After 5, 10, 20,
+ *           (the V- or I-optimal design of Chaloner and Verdinelli 1995, chosen greedily with the
+ *           exact updates of Fedorov 1972). Each reading is the best next one. After 5, 10, 20,
  *           40 ... readings those of the last block are exchanged for better ones, one after
- *           another, until none changes: so the first 5, 10, 20 ... of a plan are good plans too.
- * Accuracy  Rank-one updates of q and t in double precision, computed anew from P after each block
- *           of 20 or more.
- * Speed     Rows are single precision and updates of q and t wait until gains are asked for: an
- *           exchange, one reading taken back and one made, reads the rows once. */
+ *           another, until none changes. So the first 5, 10, 20 ... of a plan are good plans too.
+ * Accuracy  Rank-one updates of q and t in double precision, recomputed from P after each block of
+ *           20 or more.
+ * Speed     Rows are single precision. Updates of q and t are deferred until gains are needed: an
+ *           exchange (one reading removed, one added) passes over the rows once. */
 #include "expected_error_search.h"
 
 #include <math.h>
@@ -30,10 +30,10 @@ enum {
     MOST_WAITING = 2 /* an exchange */
 };
 
-/* A reading made (sign 1) or taken back (-1): P became P - sign g g'. */
+/* A reading that was added (sign 1) or removed (-1): P became P - sign g g'. */
 typedef struct change {
     double *g;
-    double *pwg; /* P W g, P from before */
+    double *pwg; /* P W g with P before the change */
     double gwg;
     double sign;
 } change;
@@ -47,9 +47,9 @@ typedef struct design {
     double *half;   /* [k][k], above the diagonal not read: T of W = T + T', f W f' = 2 f T f' */
     double *q;      /* [rows] */
     double *t;      /* [rows] */
-    double *vector; /* [2 + 2 MOST_WAITING][k]: f, W g, and what the changes hold */
+    double *vector; /* [2 + 2 MOST_WAITING][k]: f, W g, and the vectors of the changes */
     bool *taken;    /* [rows] */
-    bool plain;     /* P is I: nothing was read yet */
+    bool plain;     /* P is I: there is no reading yet */
     change waiting[MOST_WAITING];
     size_t waits;
 } design;
@@ -73,7 +73,7 @@ static void multiply(const double *matrix, const double *x, size_t n, double *y)
     }
 }
 
-/* Adds what every LOSS_PARTS-th block of rows, from `part` on, has in W to w. */
+/* Adds the terms of W of every LOSS_PARTS-th block of rows, from block `part` on, to w. */
 static gonio_status add_loss(const design *d, size_t part, double *w)
 {
     gonio_context *context = d->problem->context;
@@ -94,7 +94,7 @@ static gonio_status add_loss(const design *d, size_t part, double *w)
     return status;
 }
 
-/* W = F' diag(w) F, and T. Parts of W are added in the same order whatever the threads. */
+/* W = F' diag(w) F, and T. Parts of W are added in the same order on any number of threads. */
 static gonio_status find_loss(design *d)
 {
     const size_t size = d->k * d->k;
@@ -176,7 +176,7 @@ static gonio_status find_gains(design *d)
     return result;
 }
 
-/* f g and f P W g of a row for the changes that wait. */
+/* f g and f P W g of a row for the deferred changes. */
 typedef struct seen_changes {
     double g[MOST_WAITING];
     double pwg[MOST_WAITING];
@@ -218,7 +218,7 @@ GONIO_I_VECTORISED static seen_changes see_two(const float *f, const change *c, 
     return (seen_changes){{a, other_a}, {b, other_b}};
 }
 
-/* q and t follow the changes that wait. */
+/* Applies the deferred changes to q and t. */
 static void catch_up(design *d)
 {
     const change *c = d->waiting;
@@ -239,7 +239,8 @@ static void catch_up(design *d)
     d->waits = 0;
 }
 
-/* P becomes P - sign g g', g = P f / (sign f P f' + sigma^2)^(1/2); q and t have to catch up. */
+/* P becomes P - sign g g', g = P f / (sign f P f' + sigma^2)^(1/2). The change of q and t is
+ * deferred. */
 static void update(design *d, size_t row, double sign)
 {
     const size_t k = d->k;
@@ -271,7 +272,7 @@ static void update(design *d, size_t row, double sign)
     d->waits++;
 }
 
-/* The row whose reading leaves the least loss; the first of equals. */
+/* The row whose reading gives the least loss, the first of equals. */
 static size_t find_best(design *d)
 {
     catch_up(d);
@@ -349,8 +350,8 @@ static gonio_status choose_blocks(design *d, size_t *chosen)
     return status;
 }
 
-/* trace(P W) before the first and after each reading, made again in order: an exchange changes what
- * was left before. */
+/* trace(P W) before the first and after each reading, recomputed in order, because exchanges change
+ * earlier values. */
 static void find_remaining(design *d, const size_t *chosen, double *remaining)
 {
     const size_t k = d->k;

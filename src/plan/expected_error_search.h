@@ -1,4 +1,4 @@
-/* Choosing the readings that leave the least expected error: see expected_error_search.c. */
+/* The choice of the readings of least expected error: see expected_error_search.c. */
 #ifndef GONIO_EXPECTED_ERROR_SEARCH_H
 #define GONIO_EXPECTED_ERROR_SEARCH_H
 
@@ -16,8 +16,9 @@ typedef struct gonio_i_expected_error_problem {
     size_t count;
 } gonio_i_expected_error_problem;
 
-/* chosen[count], in the order of reading; remaining[count + 1] (or NULL): the expected loss before
- * the first and after each of them. `count` is at most the number of rows allowed. Errors: _MEMORY,
+/* Fills in chosen[count], in the order of reading, and remaining[count + 1] (unless NULL), the
+ * expected loss before the first and after each reading. `count` is at most the number of allowed
+ * rows. Errors: _MEMORY,
  * _CANCELLED. */
 gonio_status gonio_i_expected_error_search(const gonio_i_expected_error_problem *problem,
                                            size_t *chosen, double *remaining);

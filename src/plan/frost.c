@@ -3,8 +3,8 @@
  *
  * A position of the grid is a column of D = S^-1 V' (first n components), of length 1 after
  * normalisation; the target is the leading n x n block of W'. Each step takes the column with the
- * largest sum of correlations with the residual of the target, and takes its direction out of the
- * residual. n steps give n rows. */
+ * largest sum of correlations with the residual of the target, and projects the residual onto the
+ * complement of the chosen columns. n steps give n rows. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -92,7 +92,7 @@ static candidate best_of_block(const pursuit *p, size_t first, double *products,
     return best;
 }
 
-/* The column that correlates most with the residual, the first of several. */
+/* The column with the largest correlation with the residual, the first of equals. */
 static gonio_status find_best(const pursuit *p, size_t *row)
 {
     candidate best = {-1.0, SIZE_MAX};
@@ -143,8 +143,8 @@ static void take_out(const double *q, size_t n, double *x)
     }
 }
 
-/* Takes the direction of a chosen column out of the residual. Orthogonalised twice, as once loses
- * digits where the column is nearly in the span of those before it. */
+/* Removes the component along a chosen column from the residual. The column is orthogonalised
+ * twice: once loses digits if the column is nearly in the span of the earlier ones. */
 static void take_column(const pursuit *p, size_t step, size_t row)
 {
     const size_t n = p->n;

@@ -1,10 +1,10 @@
 /* Linear combinations of the materials themselves (Matusik et al. 2003): rows of H, log BRDFs
  * without mean, with a low condition number.
  *
- * H = V S W' with all components, so H and V S have the same singular values on any rows, and the
- * swaps of condition.c are made on rows of V S. Of the millions of rows of the full grid 8,000
- * drawn at random take part: such rows have condition numbers near a million, where the search can
- * filter little, so that its time grows with them, while the reconstruction does not improve. */
+ * H = V S W' with all components. So H and V S have the same singular values on any rows, and the
+ * swaps of condition.c work on rows of V S. They choose among 8,000 random rows of the full grid.
+ * Such rows have condition numbers near a million, where the filter of the search rejects little.
+ * So more rows take more time, and the reconstruction does not improve. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,7 +22,7 @@ static size_t pool_size(const gonio_i_selection_problem *problem)
     return wanted < problem->rows ? wanted : problem->rows;
 }
 
-/* The rows that take part, ascending. */
+/* Draws the rows among which the search chooses, ascending. */
 static gonio_status draw_pool(const gonio_i_selection_problem *problem, size_t count, size_t *pool)
 {
     unsigned char *used = gonio_i_allocate(problem->context, problem->rows, 1);

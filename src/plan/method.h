@@ -19,9 +19,9 @@ typedef struct gonio_i_selection_problem {
     uint64_t seed;
     bool keep_history;
     const struct gonio_i_start *start; /* of the swaps: starting_rows.h */
-    const size_t *given; /* [count] or NULL: rows to start from instead; may be the result's */
-    bool part;           /* of the work on another problem, which reports the progress */
-    const gonio_basis_view *basis; /* whose rows V has; NULL for rows that come from elsewhere */
+    const size_t *given; /* [count] or NULL: rows to start from; may be the result's */
+    bool part;           /* this is a part of another problem, which reports the progress */
+    const gonio_basis_view *basis; /* V has its rows; NULL for the caller's rows */
 } gonio_i_selection_problem;
 
 static inline const double *gonio_i_row(const gonio_i_selection_problem *problem, size_t row)
@@ -53,13 +53,13 @@ typedef struct gonio_i_method {
     const char *name;
     const char *summary;
     const char *reconstruction; /* the method (reconstruct.h) that its plans are made for */
-    gonio_plan_basis basis;     /* what it is meant for */
+    gonio_plan_basis basis;     /* the kind of basis that it is made for */
     gonio_i_needs needs;
-    const char *where_it_lacks; /* the message where it does not have that */
+    const char *where_it_lacks; /* the message if a basis lacks what it needs */
     bool needs_full_rank;       /* n >= K */
-    bool few_components;        /* no more components than readings, where nobody says how many */
+    bool few_components;        /* by default, no more components than readings */
 
-    /* One of two: chooses rows, or makes a whole plan by what else it knows of a basis. */
+    /* One of these: chooses rows, or makes a whole plan from directions and noise. */
     gonio_i_selector *select;
     gonio_status (*plan)(gonio_context *context, const gonio_basis *basis,
                          const gonio_plan_options *options, gonio_plan **plan);
@@ -75,8 +75,7 @@ typedef struct gonio_i_method {
         .representation = GONIO_FULL, .channels = GONIO_SEPARATE, .mapping = GONIO_LOG_RELATIVE    \
     }
 
-/* The methods, in the order in which they are listed; of those that suit a basis the first is its
- * default. */
+/* The methods, in the order of lists. The first that suits a basis is its default. */
 #define GONIO_I_PLAN_METHODS(METHOD)                                                               \
     METHOD(expected_error)                                                                         \
     METHOD(condition) METHOD(random) METHOD(matusik) METHOD(nielsen) METHOD(frost)

@@ -57,8 +57,8 @@ void gonio_plan_options_default_of(gonio_plan_options *options, size_t size)
     gonio_i_give(&usual, sizeof usual, options, size);
 }
 
-/* The options that were asked for, with what is usual for those that were left open: no more
- * readings than there are candidates. */
+/* The given options, with defaults for those that are not set: no more readings than there are
+ * candidates. */
 static gonio_status take(gonio_context *context, const gonio_plan_options *asked,
                          gonio_plan_options *options)
 {
@@ -82,7 +82,7 @@ static const gonio_i_method *usual_method(bool mixtures)
     return methods[k];
 }
 
-/* The method asked for, or what suits the basis (NULL: rows from elsewhere). */
+/* The method asked for, or the default of the basis (NULL: the caller's rows). */
 static gonio_status choose_method(gonio_context *context, const gonio_basis_view *basis,
                                   const gonio_plan_options *options, const gonio_i_method **method)
 {
@@ -125,7 +125,7 @@ static gonio_status check_selection(gonio_context *context, const gonio_i_method
     return GONIO_OK;
 }
 
-/* Whether a method can work on these rows at all. basis: NULL for rows from elsewhere. */
+/* Checks that a method can work on these rows. basis: NULL for the caller's rows. */
 static gonio_status check_basis(gonio_context *context, const gonio_i_method *method,
                                 const gonio_basis_view *basis)
 {
@@ -232,7 +232,7 @@ static gonio_status choose_entries(gonio_context *context, const gonio_i_method 
     return status;
 }
 
-/* K: as asked, or as many as the basis has and the method takes. */
+/* K: the number asked for, or all of the basis that the method takes. */
 static size_t choose_components(const gonio_i_method *method, const gonio_basis_view *basis,
                                 const gonio_plan_options *options)
 {

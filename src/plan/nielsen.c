@@ -1,6 +1,7 @@
-/* Optimal, minimal sampling (Nielsen et al. 2015, section 5): rows of Q = V S with a low condition
- * number, of the first n columns for n rows. The first row is the longest; each next one the best
- * of 500 random rows; then rows move over the grid, by 3 bins and by 1, while that lowers it. */
+/* Optimal, minimal sampling (Nielsen et al. 2015, section 5): n rows of Q = V S with a low
+ * condition number of their first n columns. The first row is the longest. Each next one is the
+ * best of 500 random rows. Then rows move on the grid, by 3 bins and by 1, while this lowers the
+ * number. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,7 +17,7 @@ enum { CANDIDATES = 500, MOST_ROUNDS = 100, STEPS = 2, MOVES = 6 };
 
 static const int step_length[STEPS] = {3, 1}; /* cells */
 
-/* A move has to lower the condition number by more than this share: less is rounding. */
+/* A move has to lower the condition number by more than this fraction; less is rounding. */
 static const double least_gain = 1e-10;
 
 /* Scratch of one thread. */
@@ -41,8 +42,8 @@ typedef struct search {
 
 /* ---- the condition number ---- */
 
-/* Of the first `count` rows of a worker: largest/smallest eigenvalue of Q'Q, of QQ' where there are
- * fewer rows than columns. */
+/* The condition number of a worker's first `count` rows: the ratio of the largest and the smallest
+ * eigenvalue of Q'Q, or of QQ' if there are fewer rows than columns. */
 static gonio_status condition_of(const search *s, const worker *w, size_t count, double *condition)
 {
     gonio_context *context = s->problem->context;
@@ -148,7 +149,7 @@ static gonio_status find_longest(const gonio_i_selection_problem *problem, size_
     return ready ? GONIO_OK : GONIO_ERROR_MEMORY;
 }
 
-/* Draws rows that are not chosen yet; returns how many. */
+/* Draws rows that are not chosen yet; returns their number. */
 static size_t draw(search *s, gonio_i_random *random)
 {
     const size_t rows = s->problem->rows;
@@ -226,7 +227,8 @@ static bool neighbour(const gonio_basis_view *basis, size_t row, int move, int l
     return found != NULL;
 }
 
-/* Tries the moves of one row by one length and makes the best that lowers the condition number. */
+/* Tries all moves of one row by one length. Makes the best one if it lowers the condition number.
+ */
 static gonio_status move_row(search *s, size_t position, int length, bool *moved)
 {
     size_t candidates = 0;

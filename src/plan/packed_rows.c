@@ -9,13 +9,13 @@
 enum { WIDTH = GONIO_I_PANEL, COLUMNS = GONIO_I_COLUMNS, LANES = 16, HALVES = WIDTH / LANES };
 enum { BLOCK = 4 }; /* rows of T at a time */
 
-/* Half a panel's row of values as one value (an extension of gcc and clang), so that sums stay in
- * registers. Two halves, so that each broadcast value serves twice. */
+/* Half a panel's row of values as one vector (an extension of gcc and clang), so that sums stay in
+ * registers. There are two halves, so that each broadcast value is used twice. */
 typedef float lanes __attribute__((vector_size(LANES * sizeof(float))));
 typedef int32_t masks __attribute__((vector_size(LANES * sizeof(int32_t))));
 typedef unsigned char flags __attribute__((vector_size(LANES)));
 
-/* More memory than this is not spent on panels. */
+/* The limit of the memory for panels. */
 static const size_t most_kept = (size_t)512 << 20;
 
 static size_t round_up(size_t n, size_t multiple)
@@ -23,7 +23,7 @@ static size_t round_up(size_t n, size_t multiple)
     return (n + multiple - 1) / multiple * multiple;
 }
 
-/* Values in the panels of `rows` rows. */
+/* The number of values in the panels of `rows` rows. */
 static size_t size_of(const gonio_i_packed_rows *packed, size_t rows)
 {
     return rows * packed->components;
@@ -31,7 +31,7 @@ static size_t size_of(const gonio_i_packed_rows *packed, size_t rows)
 
 /* ---- layout ---- */
 
-/* The columns of a panel, from rows `stride` apart. */
+/* Fills in a panel from rows `stride` apart. */
 GONIO_I_VECTORISED static void transpose(const double *restrict rows, size_t stride, size_t count,
                                          size_t k, float *restrict panel)
 {
@@ -42,7 +42,7 @@ GONIO_I_VECTORISED static void transpose(const double *restrict rows, size_t str
     }
 }
 
-/* A panel from row `first` on, of which there may be fewer than fill it. */
+/* Fills in the panel from row `first` on. The last panel may have fewer rows. */
 static void lay_out(const gonio_i_packed_rows *packed, size_t first, float *panel)
 {
     const gonio_i_selection_problem *p = packed->problem;

@@ -1,12 +1,12 @@
 /* The candidate rows in single precision, laid out for the filter (swap_filter.h), and its inner
  * loops.
  *
- * Thirty-two rows make a panel, value[k][row]: all loops then run over rows, in vector registers,
- * with the other operand broadcast. Panels make chunks, which stay in the cache while they are
- * worked on. Rows are padded with zeros to whole panels, components to multiples of 4.
+ * A panel holds thirty-two rows, value[k][row]. So all loops run over rows, in vector registers,
+ * with the other operand broadcast. A chunk is several panels, and fits into the cache. Rows are
+ * padded with zeros to whole panels, components to multiples of 4.
  *
- * The panels of up to a million or so rows are kept; of more, they are laid out anew each time a
- * chunk is worked on, which costs little of the work and no memory. */
+ * The panels of up to about a million rows are kept. With more rows, the panels of a chunk are made
+ * each time they are needed. This takes little time and saves the memory. */
 #ifndef GONIO_PACKED_ROWS_H
 #define GONIO_PACKED_ROWS_H
 
@@ -33,8 +33,8 @@ void gonio_i_packed_rows_free(gonio_i_packed_rows *packed);
 
 size_t gonio_i_packed_rows_chunks(const gonio_i_packed_rows *packed);
 
-/* Room for the panels of a chunk, aligned for the loops below, or NULL if panels are kept or (then
- * *failed) memory ran out. */
+/* Scratch for the panels of a chunk, aligned for the loops below. NULL if panels are kept, or if
+ * out of memory (then *failed is set). */
 float *gonio_i_packed_rows_scratch(const gonio_i_packed_rows *packed, bool *failed);
 
 /* One chunk: its rows first .. first + count - 1 (padded) and their panels, laid out in the scratch

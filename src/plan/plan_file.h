@@ -1,4 +1,4 @@
-/* What files say of plans: the channels to read, and the plan itself in comments. */
+/* Plans in files: names of channels, and the comments that describe the plan. */
 #ifndef GONIO_PLAN_FILE_H
 #define GONIO_PLAN_FILE_H
 

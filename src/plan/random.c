@@ -1,4 +1,4 @@
-/* Random rows: the yardstick that every other method has to beat. */
+/* Random rows: the baseline that every other method has to beat. */
 #include "method.h"
 
 static gonio_status select_random(const gonio_i_selection_problem *problem,

@@ -6,7 +6,7 @@
 
 #include "../linalg/linalg.h"
 
-/* Values that are kept of all rows: 32 MB. */
+/* The most values that are kept: 32 MB. */
 enum { MOST_KEPT = 1 << 22 };
 
 /* Components of z that are summed together: as many as registers hold. */
@@ -79,7 +79,7 @@ void gonio_i_rotated_rows_set(gonio_i_rotated_rows *t, const double *q)
 
 /* ---- products ---- */
 
-/* ROTATED components of z = Q'u, from where z and q point; rows of q are `stride` apart. */
+/* ROTATED components of z = Q'u, at z and q; rows of q are `stride` apart. */
 GONIO_I_VECTORISED static void rotate_many(size_t k, size_t stride, const double *q,
                                            const double *u, double *z)
 {
@@ -92,7 +92,7 @@ GONIO_I_VECTORISED static void rotate_many(size_t k, size_t stride, const double
     memcpy(z, sum, sizeof sum);
 }
 
-/* The same of two rows, which share what is fetched of q. */
+/* The same for two rows, so that q is loaded once. */
 GONIO_I_VECTORISED static void rotate_two(size_t k, size_t stride, const double *q, const double *u,
                                           const double *v, double *y, double *z)
 {
@@ -120,8 +120,8 @@ GONIO_I_VECTORISED static void rotate_few(size_t k, size_t stride, const double 
     }
 }
 
-/* The components of z from `from` on (0 or ROTATED); the last ones together with some of those
- * before them, which come out the same again. */
+/* The components of z from `from` on (0 or ROTATED). The last block overlaps the one before; the
+ * common components are computed twice, with the same result. */
 static void rotate(const gonio_i_rotated_rows *t, size_t row, size_t from, double *z)
 {
     const size_t k = t->problem->components;

@@ -1,6 +1,6 @@
-/* Rows in the eigenbasis of G, z = Q'u, for the condition-number search: made when asked for and
- * kept as long as G is the same. Most candidates are refused by a part of z, the lowest components
- * and the last, which is made first, of two rows together. */
+/* Rows in the eigenbasis of G, z = Q'u, for the condition-number search. They are computed on
+ * demand and kept until G changes. The lowest components and the last of z reject most candidates.
+ * So this part is computed first, for two rows together. */
 #ifndef GONIO_ROTATED_ROWS_H
 #define GONIO_ROTATED_ROWS_H
 
@@ -18,7 +18,7 @@ typedef struct gonio_i_rotated_rows {
     uint64_t bases;        /* so far */
 } gonio_i_rotated_rows;
 
-/* A row of which the first `part` values of z and the last are there: all if part = K. */
+/* A row with the first `part` values of z and the last one; all values if part = K. */
 typedef struct gonio_i_rotated_rows_candidate {
     size_t row;
     size_t part;
@@ -30,19 +30,19 @@ bool gonio_i_rotated_rows_allocate(const gonio_i_selection_problem *problem,
                                    gonio_i_rotated_rows *rotated);
 void gonio_i_rotated_rows_free(gonio_i_rotated_rows *rotated);
 
-/* Scratch for what is not kept, of one thread; for the caller to free. NULL as above. */
+/* Scratch of one thread for rows that are not kept; the caller frees it. NULL as above. */
 double *gonio_i_rotated_rows_scratch(const gonio_i_selection_problem *problem);
 
 /* A new G: its eigenvectors as rows of q[K][K], by ascending eigenvalues. */
 void gonio_i_rotated_rows_set(gonio_i_rotated_rows *rotated, const double *q);
 
-/* A part of each of up to GONIO_I_ROTATED_TOGETHER rows. Several threads may do this at a time, for
+/* Computes a part of each of up to GONIO_I_ROTATED_TOGETHER rows. Several threads may call this for
  * different rows. */
 void gonio_i_rotated_rows_begin(const gonio_i_rotated_rows *rotated, const size_t *rows,
                                 size_t count, double *scratch,
                                 gonio_i_rotated_rows_candidate *candidates);
 
-/* All of a row, in `z` if it is not kept: [K]. */
+/* Computes all values of a row, in z[K] if the row is not kept. */
 const double *gonio_i_rotated_row(const gonio_i_rotated_rows *rotated, size_t row, double *z);
 
 #endif

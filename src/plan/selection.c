@@ -1,4 +1,4 @@
-/* What the methods that choose rows share: histories, condition numbers, random choices. */
+/* Functions that methods that choose rows share: histories, condition numbers, random choices. */
 #include "method.h"
 
 #include <float.h>

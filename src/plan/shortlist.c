@@ -6,10 +6,11 @@
 
 enum { MOST_WINNERS = 200, MOST_ROUNDS = 50 }; /* winners at each position */
 
-/* A round that lowers kappa by less than this share is the last. */
+/* A round that lowers kappa by less than this fraction is the last. */
 static const double least_gain = 1e-4;
 
-/* The chosen rows, and up to MOST_WINNERS winners for each position, each once, into rows[]. */
+/* Lists the chosen rows, and for each position up to MOST_WINNERS rows that lower kappa, without
+ * repeats, in rows[]. */
 static size_t gather_rows(gonio_i_swap_search *s, unsigned char *used, size_t *rows)
 {
     const gonio_i_selection_problem *p = s->problem;
@@ -31,8 +32,8 @@ static size_t gather_rows(gonio_i_swap_search *s, unsigned char *used, size_t *r
     return count;
 }
 
-/* Swaps within the problem `part`, added to the history of the whole; but for the last, whose kappa
- * is computed anew from the rows of the whole. */
+/* Adds the swaps in the problem `part` to the history of the whole problem, except the last. Its
+ * kappa is recomputed from the rows of the whole problem. */
 static gonio_status search_part(gonio_i_swap_search *s, gonio_i_selector *select,
                                 const gonio_i_selection_problem *part, size_t *chosen, int restart,
                                 int *swaps, gonio_i_selection *selection)

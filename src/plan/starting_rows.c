@@ -15,8 +15,8 @@ static gonio_status random_start(const gonio_i_selection_problem *p, int restart
 
 /* ---- QR with pivoting, over and over ---- */
 
-/* K rows, each the one farthest from the span of those before it; `rest` holds the rows and is used
- * up. Rows already taken are zero there. */
+/* Chooses K rows, each the farthest from the span of the earlier ones. `rest` holds the rows and is
+ * overwritten; rows that are taken are zero in it. */
 static gonio_status take_spanning_rows(const gonio_i_selection_problem *p, double *rest,
                                        size_t count, size_t *chosen)
 {
@@ -57,12 +57,13 @@ static gonio_status qr_start(const gonio_i_selection_problem *p, int restart, si
 
 /* ---- greedy volume ---- */
 
-/* The greedy choice's state: score_u = u' G^-1 u, by which choosing u multiplies det G (less 1). */
+/* The state of the greedy choice. Choosing u multiplies det G by 1 + score_u, score_u = u' G^-1 u.
+ */
 typedef struct volume {
     const gonio_i_selection_problem *problem;
     double *inverse; /* G^-1, [K][K] */
     double *score;   /* [rows]; -1 for rows taken */
-    double *image;   /* [K]: G^-1 u of the row that comes in */
+    double *image;   /* [K]: G^-1 u of the new row */
 } volume;
 
 static double dot(const double *a, const double *b, size_t n)

@@ -15,7 +15,7 @@ typedef struct gonio_i_start {
 /* By name; NULL if there is none. */
 const gonio_i_start *gonio_i_find_start(const char *name);
 
-/* One whose rows span K dimensions wherever any do. */
+/* The start whose rows span K dimensions if any rows do. */
 const gonio_i_start *gonio_i_spanning_start(void);
 
 #endif

@@ -58,13 +58,13 @@ void gonio_i_swap_filter_free(gonio_i_swap_filter *f)
     free(f->batch_is_set);
 }
 
-/* Of a product u'c for |u| = |c| = 1: that of the sum, and of rounding u and c. */
+/* The error bound of a product u'c with |u| = |c| = 1: of the sum, and of rounding u and c. */
 static double product_error(const gonio_i_swap_filter *f)
 {
     return ((double)f->packed->components + 4.0) * unit * 1.001;
 }
 
-/* T = L^-1 of G - mu = L L', and what the gains need of it. */
+/* T = L^-1 of G - mu = L L', and its copy for the gains. */
 void gonio_i_swap_filter_set(gonio_i_swap_filter *f, const double *gram, double mu,
                              double condition)
 {
@@ -111,7 +111,8 @@ GONIO_I_VECTORISED static double apply(size_t k, const double *restrict root, co
     return squares;
 }
 
-/* Bv of the j-th position of the batch as a column in single precision, with what goes with it. */
+/* Bv of the j-th position of the batch as a column in single precision, with its loss and margin.
+ */
 static void fill_column(gonio_i_swap_filter *f, const double *v, size_t j)
 {
     const size_t k = f->problem->components;
@@ -143,7 +144,7 @@ void gonio_i_swap_filter_set_position(gonio_i_swap_filter *f, const double *x, s
     const size_t columns = f->next == 1 ? 1 : GONIO_I_COLUMNS;
     f->first = position;
     f->batch = rest < f->next ? rest : f->next;
-    /* Where chunks are many, fetching them costs more than tests that a swap makes useless. */
+    /* With many chunks, loading them takes longer than tests that a swap makes useless. */
     const bool many = gonio_i_packed_rows_chunks(f->packed) >= 64;
     f->next = many && f->next > 1 ? GONIO_I_BATCH : GONIO_I_COLUMNS;
     memset(f->columns, 0, f->packed->components * GONIO_I_BATCH * sizeof *f->columns);
@@ -170,7 +171,7 @@ void gonio_i_swap_filter_prepare(gonio_i_swap_filter *f, size_t index, int threa
     set_gain(f, &chunk, index);
 }
 
-/* Tests a chunk's rows at the positions of the batch, if that is still to be done. */
+/* Tests a chunk's rows at the positions of the batch, unless that is done. */
 static void look_at(gonio_i_swap_filter *f, size_t index, int thread)
 {
     if (f->blind || f->batch_is_set[index]) {

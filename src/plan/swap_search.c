@@ -13,7 +13,7 @@
 #include "../linalg/linalg.h"
 #include "exchange_eigenvalues.h"
 
-/* A swap has to lower kappa by more than this share: less is rounding. */
+/* A swap has to lower kappa by more than this fraction; less is rounding. */
 static const double least_gain = 1e-10;
 
 static double seconds(clockid_t clock)
@@ -29,9 +29,9 @@ void gonio_i_swap_search_watch(gonio_i_swap_search *s)
     s->worked = -seconds(CLOCK_THREAD_CPUTIME_ID);
 }
 
-/* Ends a time of waiting for the other threads. Steps may be so short that on a busy machine, where
- * a thread may be without a processor just when it is waited for, threads only cost time: where a
- * quarter of it was lost, the search goes on with one. (The plan is the same on any number.) */
+/* Ends a time of waiting for the other threads. Steps are short. On a busy machine a thread may be
+ * without a processor while the others wait for it. If a quarter of the time was lost by waiting,
+ * the search continues with one thread. (The plan is the same on any number of threads.) */
 static void stop_waiting(gonio_i_swap_search *s, double since)
 {
     static const double patience = 0.02;
@@ -117,7 +117,7 @@ static gonio_i_exchange exchange_of(const gonio_i_swap_search *s, size_t positio
                               k};
 }
 
-/* Whether a swap lowers kappa, exactly. Most rows are refused by a part of them. */
+/* Whether a swap lowers kappa, decided exactly. A part of the row's values rejects most rows. */
 static bool wins(const gonio_i_swap_search *s, size_t position,
                  const gonio_i_rotated_rows_candidate *c)
 {
@@ -131,7 +131,7 @@ static bool wins(const gonio_i_swap_search *s, size_t position,
     return gonio_i_exchange_beats(&exchange, limit);
 }
 
-/* Rows less those that are chosen, in place. */
+/* Removes the chosen rows from a list, in place. */
 static size_t leave_out_taken(const gonio_i_swap_search *s, size_t *rows, size_t count)
 {
     size_t left = 0;
@@ -164,8 +164,8 @@ static size_t first_winner_among(gonio_i_swap_search *s, size_t position, size_t
     return s->problem->rows;
 }
 
-/* The same for one step of the way around: chunks in cyclic order, the one with `from` in two
- * parts. */
+/* The same for one step of the cycle: chunks in cyclic order, where the chunk with `from` is two
+ * steps. */
 static size_t first_winner_at(gonio_i_swap_search *s, size_t position, size_t from, size_t step,
                               int thread)
 {
@@ -177,8 +177,8 @@ static size_t first_winner_at(gonio_i_swap_search *s, size_t position, size_t fr
                               thread);
 }
 
-/* Some steps of the way around, by all threads. (One thread is no parallel region of one, which
- * inside another region costs more than the step.) */
+/* Some steps of the cycle, by all threads. (One thread uses no parallel region, because inside
+ * another region it takes longer than the step.) */
 static void take_steps(gonio_i_swap_search *s, size_t position, size_t from, size_t first,
                        size_t count)
 {
@@ -246,7 +246,7 @@ static void put(gonio_i_swap_search *s, size_t position, size_t row)
     s->chosen[position] = row;
 }
 
-/* Computes the gains that will be needed first, as long as G is being decomposed. */
+/* Computes the gains that are needed first, while G is decomposed. */
 static void prepare_ahead(gonio_i_swap_search *s, size_t first, size_t apart,
                           const _Atomic bool *decomposed)
 {
@@ -264,8 +264,8 @@ static void set_filter_after(gonio_i_swap_search *s, const gonio_i_exchange *swa
                gonio_i_exchange_eigenvalue(swap, swap->n - 1));
 }
 
-/* Sets the filter and decomposes G after a swap. Where there are several threads, one decomposes;
- * the eigenvalues that the filter needs are found without. */
+/* Sets the filter and decomposes G after a swap. With several threads one decomposes. The
+ * eigenvalues for the filter are found without the decomposition. */
 static gonio_status decompose_and_prepare(gonio_i_swap_search *s, const gonio_i_exchange *swap)
 {
     if (s->threads == 1) {
@@ -299,7 +299,8 @@ static gonio_status decompose_and_prepare(gonio_i_swap_search *s, const gonio_i_
     return status;
 }
 
-/* Makes a swap. Next to singular, rounding may promise a gain that is none: that one is undone. */
+/* Makes a swap. Near singularity, rounding may show a gain that does not exist. Then the swap is
+ * undone. */
 static gonio_status make_swap(gonio_i_swap_search *s, size_t position, size_t row, bool *gained)
 {
     const size_t k = s->problem->components;

@@ -26,7 +26,7 @@ static gonio_reconstruction *allocate(gonio_context *context, const gonio_basis_
     return made;
 }
 
-/* Equations that are being gathered. */
+/* Equations while they are gathered. */
 typedef struct gathered {
     const char *origin; /* the file of the readings and ": ", for messages; "" if there is none */
     size_t count;
@@ -116,7 +116,7 @@ static gonio_status solve_column(const solver *s, const gathered *e, size_t colu
     return GONIO_OK;
 }
 
-/* As many components as the method takes where nobody says how many. */
+/* The default number of components of the method. */
 static size_t default_components(const solver *s, size_t readings, size_t available)
 {
     return s->method->wants.full_rank || available < readings ? available : readings;
@@ -142,9 +142,9 @@ typedef struct gathering {
     solver solver;
 } gathering;
 
-/* Whether a reading's channel makes an equation, given what was planned. A direction that is listed
- * once for each channel was read once: with all channels, a line that says again what the first
- * line of the same directions says does not count again. */
+/* Whether a reading's channel becomes an equation, given the planned channel. A direction that is
+ * listed once for each channel was read once. So with all channels, a line that repeats the first
+ * line of the same directions does not count again. */
 static bool is_used(const gathering *t, size_t index, int channel)
 {
     const gonio_readings *r = t->readings;
@@ -215,7 +215,7 @@ static gonio_status solve_readings(const gathering *t, gonio_reconstruction *r)
     return status;
 }
 
-/* K: as asked, or as planned, or all. */
+/* K: the number asked for, that of the plan, or all. */
 static gonio_status choose_components(const gathering *t, size_t available, size_t *components)
 {
     const size_t planned = t->readings->components;

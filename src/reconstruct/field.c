@@ -45,7 +45,7 @@ static double scale_of(const gonio_basis *basis, const gonio_reconstruction *r, 
     return gonio_log_scale(has_colours(basis, r) ? (int)channel : GONIO_CHANNELS);
 }
 
-/* Where a channel's rows begin in a field or a deviation. */
+/* The first row of a channel in a field or a deviation. */
 static const double *rows_of(const gonio_basis *basis, const double *field, size_t channel)
 {
     return field + (is_joint(basis) ? 0 : channel * gonio_basis_describe(basis)->rows);
@@ -106,7 +106,8 @@ static void release(void *self)
     free(f);
 }
 
-/* One row of bins: between the middles of sectors, or a cell for all or for each. */
+/* One row of bins: interpolated between the middles of sectors, or one cell for all bins or for
+ * each. */
 static void fill_row(const grid_field *f, int theta_h, int theta_d, size_t channel, int first,
                      double *row)
 {
@@ -200,8 +201,9 @@ static void mix_colours(const gonio_reconstruction *r, const double *weight, gri
     }
 }
 
-/* Deviations of the colours' g, errors of all wavelengths taken as going together, from those of
- * the channels: d rho = (rho + s) d g. weight[channel][columns]; NULL for a single channel. */
+/* Deviations of the colours' g from those of the channels: d rho = (rho + s) d g. The errors of all
+ * wavelengths are taken as fully correlated. weight[channel][columns]; NULL for a single channel.
+ */
 static void mix_deviations(const gonio_reconstruction *r, const double *weight, grid_field *f)
 {
     const size_t count = r->columns;

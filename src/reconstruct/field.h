@@ -4,7 +4,7 @@
 
 #include <gonio/reconstruct.h>
 
-/* Its exponential is finite. */
+/* The largest g: its exponential is finite. */
 #define GONIO_I_LARGEST_LOG 600.0
 
 /* As gonio_reconstruction_material, which calls it for a reconstruction with a field. */
@@ -12,7 +12,7 @@ gonio_status gonio_i_field_material(gonio_context *context, const gonio_basis *b
                                     const gonio_reconstruction *reconstruction, const char *name,
                                     gonio_material **material);
 
-/* Value of a field (or of a deviation) in a column at any directions. */
+/* The value of a field (or of a deviation) in a column at any directions. */
 double gonio_i_field_at(const gonio_basis *basis, const double *field, int channel,
                         gonio_half_difference at);
 

@@ -1,5 +1,5 @@
-/* Reconstructing a known material without files: what its readings at rows of a basis would be, and
- * what becomes of them. */
+/* Reconstruction of a known material without files: its readings at rows of a basis, and the
+ * reconstruction from them. */
 #include <gonio/reconstruct.h>
 
 #include <stdlib.h>
@@ -51,8 +51,7 @@ static gonio_status read_slab(reader *r, int theta_h)
     return status;
 }
 
-/* The value of a cell of the slab that was read, the mean of its bins with data; false if there are
- * none. */
+/* The value of a cell of the slab: the mean of its bins with data. False if there are none. */
 static bool value_at(const reader *r, int32_t cell, int channel, double *value)
 {
     const gonio_i_bin_run bins = gonio_i_cell_bins(r->basis->representation, cell);
@@ -141,8 +140,8 @@ static int compare_rows(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* The rows of all channels of the cells of `rows` (joint), each once, into all[3 x count]; how
- * many. */
+/* Lists the rows of all channels of the cells of `rows` (joint), without repeats, in all[3 x
+ * count]. Returns their number. */
 static size_t all_channels(const size_t *rows, size_t count, size_t *all)
 {
     size_t cells = 0;

@@ -1,4 +1,4 @@
-/* Reconstructions as materials: values made slab by slab when asked for. */
+/* Reconstructions as materials: values are computed slab by slab on demand. */
 #include <gonio/reconstruct.h>
 
 #include <stdlib.h>
@@ -27,7 +27,7 @@ static double log_value(const reconstructed *r, int32_t cell, size_t channel)
     return r->view->mean[row] + gonio_i_basis_dot(r->basis, row, c, r->components);
 }
 
-/* Between 0 and a number whose exponential is finite; 0 for NaN. */
+/* g clamped between 0 and a number whose exponential is finite; 0 for NaN. */
 GONIO_I_VECTORISED static void clamp(size_t n, double *g)
 {
     const double largest = 600.0;
@@ -47,7 +47,7 @@ static void exponentiate(size_t n, double *g, double scale)
     }
 }
 
-/* Of a channel; 1 where each bin has a scale of its own, which comes later. */
+/* s of a channel; 1 if each bin has a scale of its own, which is applied later. */
 static double scale_of(const reconstructed *r, int channel)
 {
     return r->view->mapping == GONIO_LOG ? gonio_log_scale(channel) : 1.0;
@@ -66,7 +66,7 @@ static double *row_of(double *rho, int channel, int theta_d)
     return rho + (size_t)channel * GONIO_SLAB_BINS + (size_t)theta_d * GONIO_PHI_D_BINS;
 }
 
-/* One value for all valid bins of a cell. */
+/* Sets all valid bins of each cell to the cell's value. */
 static void fill_cells(const reconstructed *r, int theta_h, const int *first, double *rho)
 {
     for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
@@ -84,7 +84,7 @@ static void fill_cells(const reconstructed *r, int theta_h, const int *first, do
     }
 }
 
-/* A value of its own for each valid bin. */
+/* Sets each valid bin to its own value. */
 static void fill_bins(const reconstructed *r, int theta_h, const int *first, double *rho)
 {
     for (int theta_d = 0; theta_d < GONIO_THETA_D_BINS; theta_d++) {
@@ -101,7 +101,7 @@ static void fill_bins(const reconstructed *r, int theta_h, const int *first, dou
     }
 }
 
-/* From e^g - 1 to rho where each bin has a scale of its own. */
+/* Converts e^g - 1 to rho if each bin has a scale of its own. */
 static void scale_bins(int theta_h, const int *first, double *rho)
 {
     double scale[GONIO_SLAB_BINS];

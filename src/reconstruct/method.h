@@ -1,5 +1,4 @@
-/* A reconstruction method is a row of a table: what it wants, and the functions by which it
- * differs.
+/* A reconstruction method is a row of a table: its requirements and its functions.
  *
  * To add one that finds coefficients from equations, copy least_squares.c; to add one that finds a
  * field from directions and values, copy posterior_method.c. Then add a line to the table in
@@ -13,7 +12,7 @@
 
 typedef struct gonio_i_reconstruct_method gonio_i_reconstruct_method;
 
-/* What is asked for. The options are never NULL, and the basis is as the method wants it. */
+/* A task. The options are never NULL. The basis meets the method's requirements. */
 typedef struct gonio_i_reconstruct_task {
     gonio_context *context;
     const gonio_i_reconstruct_method *method;
@@ -29,7 +28,7 @@ typedef struct gonio_i_equations {
     const double *x;        /* [count][components]: rows of V */
     const double *b;        /* [count]: readings in the basis's space less m */
     const double *singular; /* [components]: S */
-    double eta;             /* weight of what the method adds to the squares */
+    double eta;             /* weight of the method's penalty */
 } gonio_i_equations;
 
 typedef struct gonio_i_solution {
@@ -38,14 +37,14 @@ typedef struct gonio_i_solution {
     double condition_number;
 } gonio_i_solution;
 
-/* What a method wants; false: it takes any. */
+/* The requirements of a method; false: none. */
 typedef struct gonio_i_reconstruct_wants {
     bool log_mapping;       /* a basis of the log mapping */
     bool all_components;    /* of the basis */
     bool noise;             /* valid noise, floor and saturation in the options */
     bool colours;           /* readings of R, G, B */
     bool full_rank;         /* as many independent readings as coefficients */
-    bool basis_of_mixtures; /* is the usual method for such a basis */
+    bool basis_of_mixtures; /* a basis with mixtures; the method is the default for it */
 } gonio_i_reconstruct_wants;
 
 struct gonio_i_reconstruct_method {
@@ -75,7 +74,7 @@ GONIO_I_RECONSTRUCT_METHODS(GONIO_I_DECLARE_METHOD)
 gonio_status gonio_i_reconstruct_check_rows(gonio_context *context, const gonio_basis *basis,
                                             const size_t *rows, size_t count);
 
-/* Whether basis and options are what the method wants, and so are readings, unless they are NULL.
+/* Checks that basis and options meet the requirements of the method, and the readings unless NULL.
  * Errors: _ARGUMENT; _MISMATCH (spectra and a joint basis). */
 gonio_status gonio_i_reconstruct_check(gonio_context *context,
                                        const gonio_i_reconstruct_method *method,

@@ -1,8 +1,8 @@
-/* What to read next: see gonio_plan_next.
+/* The next readings: see gonio_plan_next.
  *
- * A Gaussian's posterior covariance does not depend on what was read, so that a plan made before
- * cannot be beaten by one made on the way. The mixture's does: what was read tells which of the
- * database's columns the material is like, and the covariance left is theirs. */
+ * The posterior covariance of a Gaussian does not depend on the values that were read. So adaptive
+ * readings would not be better than a plan. The posterior covariance of the mixture does depend on
+ * them: the readings show which of the database's columns the material resembles. */
 #include <stdlib.h>
 
 #include "../core/options.h"

@@ -1,4 +1,4 @@
-/* What the method posterior and choosing what to read next (next.c) have in common. */
+/* Functions shared by the method posterior and the choice of next readings (next.c). */
 #ifndef GONIO_POSTERIOR_METHOD_H
 #define GONIO_POSTERIOR_METHOD_H
 

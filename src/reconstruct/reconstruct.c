@@ -1,4 +1,4 @@
-/* Reconstruction: the table of methods, and which one does it. */
+/* Reconstruction: the table of methods, and the choice of the method. */
 #include <gonio/reconstruct.h>
 
 #include <inttypes.h>
@@ -52,7 +52,7 @@ bool gonio_reconstruct_method_suits_mixtures(const char *name)
     return method != NULL && method->wants.basis_of_mixtures;
 }
 
-/* The one for a basis that nobody planned with. */
+/* The default method for a basis, without a plan. */
 static const gonio_i_reconstruct_method *usual_method(const gonio_basis_view *basis)
 {
     for (int k = 0; k < METHODS; k++) {
@@ -153,7 +153,7 @@ gonio_status gonio_i_reconstruct_check_rows(gonio_context *context, const gonio_
 
 /* ---- a task ---- */
 
-/* The method asked for, or that of the plan (its method's name, or NULL), or the usual one. */
+/* The method asked for, that of the plan (its name, or NULL), or the default. */
 static gonio_status begin(gonio_context *context, const gonio_basis *basis,
                           const gonio_reconstruct_options *options, const char *plan,
                           gonio_i_reconstruct_task *task)

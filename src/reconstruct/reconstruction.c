@@ -1,4 +1,4 @@
-/* What a reconstruction holds. */
+/* The view of a reconstruction. */
 #include <gonio/reconstruct.h>
 
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 /* Ridge regression (Nielsen et al. 2015, eq. (10)): c = argmin |Q c - b|^2 + eta |c|^2 with
  * Q = X S, the rows of V scaled by the singular values; S c are the coefficients of V.
  *
- * It is the least-squares solution of Q c = b stacked on sqrt(eta) c = 0, which always has full
- * rank; so the same QR solves it, and the normal equations need not be formed. */
+ * This is the least-squares solution of Q c = b stacked on sqrt(eta) c = 0, which always has full
+ * rank. So the same QR solves it, without the normal equations. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -14,8 +14,7 @@ typedef struct batch {
     gonio_status status; /* of the first that failed */
 } batch;
 
-/* In order, so that of several that cannot be solved the first is told. Returns how many come
- * before it. */
+/* Solves in order, so that the first failure is reported. Returns the number before it. */
 static size_t solve(batch *all, const gonio_readings *const *readings, size_t count,
                     const gonio_reconstruct_options *options)
 {
@@ -59,8 +58,8 @@ static void finish_table(batch *all, gonio_context *shared, size_t k, gonio_stat
     }
 }
 
-/* Several at a time, for one waits for the disk while another computes; each is put in place after
- * those before it. */
+/* Writes several tables at a time: one waits for the disk while another computes. They are put in
+ * place in order. */
 static void write_tables(batch *all, size_t count)
 {
     const size_t threads = (size_t)gonio_context_threads(all->context);
