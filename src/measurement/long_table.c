@@ -83,26 +83,48 @@ static size_t channel_of(const double *wavelength, size_t count, double wanted)
 
 typedef struct place {
     const gonio_i_long_row *row;
-    size_t first; /* the place of the first row of its directions */
+    size_t repeat; /* how many rows before have its directions, wavelength and state */
+    size_t first;  /* the place of the first row of its directions and repeat */
 } place;
+
+static int compare_rows(const gonio_i_long_row *a, const gonio_i_long_row *b)
+{
+    return (a > b) - (a < b);
+}
 
 static int compare_degrees(const gonio_i_long_row *a, const gonio_i_long_row *b)
 {
-    for (int k = 0; k < 4; k++) {
-        if (a->degrees[k] != b->degrees[k]) {
-            return a->degrees[k] < b->degrees[k] ? -1 : 1;
-        }
+    int order = 0;
+    for (int k = 0; k < 4 && order == 0; k++) {
+        order = compare_numbers(&a->degrees[k], &b->degrees[k]);
     }
-    return 0;
+    return order;
 }
 
-/* By directions, then in the order of the table. */
+static int compare_keys(const gonio_i_long_row *a, const gonio_i_long_row *b)
+{
+    int order = compare_degrees(a, b);
+    order = order != 0 ? order : compare_numbers(&a->wavelength, &b->wavelength);
+    return order != 0 ? order : compare_numbers(&a->state, &b->state);
+}
+
+/* By directions, wavelengths and states, then in the order of the table. */
+static int compare_repeats(const void *a, const void *b)
+{
+    const place *x = a;
+    const place *y = b;
+    const int order = compare_keys(x->row, y->row);
+    return order != 0 ? order : compare_rows(x->row, y->row);
+}
+
+/* By directions and repeats, then in the order of the table. */
 static int compare_directions(const void *a, const void *b)
 {
-    const gonio_i_long_row *x = ((const place *)a)->row;
-    const gonio_i_long_row *y = ((const place *)b)->row;
-    const int order = compare_degrees(x, y);
-    return order != 0 ? order : (x > y) - (x < y);
+    const place *x = a;
+    const place *y = b;
+    int order = compare_degrees(x->row, y->row);
+    order = order != 0 ? order : (x->repeat > y->repeat) - (x->repeat < y->repeat);
+    return order != 0 ? order : compare_rows(x->row, y->row);
 }
 
 /* By the first row of the directions, then in the order of the table. */
@@ -111,18 +133,29 @@ static int compare_first(const void *a, const void *b)
     const place *x = a;
     const place *y = b;
     const int order = (x->first > y->first) - (x->first < y->first);
-    return order != 0 ? order : (x->row > y->row) - (x->row < y->row);
+    return order != 0 ? order : compare_rows(x->row, y->row);
 }
 
-/* The rows with equal directions beside each other. */
+static void count_repeats(const gonio_i_long_table *table, place *places)
+{
+    qsort(places, table->count, sizeof *places, compare_repeats);
+    for (size_t k = 1; k < table->count; k++) {
+        const bool same = compare_keys(places[k - 1].row, places[k].row) == 0;
+        places[k].repeat = same ? places[k - 1].repeat + 1 : 0;
+    }
+}
+
+/* The rows of one reading beside each other. */
 static void group(const gonio_i_long_table *table, place *places)
 {
     for (size_t k = 0; k < table->count; k++) {
-        places[k].row = &table->row[k];
+        places[k] = (place){.row = &table->row[k]};
     }
+    count_repeats(table, places);
     qsort(places, table->count, sizeof *places, compare_directions);
     for (size_t k = 0; k < table->count; k++) {
-        const bool same = k > 0 && compare_degrees(places[k - 1].row, places[k].row) == 0;
+        const bool same = k > 0 && places[k - 1].repeat == places[k].repeat &&
+                          compare_degrees(places[k - 1].row, places[k].row) == 0;
         places[k].first = same ? places[k - 1].first : (size_t)(places[k].row - table->row);
     }
     qsort(places, table->count, sizeof *places, compare_first);

@@ -1,6 +1,8 @@
 /* Tables with a row for each direction and wavelength (and polarisation), to rows of all
- * wavelengths: equal directions are found, in the order in which they first appear. Several values
- * of a direction and wavelength become their mean: that of s and p is unpolarised. */
+ * wavelengths: equal directions are found, in the order in which they first appear. Values of a
+ * direction and wavelength in several states become their mean: that of s and p is unpolarised.
+ * Values in the same state are repeats: the second ones of a direction are a row of their own, and
+ * so on. */
 #ifndef GONIO_LONG_TABLE_H
 #define GONIO_LONG_TABLE_H
 
@@ -11,6 +13,7 @@ typedef struct gonio_i_long_row {
     double wavelength; /* in the convention's unit; or the number of a channel, from 0 */
     double value;
     double deviation; /* NaN: not known */
+    double state;     /* a number for each state of polarisation; no NaN */
     size_t line;
 } gonio_i_long_row;
 

@@ -74,6 +74,104 @@ static void test_analysed_light_adds_up(void **state)
     gonio_readings_free(&readings);
 }
 
+/* The same of light whose states are Stokes vectors. */
+static void test_stokes_vectors(void **state)
+{
+    (void)state;
+    gonio_readings *readings =
+        read_good("{\"data\":{" ANGLES(
+                      "0.5,0.5,0.5,0.5") ",\"polarization_i\":{\"values\":[[1,1,0,0],[1,1,0,0],[1,"
+                                         "-1,0,0],[1,-1,0,0]]},\"polarization_r\":{\"values\":[[1,"
+                                         "1,0,0],[1,-1,0,0],[1,1,0,0],[1,-1,0,0]]},"
+                                         "\"BRDF\":{\"values\":[0.2,0.1,0.3,0.4]}}}",
+                  "BRDF JSON");
+    assert_int_equal(gonio_readings_describe(readings)->count, 1);
+    assert_near(gonio_readings_value(readings, 0, 0), 0.5); /* (0.2 + 0.1 + 0.3 + 0.4) / 2 */
+    gonio_readings_free(&readings);
+}
+
+static gonio_readings *read_text(const char *text, const gonio_readings_options *options)
+{
+    char *folder = support_folder();
+    gonio_readings *readings = NULL;
+    assert_int_equal(made_readings(NULL, folder, "r.json", text, options, &readings), GONIO_OK);
+    support_remove(folder);
+    return readings;
+}
+
+/* One state alone is said to be no unpolarised light. */
+static void test_a_single_polarisation(void **state)
+{
+    (void)state;
+    gonio_readings *readings = read_text(
+        "{\"data\":{" ANGLES("0.5,0.6,0.7,0.8") ",\"polarization_i\":{\"values\":[\"p\",\"p\","
+                                                "\"p\",\"p\"]},\"BRDF\":[1,2,3,4]}}",
+        NULL);
+    const gonio_readings_view *view = gonio_readings_describe(readings);
+    assert_int_equal(view->notes, 2);
+    assert_string_equal(view->note[0],
+                        "the light on the sample is polarised, p only; it is taken as unpolarised");
+    gonio_readings_free(&readings);
+}
+
+/* Per cent of each value, k in words: 10 % of 0.2 are 0.01 of a standard deviation for k = 2. */
+static void test_relative_uncertainties(void **state)
+{
+    (void)state;
+    gonio_readings *readings =
+        read_text("{\"data\":{" ANGLES(
+                      "0.5,0.6,0.7,0.8") ",\"uBRDF\":{\"unit\":\"%\",\"values\":[10,10,20,null],"
+                                         "\"comments\":\"thank you; expanded, k = 2\"},"
+                                         "\"BRDF\":{\"unit\":\"1/sr\",\"values\":[0.2,0.4,0.6,0.8],"
+                                         "\"uncertainty\":{\"unit\":\"1/sr\",\"value\":7}}}}",
+                  NULL);
+    const gonio_readings_view *view = gonio_readings_describe(readings);
+    assert_near(view->deviation[0], 0.01);
+    assert_near(view->deviation[1], 0.02);
+    assert_near(view->deviation[2], 0.06);
+    assert_true(isnan(view->deviation[3]));
+    gonio_readings_free(&readings);
+
+    readings = read_text(
+        "{\"data\":{" ANGLES("0.5,0.6,0.7,0.8") ",\"BRDF\":{\"values\":[0.2,0.4,0.6,0.8],"
+                                                "\"uncertainty\":{\"unit\":\"%\",\"value\":3}}}}",
+        NULL);
+    assert_near(gonio_readings_describe(readings)->deviation[3], 0.024);
+    gonio_readings_free(&readings);
+}
+
+/* Equal directions, wavelengths and states are repeats, each a reading of its own. */
+static void test_repeats_stay(void **state)
+{
+    (void)state;
+    gonio_readings *readings =
+        read_text("{\"data\":{" ANGLES("0.5,0.5,0.5,0.5") ",\"wavelength_i\":[500,600,500,600],"
+                                                          "\"BRDF\":[0.1,0.2,0.3,0.4]}}",
+                  NULL);
+    assert_int_equal(gonio_readings_describe(readings)->count, 2);
+    assert_near(gonio_readings_value(readings, 0, 1), 0.2);
+    assert_near(gonio_readings_value(readings, 1, 0), 0.3);
+    gonio_readings_free(&readings);
+}
+
+/* What the user says comes before the units of the file. */
+static void test_conventions_of_json(void **state)
+{
+    (void)state;
+    gonio_readings_options options = {.size = sizeof options};
+    options.as = (gonio_convention){.angles = GONIO_RADIANS, .values = GONIO_VALUE_FACTOR};
+    gonio_readings *readings = read_text(
+        "{\"data\":{\"theta_i\":{\"unit\":\"deg\",\"values\":[0.5]},\"phi_i\":[0],\"theta_r\":"
+        "[0.25],\"phi_r\":[3],\"BRDF\":{\"unit\":\"1\",\"values\":[0.5]}}}",
+        &options);
+    const gonio_readings_view *view = gonio_readings_describe(readings);
+    assert_true(fabs(view->pair[0].incident.theta - 0.5) < 1e-8);
+    assert_true(fabs(view->pair[0].outgoing.phi - 3.0) < 1e-8);
+    assert_near(gonio_readings_value(readings, 0, 0), 0.5 / M_PI);
+    assert_non_null(strstr(view->note[0], "angles in radians"));
+    gonio_readings_free(&readings);
+}
+
 /* Values of another sensor in each channel; NaN where nothing was read. */
 static void round_trip(const double *wavelength, size_t channels, bool deviations)
 {
@@ -127,6 +225,63 @@ static void test_json_round_trips(void **state)
     round_trip(NULL, 3, false);
     round_trip(NULL, 1, true);
     round_trip(NULL, 2, true);
+}
+
+static char *text_of(const char *path)
+{
+    char *text = calloc(1, 8192);
+    FILE *file = fopen(path, "r");
+    assert_true(text != NULL && file != NULL && fread(text, 1, 8191, file) > 0);
+    fclose(file);
+    return text;
+}
+
+/* What is written keeps to the names and ranges of the published schema: azimuths from 0 to below
+ * 360, no null where a value is only missing among others, deviations beside the values. */
+static void test_json_keeps_to_the_schema(void **state)
+{
+    (void)state;
+    char path[256];
+    char *folder = support_folder();
+    gonio_readings *made = NULL;
+    gonio_readings *back = NULL;
+    assert_int_equal(made_readings(NULL, folder, "r.csv",
+                                   "# grid: half/difference 90 x 90 x 180\n"
+                                   "# basis: 00000000000000ff\n"
+                                   "theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,R_per_sr,G_per_sr,"
+                                   "B_per_sr,R_deviation_per_sr,G_deviation_per_sr,"
+                                   "B_deviation_per_sr\n"
+                                   "30,-90,40,360,0.1,,0.3,0.01,,0.03\n"
+                                   "30,-90,50,270,0.4,0.5,0.6,0.04,0.05,0.06\n",
+                                   NULL, &made),
+                     GONIO_OK);
+    snprintf(path, sizeof path, "%s/r.json", folder);
+    assert_int_equal(gonio_readings_write(NULL, made, "a command", path), GONIO_OK);
+    char *text = text_of(path);
+    static const char *const parts[] = {
+        "\"schema\": \"https://",
+        "\"software\": {\"name\": \"gonio\", \"version\": ",
+        "\"comments\": \"a command\"}",
+        "\"comments\": \"grid: half/difference 90 x 90 x 180\\nbasis: 00000000000000ff\"\n",
+        "\"phi_i\": {\"unit\": \"deg\", \"values\": [270, 270, 270, 270, 270]}",
+        "\"phi_r\": {\"unit\": \"deg\", \"values\": [0, 0, 270, 270, 270]}",
+        "\"unit\": \"\", \"type\": \"string\", \"values\": [\"R\", \"B\", \"R\", \"G\", \"B\"]",
+        "\"polarization_i\": {\"notation\": \"sp\", \"values\": [\"u\", ",
+        "k = 1\", \"unit\": \"sr^-1\", \"values\": [0.01, 0.03, 0.04, 0.05, 0.06]}",
+        "\"BRDF\": {\"unit\": \"sr^-1\", \"values\": [0.1, 0.3, 0.4, 0.5, 0.6]}"};
+    for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) {
+        if (strstr(text, parts[k]) == NULL) {
+            fail_msg("no '%s' in %s", parts[k], text);
+        }
+    }
+    free(text);
+    assert_int_equal(gonio_readings_read(NULL, path, NULL, &back), GONIO_OK);
+    assert_int_equal(gonio_readings_describe(back)->count, 2);
+    assert_true(gonio_readings_describe(back)->basis == 0xff);
+    assert_true(isnan(gonio_readings_value(back, 0, 1)));
+    gonio_readings_free(&back);
+    gonio_readings_free(&made);
+    support_remove(folder);
 }
 
 /* ---- OpenMATERIAL ---- */
@@ -236,7 +391,7 @@ static void test_curet(void **state)
     assert_int_equal(read_sample(table, 4, &readings), GONIO_ERROR_DATA);
     assert_non_null(strstr(support_message(), "no sample 4; there are 3, 7"));
     assert_int_equal(read_sample(NULL, 7, &readings), GONIO_ERROR_IO);
-    assert_non_null(strstr(support_message(), "table.txt"));
+    assert_non_null(strstr(support_message(), "are expected in table.txt beside it"));
     free(table);
     table = make_table(PAIRS - 1);
     assert_int_equal(read_sample(table, 7, &readings), GONIO_ERROR_FORMAT);
@@ -318,7 +473,7 @@ static void test_bad_files(void **state)
         {"{\"data\":{\"theta_i\":{\"unit\":\"gon\",\"values\":1},\"BRDF\":[1]}}",
          GONIO_ERROR_FORMAT, "the unit 'gon' is neither"},
         {"{\"data\":{" ANGLES("1,1,1,1") ",\"BRDF\":[\"a\",\"b\",null,{}]}}", GONIO_ERROR_DATA,
-         "none of the 1 rows"},
+         "none of the 4 rows"},
         {"{\"data\":{" ANGLES(
              "1,1,1,1") ",\"adhoc_variables\":{\"channel\":{\"values\":[\"R\",\"X\",1,"
                         "2]}},\"BRDF\":[1,2,3,4]}}",
@@ -326,9 +481,16 @@ static void test_bad_files(void **state)
         {"{\"data\":{" ANGLES(
              "1,1,1,1") ",\"wavelength_i\":[500,null,500,500],\"BRDF\":[1,2,3,4]}}",
          GONIO_ERROR_FORMAT, "entry 2: the wavelength is not a number"},
+        {"{\"data\":{" ANGLES("1,1,1,1") ",\"BRDF\":{\"unit\":\"%\",\"values\":[1,2,3,4]}}}",
+         GONIO_ERROR_FORMAT, "the unit '%' is not 1/sr; say what the values are with --as values="},
+        {"{\"data\":{" ANGLES("1,1,1,1") ",\"uBRDF\":{\"unit\":\"dB\",\"values\":1},"
+                                         "\"BRDF\":[1,2,3,4]}}",
+         GONIO_ERROR_FORMAT, "the unit 'dB' of uncertainties is neither 1/sr nor %"},
+        {"{\"brdf\":{\"lookupTable\":[[0.1,0.2,3,0,5e-7,1,null]]}}", GONIO_ERROR_FORMAT,
+         "row 1 of lookupTable has 7 elements; five numbers are expected"},
         {"{\"lookupTable\":1}", GONIO_ERROR_FORMAT, "no brdf.lookupTable"},
         {"{\"brdf\":{\"lookupTable\":[[1,2,3,4]]}}", GONIO_ERROR_FORMAT,
-         "row 1 of lookupTable: wavelength"},
+         "row 1 of lookupTable has 4 elements"},
         {"{\"brdf\":{\"lookupTable\":[]}}", GONIO_ERROR_DATA, "no readings in it"},
     };
     char *folder = support_folder();
@@ -369,7 +531,13 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_polarisations_wavelengths_and_uncertainties),
         cmocka_unit_test(test_analysed_light_adds_up),
+        cmocka_unit_test(test_stokes_vectors),
+        cmocka_unit_test(test_a_single_polarisation),
+        cmocka_unit_test(test_relative_uncertainties),
+        cmocka_unit_test(test_repeats_stay),
+        cmocka_unit_test(test_conventions_of_json),
         cmocka_unit_test(test_json_round_trips),
+        cmocka_unit_test(test_json_keeps_to_the_schema),
         cmocka_unit_test(test_open_material),
         cmocka_unit_test(test_curet),
         cmocka_unit_test(test_rgl_samples),

@@ -1,6 +1,7 @@
 /* Readings as BRDF JSON, the exchange format of national metrology institutes (BiRD, BxDiff;
  * Color Research and Application 47 (2022) 1177): columns of angles, wavelengths, polarisations and
  * values in the object `data`. */
+#include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,6 +18,7 @@ enum { ANGLES = 4, MOST_CHANNELS = 4096 };
 typedef struct column {
     const json_t *values; /* NULL: there is none */
     double scale;         /* to degrees; 1 */
+    bool relative;        /* deviations that are shares of their values */
 } column;
 
 typedef struct columns {
@@ -24,7 +26,8 @@ typedef struct columns {
     column wavelength;
     column value;
     column deviation;
-    const json_t *analysed; /* polarisations of what is detected */
+    const json_t *lit;      /* polarisations of the light */
+    const json_t *analysed; /* and of what is detected */
     const json_t *channel;  /* names or numbers of channels without wavelengths; NULL: none */
     size_t channels;        /* of these */
     size_t rows;
@@ -46,11 +49,14 @@ static const char *unit_of(const json_t *object)
     return unit != NULL ? unit : "";
 }
 
+/* as: what the user says of the file, which its units yield to. */
 static gonio_status find_angle(const gonio_i_readings_file *file, const json_t *data,
-                               const char *name, column *c)
+                               const char *name, const gonio_convention *as, column *c)
 {
     const json_t *object = gonio_i_json_member(data, name);
-    const char *unit = unit_of(object);
+    const char *unit = as->angles == GONIO_AS_STATED ? unit_of(object)
+                       : as->angles == GONIO_RADIANS ? "rad"
+                                                     : "deg";
     c->values = values_of(object);
     c->scale = strncasecmp(unit, "rad", 3) == 0 ? 180.0 / M_PI : 1.0;
     if (c->values == NULL) {
@@ -85,7 +91,7 @@ static gonio_status find_wavelength(const gonio_i_readings_file *file, const jso
     const json_t *object = gonio_i_json_member(data, "wavelength_i");
     object = object != NULL ? object : gonio_i_json_member(data, "wavelength_r");
     object = object != NULL ? object : gonio_i_json_member(data, "wavelength");
-    c->wavelength = (column){values_of(object), 1.0};
+    c->wavelength = (column){values_of(object), 1.0, false};
     c->wavelengths = wavelength_unit(unit_of(object));
     return c->wavelengths != GONIO_AS_STATED
                ? GONIO_OK
@@ -94,15 +100,68 @@ static gonio_status find_wavelength(const gonio_i_readings_file *file, const jso
                               unit_of(object));
 }
 
-/* Expanded uncertainties are divided by their coverage factor, where it is stated. */
-static void find_deviation(const json_t *data, const json_t *brdf, columns *c)
+static bool is_per_steradian(const char *unit)
 {
-    const json_t *object = gonio_i_json_member(brdf, "uncertainty");
-    object = object != NULL ? object : gonio_i_json_member(data, "uBRDF");
-    const json_t *factor = gonio_i_json_member(object, "coverage_factor");
-    factor = factor != NULL ? factor : gonio_i_json_member(object, "k");
-    const double k = gonio_i_json_double(factor);
-    c->deviation = (column){values_of(object), k > 0.0 ? 1.0 / k : 1.0};
+    return *unit == '\0' || strcmp(unit, "1/sr") == 0 || strcmp(unit, "sr^-1") == 0 ||
+           strcmp(unit, "sr-1") == 0;
+}
+
+static gonio_status find_values(const gonio_i_readings_file *file, const json_t *brdf,
+                                const gonio_convention *as, column *c)
+{
+    *c = (column){values_of(brdf), 1.0, false};
+    if (!json_is_array(c->values)) {
+        return gonio_i_fail(file->context, GONIO_ERROR_FORMAT, "%s: no data.BRDF with values",
+                            file->path);
+    }
+    return as->values != GONIO_AS_STATED || is_per_steradian(unit_of(brdf))
+               ? GONIO_OK
+               : gonio_i_fail(file->context, GONIO_ERROR_FORMAT,
+                              "%s: data.BRDF: the unit '%.20s' is not 1/sr; say what the values "
+                              "are with --as values=brdf, factor, percent, cosine or "
+                              "factor-cosine",
+                              file->path, unit_of(brdf));
+}
+
+/* The number behind "k =" in a text; NaN where there is none. */
+static double factor_in(const char *text)
+{
+    for (const char *k = text; k != NULL && (k = strchr(k, 'k')) != NULL; k++) {
+        const char *sign = k + 1 + strspn(k + 1, " ");
+        char *end = NULL;
+        const double factor = *sign == '=' ? strtod(sign + 1, &end) : NAN;
+        if (end != NULL && end != sign + 1 && (k == text || !isalnum((unsigned char)k[-1]))) {
+            return factor;
+        }
+    }
+    return NAN;
+}
+
+/* That of expanded uncertainties, where it is stated; 1. */
+static double coverage_factor(const json_t *uncertainty)
+{
+    const json_t *stated = gonio_i_json_member(uncertainty, "coverage_factor");
+    stated = stated != NULL ? stated : gonio_i_json_member(uncertainty, "k");
+    const json_t *comments = gonio_i_json_member(uncertainty, "comments");
+    const double factor =
+        stated != NULL ? gonio_i_json_double(stated) : factor_in(json_string_value(comments));
+    return factor > 0.0 && isfinite(factor) ? factor : 1.0;
+}
+
+/* Uncertainties of each value come before one of all. */
+static gonio_status find_deviation(const gonio_i_readings_file *file, const json_t *data,
+                                   const json_t *brdf, column *c)
+{
+    const json_t *object = gonio_i_json_member(data, "uBRDF");
+    object = object != NULL ? object : gonio_i_json_member(brdf, "uncertainty");
+    const char *unit = unit_of(object);
+    const bool relative = strcmp(unit, "%") == 0;
+    *c = (column){values_of(object), (relative ? 0.01 : 1.0) / coverage_factor(object), relative};
+    return relative || is_per_steradian(unit)
+               ? GONIO_OK
+               : gonio_i_fail(file->context, GONIO_ERROR_FORMAT,
+                              "%s: the unit '%.20s' of uncertainties is neither 1/sr nor %%",
+                              file->path, unit);
 }
 
 /* R, G, B are 0, 1, 2; numbers are counted from 1. MOST_CHANNELS for what is neither. */
@@ -165,24 +224,33 @@ static gonio_status check_lengths(const gonio_i_readings_file *file, columns *c)
     return GONIO_OK;
 }
 
-static gonio_status find_columns(const gonio_i_readings_file *file, const json_t *root, columns *c)
+static gonio_status find_angles(const gonio_i_readings_file *file, const json_t *data,
+                                const gonio_convention *as, column angle[ANGLES])
 {
-    static const char *const angles[ANGLES] = {"theta_i", "phi_i", "theta_r", "phi_r"};
-    const json_t *data = gonio_i_json_member(root, "data");
-    const json_t *brdf = gonio_i_json_member(data, "BRDF");
+    static const char *const names[ANGLES] = {"theta_i", "phi_i", "theta_r", "phi_r"};
     gonio_status status = GONIO_OK;
     for (int k = 0; k < ANGLES && status == GONIO_OK; k++) {
-        status = find_angle(file, data, angles[k], &c->angle[k]);
+        status = find_angle(file, data, names[k], as, &angle[k]);
     }
-    c->value = (column){values_of(brdf), 1.0};
-    if (status == GONIO_OK && !json_is_array(c->value.values)) {
-        return gonio_i_fail(file->context, GONIO_ERROR_FORMAT, "%s: no data.BRDF with values",
-                            file->path);
+    return status;
+}
+
+static gonio_status find_columns(const gonio_i_readings_file *file, const json_t *root,
+                                 const gonio_convention *as, columns *c)
+{
+    const json_t *data = gonio_i_json_member(root, "data");
+    const json_t *brdf = gonio_i_json_member(data, "BRDF");
+    c->lit = values_of(gonio_i_json_member(data, "polarization_i"));
+    c->analysed = values_of(gonio_i_json_member(data, "polarization_r"));
+    gonio_status status = find_angles(file, data, as, c->angle);
+    if (status == GONIO_OK) {
+        status = find_values(file, brdf, as, &c->value);
+    }
+    if (status == GONIO_OK) {
+        status = find_deviation(file, data, brdf, &c->deviation);
     }
     if (status == GONIO_OK) {
         status = find_wavelength(file, data, c);
-        find_deviation(data, brdf, c);
-        c->analysed = values_of(gonio_i_json_member(data, "polarization_r"));
     }
     if (status == GONIO_OK) {
         status = find_channels(file, data, c);
@@ -198,21 +266,60 @@ static double number_at(const column *c, size_t row)
     return gonio_i_json_double(value) * c->scale;
 }
 
-static bool has_state(const json_t *states, const char *state)
+/* A number for each state of polarisation: above 0 for s, below for p, 0 for none. Stokes vectors
+ * are (1, Q, U, V), and s is Q = 1. */
+static double state_at(const json_t *states, size_t row)
 {
-    for (size_t k = 0; k < json_array_size(states); k++) {
-        const char *word = json_string_value(json_array_get(states, k));
-        if (word != NULL && strcasecmp(word, state) == 0) {
-            return true;
-        }
+    const json_t *entry = json_array_get(states, row);
+    const char *word = json_string_value(entry);
+    if (word != NULL) {
+        return strcasecmp(word, "s") == 0 ? 1.0 : strcasecmp(word, "p") == 0 ? -1.0 : 0.0;
     }
-    return false;
+    double state = 0.0;
+    for (size_t k = 1; k < json_array_size(entry) && k < 4; k++) {
+        const double part = gonio_i_json_double(json_array_get(entry, k));
+        state += isnan(part) ? 0.0 : part * pow(0.01, (double)k - 1.0);
+    }
+    return state;
+}
+
+/* Which states occur. */
+typedef struct states {
+    bool s;
+    bool p;
+    bool other;
+} states;
+
+static states states_of(const json_t *array)
+{
+    states found = {.other = json_array_size(array) == 0};
+    for (size_t k = 0; k < json_array_size(array); k++) {
+        const double state = state_at(array, k);
+        found.s = found.s || state > 0.5;
+        found.p = found.p || state < -0.5;
+        found.other = found.other || fabs(state) <= 0.5;
+    }
+    return found;
 }
 
 /* What is detected of s and of p adds up; what is lit by s and by p is averaged. */
 static double analysers(const columns *c)
 {
-    return has_state(c->analysed, "s") && has_state(c->analysed, "p") ? 2.0 : 1.0;
+    const states detected = states_of(c->analysed);
+    return detected.s && detected.p ? 2.0 : 1.0;
+}
+
+/* Says where light of one polarisation only stands for light of none. */
+static gonio_status note_polarisation(const gonio_i_readings_file *file, gonio_readings *readings,
+                                      const char *what, const json_t *array)
+{
+    const states found = states_of(array);
+    return found.other || found.s == found.p
+               ? GONIO_OK
+               : gonio_i_readings_note(file->context, readings,
+                                       "the light %s is polarised, %s only; it is taken as "
+                                       "unpolarised",
+                                       what, found.s ? "s" : "p");
 }
 
 static double nine_digits(double degrees)
@@ -225,7 +332,9 @@ static gonio_status add_row(const gonio_i_readings_file *file, const columns *c,
 {
     gonio_i_long_row row = {.value = factor * number_at(&c->value, k),
                             .deviation = factor * number_at(&c->deviation, k),
+                            .state = state_at(c->lit, k) + 1e3 * state_at(c->analysed, k),
                             .line = k + 1};
+    row.deviation *= c->deviation.relative ? fabs(number_at(&c->value, k)) : 1.0;
     for (int a = 0; a < ANGLES; a++) {
         const double degrees = number_at(&c->angle[a], k);
         row.degrees[a] = c->angle[a].scale == 1.0 ? degrees : nine_digits(degrees);
@@ -260,16 +369,38 @@ static gonio_status read_rows(const gonio_i_readings_file *file, const columns *
     return status;
 }
 
+static int unit_of_angles(const columns *c)
+{
+    bool radians = true;
+    for (int k = 0; k < ANGLES; k++) {
+        radians = radians && c->angle[k].scale != 1.0;
+    }
+    return radians ? GONIO_RADIANS : GONIO_DEGREES;
+}
+
+static gonio_status read_notes(const gonio_i_readings_file *file, const columns *c,
+                               const json_t *root, gonio_readings *readings)
+{
+    gonio_status status = note_polarisation(file, readings, "on the sample", c->lit);
+    if (status == GONIO_OK) {
+        status = note_polarisation(file, readings, "that is detected", c->analysed);
+    }
+    return status == GONIO_OK ? gonio_i_brdf_json_read_comments(file, root, readings) : status;
+}
+
 static gonio_status read_root(const gonio_i_readings_file *file, const json_t *root,
                               gonio_readings *readings)
 {
     columns c = {0};
     gonio_i_import in;
-    gonio_status status = find_columns(file, root, &c);
+    gonio_status status = find_columns(file, root, &readings->options.as, &c);
     const gonio_convention stated = {
-        .angles = GONIO_DEGREES, .values = GONIO_VALUE_BRDF, .wavelengths = c.wavelengths};
+        .angles = unit_of_angles(&c), .values = GONIO_VALUE_BRDF, .wavelengths = c.wavelengths};
     gonio_i_import_begin(&in, file->context, readings, "BRDF JSON", &stated);
     gonio_i_import_leniently(&in);
+    if (status == GONIO_OK) {
+        status = read_notes(file, &c, root, readings);
+    }
     if (status == GONIO_OK) {
         status = read_rows(file, &c, &in);
     }
@@ -289,7 +420,7 @@ static gonio_status read(gonio_i_readings_file *file, gonio_readings *readings)
 
 static bool probe(const char *text, size_t size)
 {
-    return gonio_i_json_has(text, size, "BRDF");
+    return gonio_i_json_has(text, size, "\"BRDF\"");
 }
 
 const gonio_i_readings_format gonio_i_readings_brdf_json = {.word = "json",

@@ -1,4 +1,7 @@
-/* Writing readings as BRDF JSON: an entry of `data` for each reading and channel. */
+/* Writing readings as BRDF JSON: an entry of `data` for each value. Names and forms are those of
+ * the published schema; its azimuths are from 0 to below 360 degrees, and it has no word for a
+ * value that was not read: such entries are left out where nothing else is lost with them, and
+ * null. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -8,6 +11,7 @@
 typedef struct printer {
     FILE *stream;
     const gonio_readings *readings;
+    const bool *held; /* [channels]: any reading has a value of it */
 } printer;
 
 /* Prints what belongs to one value. */
@@ -26,13 +30,6 @@ static void print_number(FILE *stream, double number)
     fputs(text, stream);
 }
 
-static void print_text(FILE *stream, const char *text)
-{
-    char *printed = gonio_i_json_quote(text);
-    fputs(printed != NULL ? printed : "\"\"", stream);
-    free(printed);
-}
-
 /* ---- the columns ---- */
 
 static double degrees_of(const gonio_readings *r, size_t reading, size_t which)
@@ -43,10 +40,19 @@ static double degrees_of(const gonio_readings *r, size_t reading, size_t which)
     return r->given != NULL ? r->given[reading][which] : radians[which] * 180.0 / M_PI;
 }
 
+/* From 0 to below 360, also when it is printed. */
+static double turned(double degrees)
+{
+    const double rest = fmod(degrees, 360.0);
+    const double turn = rest < 0.0 ? rest + 360.0 : rest;
+    return turn < 360.0 - 1e-9 ? turn : 0.0;
+}
+
 /* Twelve digits, as CSV has, so that 60 degrees are 60. */
 static void print_degrees(const printer *p, size_t reading, size_t which)
 {
-    fprintf(p->stream, "%.12g", degrees_of(p->readings, reading, which));
+    const double degrees = degrees_of(p->readings, reading, which);
+    fprintf(p->stream, "%.12g", which % 2 == 1 ? turned(degrees) : degrees);
 }
 
 static void print_theta_i(const printer *p, size_t reading, size_t channel)
@@ -106,24 +112,43 @@ static void print_deviation(const printer *p, size_t reading, size_t channel)
     print_number(p->stream, p->readings->deviation[reading * p->readings->channels + channel]);
 }
 
-/* An array with an element for each reading and channel, channels fastest. */
+static bool has_values(const gonio_readings *r, size_t reading)
+{
+    bool any = false;
+    for (size_t k = 0; k < r->channels && !any; k++) {
+        any = !isnan(r->value[reading * r->channels + k]);
+    }
+    return any;
+}
+
+/* Whether a channel of a reading has an entry: a value, or what nothing else tells of. */
+static bool is_entry(const printer *p, size_t reading, size_t channel)
+{
+    return !isnan(p->readings->value[reading * p->readings->channels + channel]) ||
+           !p->held[channel] || !has_values(p->readings, reading);
+}
+
+/* An array with an element for each entry, channels fastest. */
 static void print_values(const printer *p, print_entry *print)
 {
     const gonio_readings *r = p->readings;
+    const char *between = "";
     fputs("\"values\": [", p->stream);
     for (size_t k = 0; k < r->count * r->channels; k++) {
-        fputs(k > 0 ? ", " : "", p->stream);
-        print(p, k / r->channels, k % r->channels);
+        if (is_entry(p, k / r->channels, k % r->channels)) {
+            fputs(between, p->stream);
+            print(p, k / r->channels, k % r->channels);
+            between = ", ";
+        }
     }
     fputs("]", p->stream);
 }
 
-static void print_column(const printer *p, const char *name, const char *unit, print_entry *print)
+/* key: "unit" or another, and its word. */
+static void print_column(const printer *p, const char *name, const char *key, const char *word,
+                         print_entry *print)
 {
-    fprintf(p->stream, "    \"%s\": {", name);
-    if (unit != NULL) {
-        fprintf(p->stream, "\"unit\": \"%s\", ", unit);
-    }
+    fprintf(p->stream, "    \"%s\": {\"%s\": \"%s\", ", name, key, word);
     print_values(p, print);
     fputs("},\n", p->stream);
 }
@@ -132,12 +157,15 @@ static void print_column(const printer *p, const char *name, const char *unit, p
 static void print_channels(const printer *p)
 {
     if (p->readings->wavelength != NULL) {
-        print_column(p, "wavelength_i", "nm", print_wavelength);
+        print_column(p, "wavelength_i", "unit", "nm", print_wavelength);
         return;
     }
-    fprintf(p->stream, "    \"adhoc_variables\": {\"channel\": {\"description\": \"%s\", ",
-            gonio_readings_are_colours(p->readings) ? "linear R, G, B of the sRGB primaries"
-                                                    : "number of the channel");
+    const bool colours = gonio_readings_are_colours(p->readings);
+    fprintf(p->stream,
+            "    \"adhoc_variables\": {\"channel\": {\"description\": \"%s\", \"unit\": "
+            "\"\", \"type\": \"%s\", ",
+            colours ? "linear R, G, B of the sRGB primaries" : "number of the channel",
+            colours ? "string" : "integer");
     print_values(p, print_channel);
     fputs("}},\n", p->stream);
 }
@@ -145,52 +173,47 @@ static void print_channels(const printer *p)
 static void print_data(const printer *p)
 {
     fputs("  \"data\": {\n", p->stream);
-    print_column(p, "theta_i", "deg", print_theta_i);
-    print_column(p, "phi_i", "deg", print_phi_i);
-    print_column(p, "theta_r", "deg", print_theta_r);
-    print_column(p, "phi_r", "deg", print_phi_r);
+    print_column(p, "theta_i", "unit", "deg", print_theta_i);
+    print_column(p, "phi_i", "unit", "deg", print_phi_i);
+    print_column(p, "theta_r", "unit", "deg", print_theta_r);
+    print_column(p, "phi_r", "unit", "deg", print_phi_r);
     print_channels(p);
-    print_column(p, "polarization_i", NULL, print_polarisation);
-    fputs("    \"BRDF\": {\"unit\": \"sr^-1\", ", p->stream);
-    print_values(p, print_value);
+    print_column(p, "polarization_i", "notation", "sp", print_polarisation);
     if (p->readings->deviation != NULL) {
-        fputs(",\n      \"uncertainty\": {\"coverage_factor\": 1, \"unit\": \"sr^-1\", ",
+        fputs("    \"uBRDF\": {\"comments\": \"standard uncertainty, k = 1\", \"unit\": "
+              "\"sr^-1\", ",
               p->stream);
         print_values(p, print_deviation);
-        fputs("}", p->stream);
+        fputs("},\n", p->stream);
     }
+    fputs("    \"BRDF\": {\"unit\": \"sr^-1\", ", p->stream);
+    print_values(p, print_value);
     fputs("}\n  }\n", p->stream);
 }
 
-/* ---- the metadata ---- */
-
-static void print_metadata(const printer *p, const char *command)
+/* Whether each channel has a value anywhere; the caller's. NULL: out of memory. */
+static bool *find_held(gonio_context *context, const gonio_readings *r)
 {
-    const gonio_i_comments *comments = &p->readings->comment;
-    fputs("  \"metadata\": {\n    \"type\": \"BRDF\",\n    \"software\": {\"name\": \"gonio\", "
-          "\"version\": ",
-          p->stream);
-    print_text(p->stream, gonio_version());
-    if (command != NULL) {
-        fputs(", \"command\": ", p->stream);
-        print_text(p->stream, command);
+    bool *held = gonio_i_allocate(context, r->channels, sizeof *held);
+    for (size_t k = 0; held != NULL && k < r->count * r->channels; k++) {
+        held[k % r->channels] = held[k % r->channels] || !isnan(r->value[k]);
     }
-    fputs("},\n    \"description\": [", p->stream);
-    for (size_t k = 0; k < comments->count; k++) {
-        fputs(k > 0 ? ", " : "", p->stream);
-        print_text(p->stream, comments->line[k]);
-    }
-    fputs("]\n  },\n", p->stream);
+    return held;
 }
 
 gonio_status gonio_i_brdf_json_print(gonio_context *context, const gonio_readings *readings,
                                      const char *command, FILE *stream)
 {
-    const printer p = {stream, readings};
-    (void)context;
+    bool *held = find_held(context, readings);
+    if (held == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    const printer p = {stream, readings, held};
     fputs("{\n", stream);
-    print_metadata(&p, command);
+    const bool done = gonio_i_brdf_json_print_metadata(readings, command, stream);
     print_data(&p);
     fputs("}\n", stream);
-    return GONIO_OK;
+    free(held);
+    return done ? GONIO_OK
+                : gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", readings->path);
 }

@@ -47,7 +47,8 @@ static gonio_status parse_directions(gonio_i_numbers *n, double (*angle)[4])
 {
     for (size_t k = 0; k < PAIRS; k++) {
         double x[TABLE_ROW];
-        const size_t line = gonio_i_numbers_skip(n) ? n->line : n->line;
+        (void)gonio_i_numbers_skip(n);
+        const size_t line = n->line;
         if (gonio_i_numbers_row(n, x, TABLE_ROW) != TABLE_ROW || x[0] != (double)(k + 1)) {
             return gonio_i_fail(n->context, GONIO_ERROR_FORMAT,
                                 "%s:%zu: the number %zu and theta_v, phi_v, theta_l, phi_l are "
@@ -59,13 +60,24 @@ static gonio_status parse_directions(gonio_i_numbers *n, double (*angle)[4])
     return GONIO_OK;
 }
 
+static gonio_status read_table(const gonio_i_readings_file *file, const char *path, char **text,
+                               size_t *size)
+{
+    const gonio_status status = gonio_i_text_read(file->context, path, text, size);
+    return status == GONIO_OK || status == GONIO_ERROR_MEMORY
+               ? status
+               : gonio_i_fail(file->context, status,
+                              "%s: the directions of CUReT's values are expected in table.txt "
+                              "beside it; %s cannot be read",
+                              file->path, path);
+}
+
 static gonio_status read_directions(const gonio_i_readings_file *file, double (*angle)[4])
 {
     char *text = NULL;
     size_t size = 0;
     char *path = beside(file->context, file->path);
-    gonio_status status =
-        path != NULL ? gonio_i_text_read(file->context, path, &text, &size) : GONIO_ERROR_MEMORY;
+    gonio_status status = path != NULL ? read_table(file, path, &text, &size) : GONIO_ERROR_MEMORY;
     if (status == GONIO_OK) {
         gonio_i_numbers n = numbers_of(file->context, path, text, size);
         status = parse_directions(&n, angle);
@@ -155,7 +167,7 @@ static gonio_status read_sample(gonio_i_readings_file *file, gonio_readings *rea
 static gonio_status read(gonio_i_readings_file *file, gonio_readings *readings)
 {
     static const gonio_convention stated = {.angles = GONIO_RADIANS, .values = GONIO_VALUE_BRDF};
-    double angle[PAIRS][4];
+    double angle[PAIRS][4] = {{0.0}};
     samples s = {0};
     gonio_i_import in;
     gonio_i_import_begin(&in, file->context, readings, "a sample of CUReT", &stated);

@@ -13,13 +13,14 @@ static gonio_status add_row(const gonio_i_readings_file *file, const gonio_i_imp
                             const json_t *numbers, size_t row, gonio_i_long_table *table)
 {
     double x[NUMBERS];
+    const size_t count = json_array_size(numbers);
     for (size_t k = 0; k < NUMBERS; k++) {
         x[k] = gonio_i_json_double(json_array_get(numbers, k));
-        if (isnan(x[k])) {
+        if (count != NUMBERS || isnan(x[k])) {
             return gonio_i_fail(file->context, GONIO_ERROR_FORMAT,
-                                "%s: row %zu of lookupTable: wavelength, theta_i, theta_o, phi_o - "
-                                "phi_i and BRDF are expected",
-                                file->path, row + 1);
+                                "%s: row %zu of lookupTable has %zu elements; five numbers are "
+                                "expected: wavelength, theta_i, theta_o, phi_o - phi_i and BRDF",
+                                file->path, row + 1, count);
         }
     }
     const gonio_i_long_row made = {.degrees = {gonio_i_import_degrees(in, x[THETA_I]), 0.0,
