@@ -1,6 +1,7 @@
 /* gonio info: what a file is, judged by its content. */
 #include "albedos.h"
 #include "command_line.h"
+#include "info_readings.h"
 #include "inputs.h"
 #include "json_output.h"
 
@@ -328,52 +329,6 @@ static int info_basis(const tool *t, const char *path, json_t *results)
     return tool_exit_code(status);
 }
 
-/* ---- plans and readings ---- */
-
-static int info_readings(const tool *t, const char *path, json_t *results)
-{
-    const gonio_readings_options how = {
-        .size = sizeof how, .average_repeats = true, .negative_to_zero = true};
-    gonio_readings *readings = NULL;
-    const gonio_status status = tool_read_readings(t, path, &how, &readings);
-    if (status != GONIO_OK) {
-        return tool_exit_code(status);
-    }
-    const gonio_readings_view *view = gonio_readings_describe(readings);
-    size_t measured = 0;
-    for (size_t k = 0; k < view->count; k++) {
-        bool any = false;
-        for (size_t c = 0; c < view->channels; c++) {
-            any = any || !isnan(gonio_readings_value(readings, k, c));
-        }
-        measured += any;
-    }
-    char basis[20] = "not stated";
-    if (view->basis != 0) {
-        snprintf(basis, sizeof basis, "%016" PRIx64, view->basis);
-    }
-    const char *kind = measured > 0 ? "readings" : "plan";
-    if (results != NULL) {
-        json_array_append_new(results,
-                              json_pack("{s:o, s:s, s:I, s:I, s:s, s:I, s:o}", "file",
-                                        tool_json_text(path), "kind", kind, "directions",
-                                        (json_int_t)view->count, "measured", (json_int_t)measured,
-                                        "basis", basis, "components", (json_int_t)view->components,
-                                        "method", tool_json_text(view->method)));
-    } else {
-        printf("%s: gonio %s, %zu directions, %zu measured\n", path, kind, view->count, measured);
-        printf("  basis        %s\n", basis);
-        if (view->components > 0) {
-            printf("  components   %zu\n", view->components);
-        }
-        if (view->method[0] != '\0') {
-            printf("  method       %s\n", view->method);
-        }
-    }
-    gonio_readings_free(&readings);
-    return 0;
-}
-
 /* ---- meshes and images ---- */
 
 /* What is known of a file whose inside is not looked at. */
@@ -402,8 +357,10 @@ typedef struct kind_info {
 } kind_info;
 
 static const kind_info kinds[] = {
-    {GONIO_KIND_MATERIAL, info_material}, {GONIO_KIND_BASIS, info_basis},
-    {GONIO_KIND_READINGS, info_readings}, {GONIO_KIND_MESH, info_other},
+    {GONIO_KIND_MATERIAL, info_material},
+    {GONIO_KIND_BASIS, info_basis},
+    {GONIO_KIND_READINGS, tool_info_readings},
+    {GONIO_KIND_MESH, info_other},
     {GONIO_KIND_IMAGE, info_other},
 };
 

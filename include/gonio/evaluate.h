@@ -32,6 +32,59 @@ GONIO_API gonio_status gonio_compare_readings(gonio_context *context,
                                               const gonio_readings *other, const bool *left_out,
                                               gonio_error *error, size_t *compared);
 
+/* ---- what readings contain ---- */
+
+/* Values of one channel, 1/sr; NaN if there are none. */
+typedef struct gonio_channel_survey {
+    size_t read;   /* readings with a value here */
+    size_t zero;   /* of them are 0 */
+    double least;  /* above 0, if any is */
+    double median; /* of all */
+    double most;
+} gonio_channel_survey;
+
+/* Readings with values whose light comes from one polar angle, to 0.1 degrees. */
+typedef struct gonio_incidence {
+    double theta_i; /* radians */
+    size_t count;
+    double covered; /* share of the hemisphere, weighted by cos(theta_o), within 10 degrees of a
+                     * reading or its mirror image; 0 where nothing was integrated */
+    double peak;    /* largest share of an albedo that a single reading makes: above 1/4 a peak
+                     * is too narrow for these readings to tell the albedo */
+    const double *albedo; /* [channels]: of that part, the rest taken as black; NULL for few
+                           * readings or many incidences */
+} gonio_incidence;
+
+enum { GONIO_MOST_OUTLIERS = 16 };
+
+/* What readings contain, before anything is done with them. */
+typedef struct gonio_survey {
+    size_t measured;               /* readings with a value */
+    size_t empty;                  /* values that are missing, of all readings and channels */
+    gonio_channel_survey *channel; /* [channels] */
+    double theta_i[2];             /* least and most, radians */
+    double theta_o[2];
+    double theta_h[2];
+    size_t in_plane;            /* readings in the plane of incidence, to 1 degree */
+    size_t incidences;          /* polar angles of the light */
+    gonio_incidence *incidence; /* [incidences], ascending */
+    double *albedos;            /* what incidence[].albedo points to */
+    size_t repeats;             /* readings at the same angles as an earlier one; */
+    double repeats_percent;     /* root mean square difference relative to the mean */
+    size_t reciprocal_pairs;    /* of readings with light and viewer exchanged; the same of these */
+    double reciprocity_percent;
+    size_t outliers;                     /* readings 8 times above or below all of their nearest
+                                          * neighbours, which agree to a factor of 3 */
+    size_t outlier[GONIO_MOST_OUTLIERS]; /* the first of them */
+} gonio_survey;
+
+/* Looks at readings: ranges, coverage, albedo where it can be integrated, repeats, reciprocity,
+ * outliers. Of more than three channels outliers are looked for in the first, the middle and the
+ * last. Errors: _MEMORY. */
+GONIO_API gonio_status gonio_readings_survey(gonio_context *context, const gonio_readings *readings,
+                                             gonio_survey **survey);
+GONIO_API void gonio_survey_free(gonio_survey **survey);
+
 #ifdef __cplusplus
 }
 #endif

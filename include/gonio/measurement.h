@@ -143,6 +143,7 @@ typedef struct gonio_readings_view {
     const char *method;      /* of the plan; "": not stated */
     size_t notes;            /* messages of the file's reader: */
     const char *const *note; /* [notes] */
+    size_t below_zero;       /* values of the file that were below zero and taken as 0 */
 } gonio_readings_view;
 
 GONIO_API const gonio_readings_view *gonio_readings_describe(const gonio_readings *readings);

@@ -392,6 +392,7 @@ gonio_status gonio_i_import_end(gonio_i_import *import, gonio_status status)
     if (status == GONIO_OK && import->lenient) {
         status = drop_useless(import);
     }
+    import->readings->below_zero += import->negative;
     if (status == GONIO_OK && (!import->quiet || anything_changed(import))) {
         status = write_note(import);
     }

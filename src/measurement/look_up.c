@@ -158,6 +158,22 @@ static size_t find(const known_places *k, gonio_pair at)
     return b.reading;
 }
 
+gonio_status gonio_i_find_readings(gonio_context *context, const gonio_readings *readings,
+                                   const gonio_pair *pair, size_t count, size_t *found)
+{
+    known_places k;
+    if (!sort_places(context, readings, &k)) {
+        return GONIO_ERROR_MEMORY;
+    }
+    for (size_t n = 0; n < count; n++) {
+        best b = {NONE, INFINITY, INFINITY, readings->count};
+        try_angles(&k, pair[n], pair[n].incident.theta, pair[n].outgoing.theta, &b);
+        found[n] = b.like < RECIPROCAL ? b.reading : readings->count;
+    }
+    free(k.place);
+    return GONIO_OK;
+}
+
 gonio_status gonio_readings_find(gonio_context *context, const gonio_readings *readings,
                                  const gonio_readings *others, bool *same)
 {

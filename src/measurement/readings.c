@@ -81,6 +81,7 @@ void gonio_i_readings_update_view(gonio_readings *readings)
                                            .basis = readings->basis,
                                            .components = readings->components,
                                            .method = readings->method,
+                                           .below_zero = readings->below_zero,
                                            .notes = readings->note.count,
                                            .note = (const char *const *)readings->note.line};
 }
@@ -316,6 +317,7 @@ gonio_status gonio_i_readings_add(gonio_context *context, gonio_readings *r,
     }
     const size_t first = r->count * r->channels;
     for (size_t k = 0; k < r->channels && status == GONIO_OK; k++) {
+        r->below_zero += reading->value[k] < 0.0;
         status = take_value(context, r, reading->line, k, &r->options, reading->value[k],
                             &r->value[first + k]);
         if (status == GONIO_OK && reading->deviation != NULL) {
@@ -579,6 +581,7 @@ gonio_status gonio_readings_copy(gonio_context *context, const gonio_readings *r
         gonio_readings_free(&made);
         return GONIO_ERROR_MEMORY;
     }
+    made->below_zero = r->below_zero;
     made->basis = r->basis;
     made->components = r->components;
     gonio_i_readings_update_view(made);

@@ -28,6 +28,7 @@ struct gonio_readings {
     double *wavelength; /* [channels]; NULL: colours or unnamed channels */
     bool keep_angles;   /* angles are written as they were given: */
     double (*given)[4]; /* [count], theta_i, phi_i, theta_o, phi_o in degrees; or NULL */
+    size_t below_zero;  /* values below zero that were taken as 0 */
     size_t *first_same; /* [count]: the first reading with the same directions */
     uint64_t basis;
     size_t components;
@@ -90,7 +91,12 @@ enum { GONIO_I_NAME_ROOM = 64 };
 void gonio_i_value_name(const gonio_readings *readings, size_t channel, bool deviation,
                         char name[GONIO_I_NAME_ROOM]);
 
-/* ---- the same directions (repeats.c) ---- */
+/* ---- the same directions (repeats.c, look_up.c) ---- */
+
+/* The reading that is nearest to each pair of directions, as they are or turned about the normal:
+ * found[count], readings->count where there is none. Errors: _MEMORY. */
+gonio_status gonio_i_find_readings(gonio_context *context, const gonio_readings *readings,
+                                   const gonio_pair *pair, size_t count, size_t *found);
 
 /* Fills in first_same for readings in any order. */
 gonio_status gonio_i_readings_group(gonio_context *context, gonio_readings *readings);
