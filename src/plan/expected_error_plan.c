@@ -380,10 +380,15 @@ static double open_part(const place_list *p, double reciprocal)
     return 100.0 * LEFT_OPEN * sqrt(all) * reciprocal;
 }
 
-/* From the loss that is left to E6. Of a material that was read, what its covariance lets expect
- * shrinks with the loss, down to what the model leaves open; and what is expected, in proportion.
- */
-static gonio_status fill_expected(const place_list *p, const double *remaining, gonio_plan *plan)
+/* From the loss that is left to E6, per cent: factor (scale loss + open^2)^(1/2). */
+typedef struct error_of_loss {
+    double factor;
+    double scale;
+    double open;
+} error_of_loss;
+
+/* Before anything was read. */
+static gonio_status find_error_of_loss(const place_list *p, error_of_loss *e)
 {
     double reciprocal = 0.0;
     gonio_status status = GONIO_OK;
@@ -392,17 +397,32 @@ static gonio_status fill_expected(const place_list *p, const double *remaining, 
     } else {
         status = mean_reciprocal(p, &reciprocal);
     }
-    const double open = open_part(p, reciprocal);
-    double scale = 100.0 * 100.0 * reciprocal * reciprocal;
-    double factor = 1.0;
-    if (p->known != NULL) {
-        scale = fmax(p->known->variance * p->known->variance - open * open, 0.0) / remaining[0];
-        factor = p->known->expected / p->known->variance;
-    }
-    for (size_t k = 0; k < plan->count; k++) {
-        plan->expected[k] = factor * sqrt(scale * fmax(remaining[k + 1], 0.0) + open * open);
-    }
+    e->factor = 1.0;
+    e->scale = 100.0 * 100.0 * reciprocal * reciprocal;
+    e->open = open_part(p, reciprocal);
     return status;
+}
+
+/* Of a material that was read, what its covariance lets expect shrinks with the loss, down to what
+ * the model leaves open; and what is expected, in proportion. */
+static void scale_to_known(const gonio_i_known *known, double loss, error_of_loss *e)
+{
+    e->scale = fmax(known->variance * known->variance - e->open * e->open, 0.0) / loss;
+    e->factor = known->expected / known->variance;
+}
+
+/* The loss that leaves the target; 0 if there is no target, or none that can be reached. */
+static double enough_for(const error_of_loss *e, double target)
+{
+    return target > e->open ? (target * target - e->open * e->open) / e->scale : 0.0;
+}
+
+static void fill_expected(const error_of_loss *e, const double *remaining, gonio_plan *plan)
+{
+    for (size_t k = 0; k < plan->count; k++) {
+        plan->expected[k] =
+            e->factor * sqrt(e->scale * fmax(remaining[k + 1], 0.0) + e->open * e->open);
+    }
 }
 
 static gonio_status fill_plan(const place_list *p, const gonio_plan_options *options,
@@ -411,6 +431,10 @@ static gonio_status fill_plan(const place_list *p, const gonio_plan_options *opt
     size_t *chosen = gonio_i_allocate(p->context, plan->count, sizeof *chosen);
     double *remaining = gonio_i_allocate(p->context, plan->count + 1, sizeof *remaining);
     plan->expected = gonio_i_allocate(p->context, plan->count, sizeof *plan->expected);
+    error_of_loss error = {0};
+    gonio_status status = chosen != NULL && remaining != NULL && plan->expected != NULL
+                              ? find_error_of_loss(p, &error)
+                              : GONIO_ERROR_MEMORY;
     const gonio_i_expected_error_problem problem = {
         .context = p->context,
         .f = p->f,
@@ -420,14 +444,16 @@ static gonio_status fill_plan(const place_list *p, const gonio_plan_options *opt
         .loss = p->loss,
         .allowed = p->allowed,
         .variance = p->noise * p->noise,
-        .count = plan->count};
-    const bool done = chosen != NULL && remaining != NULL && plan->expected != NULL;
-    gonio_status status = done ? GONIO_OK : GONIO_ERROR_MEMORY;
+        .count = plan->count,
+        .enough = p->known == NULL ? enough_for(&error, options->target) : 0.0};
     if (status == GONIO_OK) {
-        status = gonio_i_expected_error_search(&problem, chosen, remaining);
+        status = gonio_i_expected_error_search(&problem, chosen, remaining, &plan->count);
+    }
+    if (status == GONIO_OK && p->known != NULL) {
+        scale_to_known(p->known, remaining[0], &error);
     }
     if (status == GONIO_OK) {
-        status = fill_expected(p, remaining, plan);
+        fill_expected(&error, remaining, plan);
     }
     for (size_t k = 0; k < plan->count && status == GONIO_OK; k++) {
         fill_entry(p, options, chosen[k], &plan->entries[k]);

@@ -331,33 +331,43 @@ static gonio_status exchange(design *d, size_t *chosen, size_t first, size_t end
     return status;
 }
 
-static gonio_status choose_blocks(design *d, size_t *chosen)
+/* Whether so little loss is left that rounding does not matter. */
+static bool is_enough(const design *d)
+{
+    return gonio_i_dot(d->p, d->w, d->k * d->k) < (1.0 - 1e-6) * d->problem->enough;
+}
+
+/* Blocks do not change earlier ones, so that the search may end after any. */
+static gonio_status choose_blocks(design *d, size_t *chosen, size_t *found)
 {
     const gonio_i_expected_error_problem *problem = d->problem;
     gonio_status status = find_gains(d);
     size_t done = 0;
-    for (size_t end = FIRST_BLOCK; done < problem->count && status == GONIO_OK; end *= 2) {
+    size_t most = problem->count;
+    for (size_t end = FIRST_BLOCK; done < most && status == GONIO_OK; end *= 2) {
         const size_t first = done;
-        for (; done < end && done < problem->count; done++) {
+        for (; done < end && done < most; done++) {
             chosen[done] = find_best(d);
             take(d, chosen[done]);
         }
         status = exchange(d, chosen, first, done);
-        if (status == GONIO_OK && done >= LEAST_RENEWED && done < problem->count) {
+        most = is_enough(d) ? done : most;
+        if (status == GONIO_OK && done >= LEAST_RENEWED && done < most) {
             status = find_gains(d);
         }
     }
+    *found = done;
     return status;
 }
 
 /* trace(P W) before the first and after each reading, recomputed in order, because exchanges change
  * earlier values. */
-static void find_remaining(design *d, const size_t *chosen, double *remaining)
+static void find_remaining(design *d, const size_t *chosen, size_t count, double *remaining)
 {
     const size_t k = d->k;
     begin(d);
     remaining[0] = gonio_i_dot(d->p, d->w, k * k);
-    for (size_t n = 0; n < d->problem->count; n++) {
+    for (size_t n = 0; n < count; n++) {
         double *f = d->vector;
         double *g = d->vector + k;
         copy_row(d, chosen[n], f);
@@ -373,9 +383,10 @@ static void find_remaining(design *d, const size_t *chosen, double *remaining)
 }
 
 gonio_status gonio_i_expected_error_search(const gonio_i_expected_error_problem *problem,
-                                           size_t *chosen, double *remaining)
+                                           size_t *chosen, double *remaining, size_t *found)
 {
     gonio_context *context = problem->context;
+    size_t count = 0;
     const size_t k = problem->components;
     design d = {.problem = problem,
                 .rows = problem->rows,
@@ -394,10 +405,13 @@ gonio_status gonio_i_expected_error_search(const gonio_i_expected_error_problem 
         status = find_loss(&d);
     }
     if (status == GONIO_OK) {
-        status = choose_blocks(&d, chosen);
+        status = choose_blocks(&d, chosen, &count);
     }
     if (status == GONIO_OK && remaining != NULL) {
-        find_remaining(&d, chosen, remaining);
+        find_remaining(&d, chosen, count, remaining);
+    }
+    if (status == GONIO_OK && found != NULL) {
+        *found = count;
     }
     free(d.p);
     free(d.w);

@@ -103,9 +103,11 @@ static double left_by(const problem *p, const size_t *chosen, size_t n)
     return (double)sum;
 }
 
-static void find(gonio_context *context, const problem *p, size_t count, size_t *chosen,
-                 double *remaining)
+/* Returns how many readings were found. */
+static size_t find_enough(gonio_context *context, const problem *p, size_t count, double enough,
+                          size_t *chosen, double *remaining)
 {
+    size_t found = 0;
     const gonio_i_expected_error_problem given = {.context = context,
                                                   .f = p->f,
                                                   .rows = p->rows,
@@ -114,8 +116,16 @@ static void find(gonio_context *context, const problem *p, size_t count, size_t 
                                                   .loss = p->loss,
                                                   .allowed = p->allowed,
                                                   .variance = p->variance,
-                                                  .count = count};
-    assert_int_equal(gonio_i_expected_error_search(&given, chosen, remaining), GONIO_OK);
+                                                  .count = count,
+                                                  .enough = enough};
+    assert_int_equal(gonio_i_expected_error_search(&given, chosen, remaining, &found), GONIO_OK);
+    return found;
+}
+
+static void find(gonio_context *context, const problem *p, size_t count, size_t *chosen,
+                 double *remaining)
+{
+    assert_int_equal(find_enough(context, p, count, 0.0, chosen, remaining), count);
 }
 
 static bool holds(const size_t *chosen, size_t n, size_t row)
@@ -143,6 +153,31 @@ static void test_what_remains(void **state)
             assert_true(p.allowed[chosen[n - 1]]);
             assert_false(holds(chosen, n - 1, chosen[n - 1]));
         }
+    }
+}
+
+/* A search that ends when little enough is left finds the first readings of one that goes on. */
+static void test_enough(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 0; seed < 6; seed++) {
+        const problem p = make_problem(70, 2 + seed, seed);
+        size_t all[40];
+        size_t chosen[40];
+        double remaining[41];
+        double left[41];
+        find(one_thread, &p, 40, all, remaining);
+        size_t before = 0;
+        for (size_t n = 1; n < 30; n++) {
+            const double enough = 1.001 * remaining[n];
+            const size_t found = find_enough(one_thread, &p, 40, enough, chosen, left);
+            assert_true(found >= n && found >= before && found <= 40);
+            assert_true(left[found] < enough);
+            assert_memory_equal(chosen, all, found * sizeof *all);
+            assert_memory_equal(left, remaining, (found + 1) * sizeof *left);
+            before = found;
+        }
+        assert_true(find_enough(one_thread, &p, 40, 1.001 * remaining[1], chosen, left) < 40);
     }
 }
 
@@ -436,6 +471,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_what_remains),
+        cmocka_unit_test(test_enough),
         cmocka_unit_test(test_against_all_choices),
         cmocka_unit_test(test_no_exchange_helps),
         cmocka_unit_test(test_prefixes_and_threads),
