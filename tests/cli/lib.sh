@@ -54,6 +54,15 @@ expect_output() {
     fi
 }
 
+# expect_also PART...: each part occurs on standard output of the last command too.
+expect_also() {
+    local part
+    for part in "$@"; do
+        checks=$((checks + 1))
+        [[ $(cat "$root/work/stdout") == *"$part"* ]] || failed "'$part' is not in the output:" "$(cat "$root/work/stdout")"
+    done
+}
+
 # expect_fail CODE PART ARGUMENTS...: this exit code; on standard error one line, of this command,
 # that holds the part; no file made, changed or left behind.
 expect_fail() {

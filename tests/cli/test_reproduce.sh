@@ -38,7 +38,10 @@ same() {
 }
 
 cp -r out again
-rm again/pieces/fig3b* again/pieces/fig5-w* again/pieces/fig7* again/report.md again/figures/fig3a.*
+rm again/pieces/fig3b-random* again/report.md again/figures/fig3a.*
+if full; then
+    rm again/pieces/fig3b* again/pieces/fig5-w* again/pieces/fig7*
+fi
 # shellcheck disable=SC2086
 expect_output 'again: see' reproduce $materials --quick -o again
 expect_true 'going on is told' grep -q 'note: reproducing: resuming' "$root/work/stderr"
@@ -131,8 +134,8 @@ cp db/oak.binary db/tree.binary
 cp db/red-cotton.binary twins/red-cotton.binary
 expect_fail 1 '3 of 7 materials cannot be used (--skip-bad leaves them out); db/broken.binary: ' \
     reproduce db twins -o no
-expect_fail 1 'db/tree.binary: has the same values as db/oak.binary; twins/red-cotton.binary: there is another' \
-    reproduce db twins -o no
+expect_true 'what is there twice is named' grep -qF \
+    'db/tree.binary: has the same values as db/oak.binary; twins/red-cotton.binary: there is another' "$root/work/stderr"
 run reproduce db twins --skip-bad --quick --only fig2a -o skipped || failed '--skip-bad' "$(cat "$root/work/stderr")"
 expect_true 'what is left out is named' test "$(grep -c 'warning: left out: ' "$root/work/stderr")" -eq 3
 rm db/broken.binary db/tree.binary
@@ -170,10 +173,12 @@ echo '{"splits": [' >torn.json
 expect_ok reproduce db --quick --only fig2a --splits good.json -o given
 expect_true 'the splits given are used' grep -q '^1,test,"plaster-cast"$' given/tables/splits.csv
 expect_fail 1 "unknown.json: split 1: no material is called 'chalk'" reproduce db --splits unknown.json -o no
-expect_fail 1 "twice.json: split 1: 'oak' is named twice" reproduce db --splits twice.json -o no
-expect_fail 1 'few.json: split 1 has 2 materials to learn from' reproduce db --splits few.json -o no
 expect_fail 1 "numbers.json: split 1: a material's name must be a string" reproduce db --splits numbers.json -o no
-expect_fail 1 "none.json: holds no array 'splits'" reproduce db --splits none.json -o no
+if full; then
+    expect_fail 1 "twice.json: split 1: 'oak' is named twice" reproduce db --splits twice.json -o no
+    expect_fail 1 'few.json: split 1 has 2 materials to learn from' reproduce db --splits few.json -o no
+    expect_fail 1 "none.json: holds no array 'splits'" reproduce db --splits none.json -o no
+fi
 expect_fail 1 'torn.json:2: not JSON' reproduce db --splits torn.json -o no
 expect_fail 1 'missing.json: ' reproduce db --splits missing.json -o no
 
