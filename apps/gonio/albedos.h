@@ -13,4 +13,9 @@ extern const double tool_incidence_deg[TOOL_INCIDENCES];
 int tool_albedos(const gonio_table *table, double albedo[TOOL_INCIDENCES][GONIO_CHANNELS],
                  double *largest);
 
+/* The same, with the shares of the hemisphere that have data, as gonio_table_albedo returns. */
+int tool_albedos_and_shares(const gonio_table *table,
+                            double albedo[TOOL_INCIDENCES][GONIO_CHANNELS],
+                            double share[TOOL_INCIDENCES], double *largest);
+
 #endif

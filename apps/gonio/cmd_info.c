@@ -4,6 +4,7 @@
 #include "info_readings.h"
 #include "inputs.h"
 #include "json_output.h"
+#include "seam.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -21,7 +22,9 @@ typedef struct material_facts {
     double peak;      /* largest value of any channel, 1/sr */
     double asymmetry; /* relative RMS of rho(phi_d) - rho(180 - phi_d), per cent */
     double albedo[TOOL_INCIDENCES][GONIO_CHANNELS];
+    double share[TOOL_INCIDENCES]; /* of the hemisphere, that has data */
     double largest_albedo;
+    tool_seam seam;
     uint64_t fingerprint;
     bool evaluated;     /* at any directions; the table is made of it */
     double reciprocity; /* E6 of rho(o, i) against rho(i, o), per cent; of a table it is exact */
@@ -73,8 +76,24 @@ static gonio_status find_facts(const gonio_table *table, material_facts *facts)
         }
     }
     facts->asymmetry = square > 0.0 ? 100.0 * sqrt(difference / square) : 0.0;
-    tool_albedos(table, facts->albedo, &facts->largest_albedo);
+    tool_albedos_and_shares(table, facts->albedo, facts->share, &facts->largest_albedo);
+    facts->seam = tool_find_seam(table);
     return fingerprint_of(table, &facts->fingerprint);
+}
+
+/* Beyond rounding. */
+static bool has_hole(const material_facts *facts, int incidence)
+{
+    return facts->share[incidence] < 0.9995;
+}
+
+static bool has_holes(const material_facts *facts)
+{
+    bool any = false;
+    for (int k = 0; k < TOOL_INCIDENCES; k++) {
+        any = any || has_hole(facts, k);
+    }
+    return any;
 }
 
 /* Adds what a pair and its reverse differ by, in log space. */
@@ -139,6 +158,24 @@ static void add_view(json_t *object, const gonio_material_view *view, const mate
     json_object_set_new(object, "reciprocity_e6_percent", tool_json_number(facts->reciprocity));
 }
 
+/* null: not known, as directions without data reflect too. */
+static json_t *conserves_energy(const material_facts *facts)
+{
+    if (facts->largest_albedo > 1.0) {
+        return json_false();
+    }
+    return has_holes(facts) ? json_null() : json_true();
+}
+
+static void add_steps(json_t *object, const gonio_material_view *view, const material_facts *facts)
+{
+    json_object_set_new(object, "halves_difference_percent",
+                        view->both_halves ? tool_json_number(100.0 * view->halves_difference)
+                                          : json_null());
+    json_object_set_new(object, "phi_d_step_at_0", tool_json_number(facts->seam.there));
+    json_object_set_new(object, "phi_d_step_elsewhere", tool_json_number(facts->seam.elsewhere));
+}
+
 static void print_view(const gonio_material_view *view)
 {
     if (view->wavelength != NULL) {
@@ -169,20 +206,67 @@ static json_t *material_json(const char *path, const gonio_material *material,
     json_t *albedo = json_array();
     for (int k = 0; k < TOOL_INCIDENCES; k++) {
         const double *rgb = facts->albedo[k];
-        json_array_append_new(albedo,
-                              json_pack("{s:f, s:[o, o, o]}", "theta_i_deg", tool_incidence_deg[k],
-                                        "albedo_rgb", tool_json_number(rgb[0]),
-                                        tool_json_number(rgb[1]), tool_json_number(rgb[2])));
+        json_array_append_new(
+            albedo, json_pack("{s:f, s:[o, o, o], s:f}", "theta_i_deg", tool_incidence_deg[k],
+                              "albedo_rgb", tool_json_number(rgb[0]), tool_json_number(rgb[1]),
+                              tool_json_number(rgb[2]), "share_with_data", facts->share[k]));
     }
     json_t *object = json_pack(
-        "{s:o, s:s, s:o, s:s, s:I, s:f, s:o, s:o, s:o, s:b, s:s}", "file", tool_json_text(path),
+        "{s:o, s:s, s:o, s:s, s:I, s:f, s:o, s:o, s:o, s:o, s:s}", "file", tool_json_text(path),
         "kind", "material", "name", tool_json_text(gonio_material_name(material)), "format",
         gonio_material_format(material), "valid_bins", (json_int_t)facts->bins, "valid_share",
         (double)facts->bins / VALID_BINS, "peak_per_sr", tool_json_number(facts->peak),
         "mirror_asymmetry_percent", tool_json_number(facts->asymmetry), "albedo", albedo,
-        "conserves_energy", facts->largest_albedo <= 1.0, "fingerprint", fingerprint);
+        "conserves_energy", conserves_energy(facts), "fingerprint", fingerprint);
     add_view(object, gonio_material_describe(material), facts);
+    add_steps(object, gonio_material_describe(material), facts);
     return object;
+}
+
+static void print_albedos(const material_facts *facts)
+{
+    printf("  albedo       theta_i      R      G      B\n");
+    for (int k = 0; k < TOOL_INCIDENCES; k++) {
+        const double *rgb = facts->albedo[k];
+        if (isnan(rgb[0])) {
+            printf("               %4.0f deg  no data\n", tool_incidence_deg[k]);
+            continue;
+        }
+        printf("               %4.0f deg %6.3f %6.3f %6.3f", tool_incidence_deg[k], rgb[0], rgb[1],
+               rgb[2]);
+        if (has_hole(facts, k)) {
+            printf("  at least: %.1f %% of the hemisphere has data", 100.0 * facts->share[k]);
+        }
+        printf("\n");
+    }
+}
+
+static const char *energy_in_words(const material_facts *facts)
+{
+    if (facts->largest_albedo > 1.0) {
+        return "NOT conserved: reflects more than it receives";
+    }
+    return has_holes(facts) ? "not known: directions without data reflect too"
+                            : "conserved at these incidences";
+}
+
+static void print_reciprocity(const gonio_material_view *view, const material_facts *facts)
+{
+    if (facts->evaluated) {
+        printf("  reciprocity  rho(i, o) and rho(o, i) differ by %.2f %% (E6)\n",
+               facts->reciprocity);
+    } else if (view->both_halves) {
+        printf("  reciprocity  phi_d and phi_d + 180 degrees differ by %.2f %% (RMS); the mean is "
+               "taken\n",
+               100.0 * view->halves_difference);
+    } else {
+        printf("  reciprocity  exact: phi_d and phi_d + 180 degrees are one bin\n");
+    }
+    if (tool_seam_shows(&facts->seam)) {
+        printf("  seam         ln(1 + rho/s) jumps by %.3f at phi_d = 0, by %.4f elsewhere (mean): "
+               "what\n               the values come from is not reciprocal\n",
+               facts->seam.there, facts->seam.elsewhere);
+    }
 }
 
 static void print_material(const char *path, const gonio_material *material,
@@ -194,25 +278,9 @@ static void print_material(const char *path, const gonio_material *material,
     printf("  valid bins   %" PRId64 " of %d (%.1f %%)\n", facts->bins, (int)VALID_BINS,
            100.0 * (double)facts->bins / VALID_BINS);
     printf("  peak         %.4g 1/sr\n", facts->peak);
-    printf("  albedo       theta_i      R      G      B\n");
-    for (int k = 0; k < TOOL_INCIDENCES; k++) {
-        const double *rgb = facts->albedo[k];
-        if (isnan(rgb[0])) {
-            printf("               %4.0f deg  no data\n", tool_incidence_deg[k]);
-        } else {
-            printf("               %4.0f deg %6.3f %6.3f %6.3f\n", tool_incidence_deg[k], rgb[0],
-                   rgb[1], rgb[2]);
-        }
-    }
-    printf("  energy       %s\n", facts->largest_albedo <= 1.0
-                                      ? "conserved at these incidences"
-                                      : "NOT conserved: reflects more than it receives");
-    if (facts->evaluated) {
-        printf("  reciprocity  rho(i, o) and rho(o, i) differ by %.2f %% (E6)\n",
-               facts->reciprocity);
-    } else {
-        printf("  reciprocity  exact: phi_d and phi_d + 180 degrees are one bin\n");
-    }
+    print_albedos(facts);
+    printf("  energy       %s\n", energy_in_words(facts));
+    print_reciprocity(gonio_material_describe(material), facts);
     printf("  mirror       rho(phi_d) and rho(180 - phi_d) differ by %.2f %% (RMS)\n",
            facts->asymmetry);
     printf("  fingerprint  %016" PRIx64 "\n", facts->fingerprint);

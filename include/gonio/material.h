@@ -45,6 +45,8 @@ typedef struct gonio_material_source {
     const double *wavelength; /* [channels], nm, copied; NULL: 3 channels are R, G, B, 1 is grey */
     bool anisotropic;         /* values depend on phi_h too */
     double theta_limit;       /* polar angle up to which values were measured, radians; 0: all */
+    bool both_halves;         /* slabs are means of phi_d and phi_d + pi, which the source holds */
+    double halves_difference; /* RMS of their difference, as a share of the RMS of the mean */
 } gonio_material_source;
 
 /* What a material is. The view and the pointers in it belong to the material. */
@@ -56,6 +58,8 @@ typedef struct gonio_material_view {
     bool anisotropic;
     double theta_limit; /* radians; 0 for none */
     bool evaluated;     /* by its source at any directions, not by way of a table */
+    bool both_halves;   /* as in gonio_material_source, as is the next */
+    double halves_difference;
 } gonio_material_view;
 
 /* Opens a material: a MERL .binary table (phi_d of 180 bins, or 360 folded by reciprocity), a
@@ -192,17 +196,18 @@ GONIO_API const double *gonio_table_values(const gonio_table *table);
 
 /* The BRDF at any directions, trilinear between bin centres in (sqrt theta_h, theta_d, phi_d),
  * phi_d periodic, bins without data left out and the weights of the others scaled up. Within the
- * first bin of theta_h or theta_d it fades into the mean over phi_d, which means nothing at 0. Returns
- * false, and rho = 0, if either direction is at or below the horizon or none of the bins around has
- * data. */
+ * first bin of theta_h or theta_d it fades into the mean over phi_d, which means nothing at 0.
+ * Returns false, and rho = 0, if either direction is at or below the horizon or none of the bins
+ * around has data. */
 GONIO_API bool gonio_table_value(const gonio_table *table, gonio_half_difference coordinates,
                                  double rho[GONIO_CHANNELS]);
 
 /* The directional-hemispherical reflectance (albedo) for light from theta_i, by the midpoint rule
  * on a grid of outgoing directions around the mirror direction. Directions without data count as 0;
- * NaN if none has data. */
-GONIO_API void gonio_table_albedo(const gonio_table *table, double theta_i,
-                                  double albedo[GONIO_CHANNELS]);
+ * NaN if none has data. Returns the share of the hemisphere, weighted by the cosine, in which there
+ * are data: where it is below 1 the albedo is a lower bound. */
+GONIO_API double gonio_table_albedo(const gonio_table *table, double theta_i,
+                                    double albedo[GONIO_CHANNELS]);
 
 #ifdef __cplusplus
 }

@@ -77,7 +77,9 @@ static gonio_material_view view_of(const gonio_material *material)
                                  .wavelength = grid ? NULL : source->wavelength,
                                  .anisotropic = source->anisotropic,
                                  .theta_limit = source->theta_limit,
-                                 .evaluated = !grid};
+                                 .evaluated = !grid,
+                                 .both_halves = source->both_halves,
+                                 .halves_difference = source->halves_difference};
 }
 
 gonio_status gonio_material_create(gonio_context *context, const char *name, const char *format,

@@ -91,12 +91,13 @@ bool gonio_table_value(const gonio_table *table, gonio_half_difference coordinat
  * spaced like the grid. So it resolves the narrowest peak of a table: d omega_o = 4 (i.h) d
  * omega_h.
  */
-void gonio_table_albedo(const gonio_table *table, double theta_i, double albedo[GONIO_CHANNELS])
+double gonio_table_albedo(const gonio_table *table, double theta_i, double albedo[GONIO_CHANNELS])
 {
     enum { POLAR = 2 * GONIO_THETA_H_BINS, AZIMUTH = 180 };
     const double sine_i = sin(theta_i);
     const double cosine_i = cos(theta_i);
-    bool any = false;
+    double all = 0.0; /* projected solid angle */
+    double with_data = 0.0;
     albedo[0] = albedo[1] = albedo[2] = 0.0;
     for (int p = 0; p < POLAR; p++) {
         const double t = (p + 0.5) / POLAR;
@@ -111,18 +112,22 @@ void gonio_table_albedo(const gonio_table *table, double theta_i, double albedo[
             double rho[GONIO_CHANNELS];
             const gonio_pair pair = {{theta_i, 0.0},
                                      {atan2(hypot(o[0], o[1]), o[2]), atan2(o[1], o[0])}};
-            if (i_h <= 0.0 || o[2] <= 0.0 ||
-                !gonio_table_value(table, gonio_half_difference_from_pair(pair), rho)) {
+            if (i_h <= 0.0 || o[2] <= 0.0) {
                 continue;
             }
-            any = true;
             const double weight = 2.0 * o[2] * 4.0 * i_h * sin(theta_h) * step;
+            all += weight;
+            if (!gonio_table_value(table, gonio_half_difference_from_pair(pair), rho)) {
+                continue;
+            }
+            with_data += weight;
             for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
                 albedo[channel] += weight * rho[channel];
             }
         }
     }
-    for (int channel = 0; channel < GONIO_CHANNELS && !any; channel++) {
+    for (int channel = 0; channel < GONIO_CHANNELS && !(with_data > 0.0); channel++) {
         albedo[channel] = NAN;
     }
+    return all > 0.0 ? with_data / all : 0.0;
 }

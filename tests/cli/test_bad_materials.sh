@@ -124,6 +124,29 @@ expect_output '"peak_per_sr"' info --json nan.binary
 expect_output '"e6_percent"' compare --json good.binary nan.binary
 rm nan.binary holes.binary
 
+# Slightly negative numbers beside data are 0; -1 in any channel is no data.
+cp good.binary negative.binary
+patch negative.binary 12 "$zero\\xc0\\xbf" # -0.125
+expect_output 'valid bins   1096216 of 1096216' info negative.binary
+expect_ok convert negative.binary zero.binary
+expect_true 'a note says so' grep -q 'slightly negative numbers in a channel; 0 is taken' \
+    "$root/work/stderr"
+cp good.binary by-hand.binary
+patch by-hand.binary 12 "$zero\\x00\\x00"
+expect_ok convert by-hand.binary again.binary
+expect_same zero.binary again.binary
+patch negative.binary 12 "$zero\\xf0\\xbf" # -1
+expect_output 'valid bins   1096215 of 1096216' info negative.binary
+rm negative.binary zero.binary by-hand.binary again.binary
+
+# Energy is not judged where directions have no data; the first 30 slabs have none.
+{ head -c 12 good.binary; head -c 3888000 /dev/zero | tr '\0' '\377'; tail -c +3888013 good.binary; } >holes.binary
+expect_output 'energy       not known: directions without data reflect too' info holes.binary
+expect_output 'of the hemisphere has data' info holes.binary
+expect_output '"conserves_energy": null' info --json holes.binary
+expect_output '"conserves_energy": true' info --json good.binary
+rm holes.binary
+
 for none in 377 277; do # NaN everywhere; -0.12 everywhere
     uniform_table $none >none.binary
     expect_output 'valid bins   0 of 1096216' info none.binary
@@ -176,6 +199,7 @@ with() { sed "s/$1/$2/" "$real" >bad.h5; }
 
 cat "$real" >good.h5
 expect_output 'neural BRDF 6-21-21-3' info good.h5
+expect_output 'seam         ln(1 + rho/s) jumps by 0.111 at phi_d = 0, by 0.0031 elsewhere' info good.h5
 head -c 10000 "$real" >half.h5
 every_reader 1 'half.h5: cannot be opened as HDF5: damaged or truncated' half.h5
 with layer_names layer_nomes

@@ -101,12 +101,22 @@ expect_output '0.000     0.000    0.0000' compare atlas:red-glossy-plastic a.bin
 if [ -x "${REPEAT_ROWS:-}" ]; then
     "$REPEAT_ROWS" <a.binary >360.binary
     expect_output 'MERL table 90 x 90 x 360' info 360.binary
+    expect_output 'phi_d and phi_d + 180 degrees differ by 0.00 %' info 360.binary
+    patch 360.binary 12 '\x00\x00\x00\x00\x00\x00\xf0\x7f' # infinity in one half
     expect_ok convert 360.binary b.binary
     expect_same a.binary b.binary
     expect_ok convert one/out.binary c.binary
     "$REPEAT_ROWS" <c.binary >360.binary
     expect_ok convert 360.binary b.binary
     expect_same c.binary b.binary
+    "$REPEAT_ROWS" 2 <c.binary >360.binary
+    for command in 'info 360.binary' 'convert 360.binary b.binary' 'compare c.binary 360.binary'; do
+        # shellcheck disable=SC2086
+        run $command
+        expect_true "$command warns of halves that differ" grep -q \
+            'warning: 360.binary: phi_d and phi_d + 180 degrees.* differ by 67 % (RMS)' \
+            "$root/work/stderr"
+    done
 else
     skip 'tables of 360 phi_d bins: no $REPEAT_ROWS'
 fi

@@ -1,7 +1,8 @@
 /* MERL .binary tables: int32 theta_h, theta_d, phi_d bins, then three planes (R, G, B) of float64,
- * phi_d fastest; reflectance = stored x (1, 1.15, 1.66)/1500 1/sr; negative for no data. All
+ * phi_d fastest; reflectance = stored x (1, 1.15, 1.66)/1500 1/sr; -1 for no data. All
  * little-endian. */
 #include "merl.h"
+#include "merl_halves.h"
 
 #include <endian.h>
 #include <errno.h>
@@ -18,7 +19,7 @@ const double gonio_i_merl_scale[GONIO_CHANNELS] = {1.0 / 1500.0, 1.15 / 1500.0, 
 
 enum {
     HEADER = 12,
-    FULL_CIRCLE = 2 * GONIO_PHI_D_BINS,
+    FULL_CIRCLE = GONIO_I_MERL_FULL_CIRCLE,
     PLANE = GONIO_SLAB_BINS * sizeof(double), /* bytes of one channel of a slab */
     BLOCK = 5                                 /* slabs that are written in a row; divides 90 */
 };
@@ -27,6 +28,7 @@ typedef struct merl_table {
     int descriptor;
     int phi_bins; /* 180, or 360: phi_d to 2 pi, folded on reading */
     char *path;
+    bool negative_noted; /* that negative numbers became 0; of all threads */
 } merl_table;
 
 static int32_t header_entry(const gonio_i_file *file, int k)
@@ -100,60 +102,82 @@ static gonio_status read_exactly(gonio_context *context, const merl_table *table
     return GONIO_OK;
 }
 
-/* Stored numbers to 1/sr; a bin that lacks any channel lacks all. */
-GONIO_I_VECTORISED static void to_reflectance(double *rho)
+/* Where a slab's plane of a channel stands in a file of 180 bins. */
+static off_t plane_offset(int channel, int theta_h)
 {
+    return (off_t)(HEADER + PLANE * (size_t)(GONIO_THETA_H_BINS * channel + theta_h));
+}
+
+/* Stored numbers to 1/sr; a bin that lacks any channel lacks all. Numbers between -1 and 0 beside
+ * data are what dark subtraction leaves of a dark channel: 0. Returns how many bins have such. */
+GONIO_I_VECTORISED static size_t to_reflectance(double *rho)
+{
+    size_t negative = 0;
     double *r = rho;
     double *g = rho + GONIO_SLAB_BINS;
     double *b = rho + 2 * (size_t)GONIO_SLAB_BINS;
     for (size_t k = 0; k < GONIO_SLAB_BINS; k++) {
-        /* False for negative numbers and NaN; infinity fails the second half. */
-        const bool data =
-            (r[k] >= 0.0) & (g[k] >= 0.0) & (b[k] >= 0.0) & (r[k] + g[k] + b[k] < INFINITY);
-        r[k] = data ? r[k] * gonio_i_merl_scale[0] : -1.0;
-        g[k] = data ? g[k] * gonio_i_merl_scale[1] : -1.0;
-        b[k] = data ? b[k] * gonio_i_merl_scale[2] : -1.0;
+        /* False for -1 and NaN; infinity fails the second half. */
+        const bool whole =
+            (r[k] > -1.0) & (g[k] > -1.0) & (b[k] > -1.0) & (r[k] + g[k] + b[k] < INFINITY);
+        const bool data = whole & ((r[k] >= 0.0) | (g[k] >= 0.0) | (b[k] >= 0.0));
+        negative += data & ((r[k] < 0.0) | (g[k] < 0.0) | (b[k] < 0.0));
+        r[k] = data ? (r[k] < 0.0 ? 0.0 : r[k]) * gonio_i_merl_scale[0] : -1.0;
+        g[k] = data ? (g[k] < 0.0 ? 0.0 : g[k]) * gonio_i_merl_scale[1] : -1.0;
+        b[k] = data ? (b[k] < 0.0 ? 0.0 : b[k]) * gonio_i_merl_scale[2] : -1.0;
+    }
+    return negative;
+}
+
+/* Once a material. */
+static void note_negative(gonio_context *context, merl_table *table)
+{
+    bool before;
+#pragma omp atomic capture
+    {
+        before = table->negative_noted;
+        table->negative_noted = true;
+    }
+    if (!before) {
+        gonio_i_note(context,
+                     "%s: bins with data hold slightly negative numbers in a channel; 0 is taken",
+                     table->path);
     }
 }
 
-/* phi_d and phi_d + pi are the same sample: the mean of those that hold data. */
-static void fold(const double *full, double *half)
+static gonio_status read_full_plane(gonio_context *context, const merl_table *table, int channel,
+                                    int theta_h, double *full)
 {
-    for (size_t row = 0; row < GONIO_THETA_D_BINS; row++) {
-        const double *from = full + row * FULL_CIRCLE;
-        for (size_t k = 0; k < GONIO_PHI_D_BINS; k++) {
-            const double a = from[k];
-            const double b = from[k + GONIO_PHI_D_BINS];
-            half[row * GONIO_PHI_D_BINS + k] = !(a >= 0.0) ? b : !(b >= 0.0) ? a : 0.5 * (a + b);
-        }
-    }
+    const size_t bins = (size_t)GONIO_THETA_D_BINS * FULL_CIRCLE;
+    const size_t first = bins * (size_t)(GONIO_THETA_H_BINS * channel + theta_h);
+    const gonio_status status =
+        read_exactly(context, table, full, 8 * bins, (off_t)(HEADER + 8 * first));
+    byte_order_to_host(full, bins);
+    return status;
 }
 
 static gonio_status read_plane(gonio_context *context, const merl_table *table, int channel,
                                int theta_h, double *plane)
 {
-    const size_t bins = (size_t)GONIO_THETA_D_BINS * (size_t)table->phi_bins;
-    const size_t first = bins * (size_t)(GONIO_THETA_H_BINS * channel + theta_h);
-    const off_t offset = (off_t)(HEADER + 8 * first);
     if (table->phi_bins == GONIO_PHI_D_BINS) {
-        const gonio_status status = read_exactly(context, table, plane, 8 * bins, offset);
-        byte_order_to_host(plane, bins);
+        const gonio_status status =
+            read_exactly(context, table, plane, PLANE, plane_offset(channel, theta_h));
+        byte_order_to_host(plane, GONIO_SLAB_BINS);
         return status;
     }
-    double *full = gonio_i_allocate(context, bins, sizeof *full);
-    if (full == NULL) {
-        return GONIO_ERROR_MEMORY;
+    double *full = gonio_i_allocate(context, (size_t)2 * GONIO_SLAB_BINS, sizeof *full);
+    gonio_status status = GONIO_ERROR_MEMORY;
+    if (full != NULL) {
+        status = read_full_plane(context, table, channel, theta_h, full);
+        gonio_i_merl_fold(full, plane);
     }
-    const gonio_status status = read_exactly(context, table, full, 8 * bins, offset);
-    byte_order_to_host(full, bins);
-    fold(full, plane);
     free(full);
     return status;
 }
 
 static gonio_status read_slab(void *self, gonio_context *context, int theta_h, double *rho)
 {
-    const merl_table *table = self;
+    merl_table *table = self;
     for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
         const gonio_status status =
             read_plane(context, table, channel, theta_h, rho + (size_t)channel * GONIO_SLAB_BINS);
@@ -161,7 +185,9 @@ static gonio_status read_slab(void *self, gonio_context *context, int theta_h, d
             return status;
         }
     }
-    to_reflectance(rho);
+    if (to_reflectance(rho) > 0) {
+        note_negative(context, table);
+    }
     return GONIO_OK;
 }
 
@@ -194,6 +220,36 @@ static gonio_status check_shape(gonio_context *context, const gonio_i_file *file
     return GONIO_OK;
 }
 
+/* More than noise and rounding do, in a share of the RMS. */
+static const double much = 0.1;
+
+/* How far the halves of a table of 360 bins are apart, which is warned of if it is much. */
+static gonio_status compare_halves(gonio_context *context, const merl_table *table,
+                                   double *difference)
+{
+    gonio_i_merl_halves halves = {0};
+    gonio_status status = GONIO_OK;
+    double *full = gonio_i_allocate(context, (size_t)2 * GONIO_SLAB_BINS, sizeof *full);
+    if (full == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    for (int k = 0; k < GONIO_CHANNELS * GONIO_THETA_H_BINS && status == GONIO_OK; k++) {
+        const int channel = k / GONIO_THETA_H_BINS;
+        status = read_full_plane(context, table, channel, k % GONIO_THETA_H_BINS, full);
+        gonio_i_merl_compare_halves(full, gonio_i_merl_scale[channel], &halves);
+    }
+    free(full);
+    *difference = gonio_i_merl_difference(&halves);
+    if (status == GONIO_OK && *difference > much) {
+        gonio_i_warn(context,
+                     "%s: phi_d and phi_d + 180 degrees, which are one sample turned around, "
+                     "differ by %.0f %% (RMS): an anisotropic sample, or light and detector that "
+                     "are not adjusted? The mean is taken",
+                     table->path, 100.0 * *difference);
+    }
+    return status;
+}
+
 static gonio_status open_table(gonio_context *context, const gonio_i_file *file,
                                gonio_material_source *source, char **description)
 {
@@ -214,8 +270,19 @@ static gonio_status open_table(gonio_context *context, const gonio_i_file *file,
         release(table);
         return status;
     }
+    double difference = 0.0;
+    const bool both = table->phi_bins == FULL_CIRCLE;
+    status = both ? compare_halves(context, table, &difference) : GONIO_OK;
+    if (status != GONIO_OK) {
+        release(table);
+        return status;
+    }
     *description = gonio_i_format("MERL table 90 x 90 x %d", table->phi_bins);
-    *source = (gonio_material_source){.read_slab = read_slab, .release = release, .self = table};
+    *source = (gonio_material_source){.read_slab = read_slab,
+                                      .release = release,
+                                      .self = table,
+                                      .both_halves = both,
+                                      .halves_difference = difference};
     return GONIO_OK;
 }
 
@@ -238,12 +305,6 @@ typedef struct writer {
     gonio_i_tables_progress *progress;
     gonio_status status; /* of the first thread that failed */
 } writer;
-
-/* Where a slab's plane of a channel stands in the file. */
-static off_t plane_offset(int channel, int theta_h)
-{
-    return (off_t)(HEADER + PLANE * (size_t)(GONIO_THETA_H_BINS * channel + theta_h));
-}
 
 static gonio_status report_slab(const writer *w)
 {
