@@ -186,17 +186,19 @@ GONIO_API gonio_status gonio_readings_set_deviations(gonio_context *context,
  * line a reading. theta_i_deg, phi_i_deg, theta_o_deg, phi_o_deg and at least one of R_per_sr,
  * G_per_sr, B_per_sr are needed, or columns named by wavelength (400nm_per_sr); channel (R, G, B or
  * all) says what the plan meant to read there. A plan is such a file without values. Commas,
- * semicolons or tabs, CRLF, a byte-order mark, comments, empty lines are understood; other columns
- * and comments are kept and written again.
+ * semicolons or tabs, any line ends, UTF-8 or UTF-16, comments, empty lines are understood, and
+ * other usual names and units; other columns and comments are kept and written again. A note says
+ * what columns that are not named so were taken for, and which hold numbers and are not read.
  *
  * Scattered readings as text, as Cornell's laboratory and pbrt have them: `#` comments, the number
  * of wavelengths, the wavelengths in nm, then for each reading theta_i, phi_i, theta_o, phi_o in
  * radians and a value in 1/sr for each wavelength, with line breaks anywhere.
  *
- * Angles: theta in [0, 90) degrees (a direction at or below the horizon is refused), phi in
- * [-360, 360]. options may be NULL. *readings is the caller's.
- * Errors: _IO, _FORMAT (not such a file, missing columns, not a number), _DATA (angles out of
- * range, repeats, negative or non-finite values, no readings); the message names the line. */
+ * Angles: theta in (-90, 90) degrees, below zero with 180 degrees added to phi; rows at or below
+ * the horizon are left out, and a note counts them. phi is any number. options may be NULL.
+ * *readings is the caller's. Errors: _IO, _FORMAT (not such a file, missing columns, not a number),
+ * _DATA (angles out of range, repeats, negative or non-finite values, no readings); the message
+ * names the line. */
 GONIO_API gonio_status gonio_readings_read(gonio_context *context, const char *path,
                                            const gonio_readings_options *options,
                                            gonio_readings **readings);

@@ -123,7 +123,7 @@ static bool is_negative(const char *text)
 
 void gonio_i_words_split(const char *text, gonio_i_words *words)
 {
-    char simple[NAME_ROOM];
+    char simple[NAME_ROOM] = "";
     words->count = 0;
     words->whole = simplify(text, simple) && !is_negative(text);
     for (const char *at = simple; *at != '\0';) {
