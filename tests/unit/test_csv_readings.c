@@ -334,6 +334,63 @@ static void test_angles_that_are_refused(void **state)
     gonio_context_free(&context);
 }
 
+/* A line for each wavelength, as data bases and data frames have it. */
+static void test_a_line_for_each_wavelength(void **state)
+{
+    (void)state;
+    static const double second[4] = {10, 0, 30, 180};
+    gonio_readings *readings = read_good("lambda (um),theta_i,phi_i,theta_o,phi_o,brf,u,remark\n"
+                                         "0.55,10,0,20,180,0.5,0.1,x\n0.45,10,0,20,180,0.4,0.1,\n"
+                                         "0.65,10,0,30,180,0.6,0.1,\n0.45,10,0,30,180,0.7,,y\n"
+                                         "0.45,10,0,95,180,0.7,,y\n",
+                                         "");
+    const gonio_readings_view *view = gonio_readings_describe(readings);
+    assert_int_equal(view->count, 2);
+    assert_int_equal(view->channels, 3);
+    assert_near(view->wavelength[0], 450.0);
+    assert_near(view->wavelength[2], 650.0);
+    assert_degrees(readings, 1, second);
+    assert_near(view->value[0], 0.4 / M_PI);
+    assert_near(view->value[1], 0.5 / M_PI);
+    assert_true(isnan(view->value[2]));
+    assert_near(view->deviation[1], 0.1 / M_PI);
+    assert_near(view->value[3], 0.7 / M_PI);
+    assert_true(isnan(view->deviation[3]));
+    assert_note(readings, "CSV with a line for each wavelength (angles 'theta_i'");
+    assert_note(readings, "wavelengths in micrometres; 2 readings; left out: 1 at or below");
+    gonio_readings_free(&readings);
+
+    readings = read_good(ANGLES ",wavelength,value_per_sr\n10,0,20,180,633,0.5\n", "");
+    assert_near(gonio_readings_describe(readings)->wavelength[0], 633.0);
+    gonio_readings_free(&readings);
+}
+
+static void test_bad_lines_for_each_wavelength(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text;
+        const char *message;
+    } cases[] = {
+        {ANGLES ",wavelength,brdf\n1,0,2,0,550,1\n1,0,2,0,500,1\n1,0,2,0,550,1\n",
+         "r.csv:4: the same directions and wavelength as another line"},
+        {ANGLES ",wavelength,brdf\n1,0,2,0,,1\n", "r.csv:2: wavelength '' is no wavelength"},
+        {ANGLES ",wavelength,brdf\n1,0,2,0,-5,1\n", "r.csv:2: wavelength '-5' is no wavelength"},
+        {ANGLES ",wavelength,brdf\n1,0,2,0,0.55,1\n", "0.55 nm is no light; is it in um?"},
+        {ANGLES ",wavelength,brdf\n", "no lines below the column names"},
+        {ANGLES ",wavelength\n1,0,2,0,550\n", "'wavelength' is not understood"},
+    };
+    gonio_context *context = support_context();
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        gonio_readings *readings = NULL;
+        assert_true(read_text(context, cases[k].text, "", true, &readings) != GONIO_OK);
+        if (strstr(support_message(), cases[k].message) == NULL) {
+            fail_msg("%s%s", cases[k].text, support_message());
+        }
+    }
+    gonio_context_free(&context);
+}
+
 /* What the user says goes before names and comments. */
 static void test_the_user_knows_better(void **state)
 {
@@ -362,6 +419,8 @@ int main(void)
         cmocka_unit_test(test_names_of_angles),
         cmocka_unit_test(test_names_that_are_no_angles),
         cmocka_unit_test(test_angles_that_are_refused),
+        cmocka_unit_test(test_a_line_for_each_wavelength),
+        cmocka_unit_test(test_bad_lines_for_each_wavelength),
         cmocka_unit_test(test_the_user_knows_better),
     };
     return cmocka_run_group_tests_name("csv readings", tests, NULL, NULL);

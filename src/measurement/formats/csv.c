@@ -6,6 +6,7 @@
 
 #include "../../plan/plan_file.h"
 #include "../import.h"
+#include "../long_table.h"
 #include "../rules.h"
 #include "csv_columns.h"
 #include "csv_notes.h"
@@ -39,6 +40,8 @@ typedef struct csv_source {
     double *deviation;         /* [channels] */
     gonio_i_csv_others others; /* columns that are not read */
     double difference;         /* of azimuths, degrees, of a row */
+    double wavelength;         /* of a row */
+    gonio_i_long_table table;  /* rows of one wavelength each */
 } csv_source;
 
 static gonio_status bad_cell(const csv_source *s, size_t column, gonio_status status,
@@ -130,6 +133,14 @@ static gonio_status take_deviation(const csv_source *s, size_t column, size_t ch
     return problem == NULL ? GONIO_OK : bad_cell(s, column, status, problem);
 }
 
+static gonio_status take_wavelength(csv_source *s, size_t column)
+{
+    s->wavelength = number_of(s, column);
+    return s->wavelength > 0.0 && isfinite(s->wavelength)
+               ? GONIO_OK
+               : bad_cell(s, column, GONIO_ERROR_FORMAT, "is no wavelength");
+}
+
 /* Values come before deviations (csv_columns.h). */
 static gonio_status take_cell(csv_source *s, size_t k, gonio_i_row *row)
 {
@@ -139,6 +150,8 @@ static gonio_status take_cell(csv_source *s, size_t k, gonio_i_row *row)
         return take_angle(s, k, column->index, row);
     case GONIO_I_PLANNED:
         return take_planned(s, k, row);
+    case GONIO_I_ROW_WAVELENGTH:
+        return take_wavelength(s, k);
     case GONIO_I_VALUE:
         return take_value(s, k, column->index);
     case GONIO_I_DEVIATION:
@@ -160,6 +173,17 @@ static void take_difference(const csv_source *s, gonio_i_row *row)
     }
 }
 
+/* Kept until all wavelengths of its directions are known. */
+static gonio_status add_long(csv_source *s, const gonio_i_row *row)
+{
+    gonio_i_long_row kept = {.wavelength = s->wavelength,
+                             .value = s->value[0],
+                             .deviation = s->deviation[0],
+                             .line = row->line};
+    memcpy(kept.degrees, row->degrees, sizeof kept.degrees);
+    return gonio_i_long_table_add(&s->table, &kept);
+}
+
 static gonio_status take_row(csv_source *s)
 {
     gonio_i_row row = {.planned = GONIO_ALL_CHANNELS,
@@ -176,7 +200,10 @@ static gonio_status take_row(csv_source *s)
     }
     take_difference(s, &row);
     gonio_i_csv_others_look(&s->others, &s->reader);
-    return status == GONIO_OK ? gonio_i_import_add(&s->in, &row) : status;
+    if (status != GONIO_OK) {
+        return status;
+    }
+    return s->columns->by_wavelength ? add_long(s, &row) : gonio_i_import_add(&s->in, &row);
 }
 
 static gonio_status take_rows(csv_source *s)
@@ -258,28 +285,59 @@ static size_t expected_rows(const gonio_i_csv_reader *reader)
     return lines < most ? lines : most;
 }
 
-static gonio_status import_rows(csv_source *s, gonio_i_csv_kept *kept)
+static void begin_import(csv_source *s, gonio_i_csv_kept *kept, const char *taken_as)
 {
     const gonio_convention stated = convention_of(s->columns);
-    char taken_as[GONIO_I_TAKEN_ROOM];
-    gonio_i_csv_describe(&s->reader, s->columns, taken_as);
     gonio_i_import_begin(&s->in, s->context, s->readings, taken_as, &stated);
     s->in.quiet = s->columns->own && !is_convention_given(&s->readings->options.as);
     s->in.keep_unmeasured = true;
     kept->rewrite_angles = !s->columns->own_angles || s->in.how.angles != GONIO_DEGREES ||
                            s->in.how.mirror == GONIO_MIRROR_0;
-    s->readings->keep_angles = kept->rewrite_angles;
-    s->readings->expected = expected_rows(&s->reader);
-    gonio_status status =
+    s->readings->keep_angles = kept->rewrite_angles || s->columns->by_wavelength;
+}
+
+/* Rows of one wavelength each say their channels only at the end. */
+static gonio_status import_long(csv_source *s)
+{
+    s->table.context = s->context;
+    s->table.once = !s->readings->options.average_repeats;
+    gonio_status status = take_rows(s);
+    status = status == GONIO_OK ? gonio_i_long_table_import(&s->table, &s->in) : status;
+    gonio_i_long_table_free(&s->table);
+    return status;
+}
+
+static gonio_status import_wide(csv_source *s)
+{
+    const gonio_status status =
         gonio_i_import_channels(&s->in, s->columns->channels, s->columns->wavelength);
-    if (status == GONIO_OK) {
-        take_nanometres(s->columns, s->readings);
-        status = gonio_i_csv_others_begin(&s->others, s->context, s->columns);
+    if (status != GONIO_OK) {
+        return status;
     }
-    status = status == GONIO_OK ? take_rows(s) : status;
+    take_nanometres(s->columns, s->readings);
+    s->readings->expected = expected_rows(&s->reader);
+    return take_rows(s);
+}
+
+static gonio_status import_rows(csv_source *s, gonio_i_csv_kept *kept)
+{
+    char taken_as[GONIO_I_TAKEN_ROOM];
+    gonio_i_csv_describe(&s->reader, s->columns, taken_as);
+    begin_import(s, kept, taken_as);
+    gonio_status status = gonio_i_csv_others_begin(&s->others, s->context, s->columns);
+    if (status == GONIO_OK) {
+        status = s->columns->by_wavelength ? import_long(s) : import_wide(s);
+    }
     status = status == GONIO_OK ? write_notes(s) : status;
     gonio_i_csv_others_free(&s->others);
     return gonio_i_import_end(&s->in, status);
+}
+
+/* Rows of which several are one reading are not written over. */
+static void drop_kept(gonio_readings *readings)
+{
+    readings->attachment.release(readings->attachment.data);
+    readings->attachment = (gonio_i_attachment){NULL, NULL};
 }
 
 /* The readings keep the text from here on. */
@@ -322,6 +380,9 @@ static gonio_status read(gonio_i_readings_file *file, gonio_readings *readings)
     if (status == GONIO_OK) {
         status = read_table(&s, kept);
         gonio_i_csv_close(&s.reader);
+    }
+    if (status == GONIO_OK && kept->columns.by_wavelength) {
+        drop_kept(readings);
     }
     return status;
 }

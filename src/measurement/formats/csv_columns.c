@@ -383,6 +383,21 @@ static void find_planned(const finder *f)
     }
 }
 
+/* Values of one column may be of many wavelengths, which another column states. */
+static void find_row_wavelength(const finder *f)
+{
+    gonio_i_csv_columns *c = f->c;
+    for (size_t k = 0; k < f->r->columns && !c->by_wavelength; k++) {
+        if (f->name[k].kind == GONIO_I_ROW_WAVELENGTH && f->family == GONIO_I_UNNAMED &&
+            c->channels == 1) {
+            c->column[k].kind = GONIO_I_ROW_WAVELENGTH;
+            c->stated.wavelengths = f->name[k].wavelength_unit;
+            c->by_wavelength = true;
+            c->own = false;
+        }
+    }
+}
+
 /* Angles first, then the channel, so that errors come in that order. */
 static gonio_status order_columns(const finder *f)
 {
@@ -417,6 +432,7 @@ static gonio_status choose_columns(finder *f)
         status = find_deviations(f);
     }
     find_planned(f);
+    find_row_wavelength(f);
     if (status == GONIO_OK && f->options->values_needed && !f->c->any_value) {
         status = refuse_no_values(f);
     }

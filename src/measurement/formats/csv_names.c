@@ -376,6 +376,13 @@ static bool has_certain_unit(const said *s)
     return (s->bits & STERADIAN) != 0;
 }
 
+static int wavelength_unit(const said *s)
+{
+    return (s->bits & NANOMETRE) != 0    ? GONIO_NANOMETRES
+           : (s->bits & MICROMETRE) != 0 ? GONIO_MICROMETRES
+                                         : 0;
+}
+
 /* A channel by colour, by wavelength or by number; false if a name says more than one. */
 static bool take_channel(const said *s, double number, gonio_i_column_name *name)
 {
@@ -394,9 +401,7 @@ static bool take_channel(const said *s, double number, gonio_i_column_name *name
         (numbered && (alone || (quantity != VALUE && number >= LEAST_BARE_WAVELENGTH)))) {
         name->family = GONIO_I_WAVELENGTH;
         name->wavelength = number;
-        name->wavelength_unit = (s->bits & NANOMETRE) != 0    ? GONIO_NANOMETRES
-                                : (s->bits & MICROMETRE) != 0 ? GONIO_MICROMETRES
-                                                              : 0;
+        name->wavelength_unit = wavelength_unit(s);
         return numbered && number > 0.0;
     }
     name->family = GONIO_I_UNNAMED;
@@ -414,6 +419,18 @@ static gonio_i_strength strength_of(const said *s, const gonio_i_column_name *na
     return has_certain_unit(s) ? GONIO_I_CERTAIN : likely ? GONIO_I_LIKELY : GONIO_I_BARE;
 }
 
+/* "wavelength (nm)", without a number. */
+static bool take_row_wavelength(const said *s, gonio_i_column_name *name)
+{
+    const unsigned allowed = LAMBDA | NANOMETRE | MICROMETRE | FILL;
+    if ((s->bits & LAMBDA) == 0 || (s->bits & ~allowed) != 0) {
+        return false;
+    }
+    name->kind = GONIO_I_ROW_WAVELENGTH;
+    name->wavelength_unit = wavelength_unit(s);
+    return true;
+}
+
 static bool take_value(const char *text, gonio_i_words *words, gonio_i_column_name *name)
 {
     said s;
@@ -421,6 +438,9 @@ static bool take_value(const char *text, gonio_i_words *words, gonio_i_column_na
     join_f_r(text, words);
     if (!hear_value(words, &s, &number) || (s.twice & (COLOUR | NUMBER | SPREAD)) != 0) {
         return false;
+    }
+    if (take_row_wavelength(&s, name)) {
+        return true;
     }
     const bool spread = (s.bits & SPREAD) != 0;
     const bool named = (s.bits & (COLOUR | NUMBER | QUANTITY)) != 0;

@@ -11,6 +11,7 @@ typedef enum gonio_i_column_kind {
     GONIO_I_OTHER = 0,
     GONIO_I_ANGLE,
     GONIO_I_PLANNED,
+    GONIO_I_ROW_WAVELENGTH, /* of the row's value, where a row has one */
     GONIO_I_VALUE,
     GONIO_I_DEVIATION
 } gonio_i_column_kind;

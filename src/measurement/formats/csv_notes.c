@@ -62,7 +62,8 @@ void gonio_i_csv_describe(const gonio_i_csv_reader *reader, const gonio_i_csv_co
                           char text[GONIO_I_TAKEN_ROOM])
 {
     const char *between = " (";
-    snprintf(text, GONIO_I_TAKEN_ROOM, "CSV");
+    snprintf(text, GONIO_I_TAKEN_ROOM, "CSV%s",
+             columns->by_wavelength ? " with a line for each wavelength" : "");
     if (!columns->own_angles) {
         list_kind(reader, columns, GONIO_I_ANGLE, " (angles ", text);
         between = "; ";

@@ -64,6 +64,7 @@ static void print_column(printer *p, const printed_column *column, size_t readin
     char name[GONIO_I_NAME_ROOM];
     switch (column->kind) {
     case GONIO_I_OTHER:
+    case GONIO_I_ROW_WAVELENGTH:
         print_cell(p, cell != NULL ? cell[column->index] : "");
         break;
     case GONIO_I_ANGLE:
