@@ -75,6 +75,14 @@ static size_t unquote(char *text, size_t length)
     return used;
 }
 
+void gonio_i_csv_blank_controls(char *text, size_t length)
+{
+    for (size_t k = 0; k < length; k++) {
+        const unsigned char c = (unsigned char)text[k];
+        text[k] = c < ' ' || c == 0x7f ? ' ' : text[k];
+    }
+}
+
 static bool take_comment(const gonio_i_csv_lines *lines, const char *line, size_t length)
 {
     if (lines->comment == NULL) {

@@ -23,6 +23,9 @@ void gonio_i_csv_lines_begin(gonio_i_csv_lines *lines, const char *text, size_t 
  * spreadsheets put there, are no part of it. False when out of memory. */
 bool gonio_i_csv_lines_next(gonio_i_csv_lines *lines, const char **line, size_t *length);
 
+/* Puts blanks in place of tabs, line ends and other control characters. */
+void gonio_i_csv_blank_controls(char *text, size_t length);
+
 /* The separator that a line like sep=; states; 0 if it is none. */
 char gonio_i_csv_stated_separator(const char *line, size_t length);
 

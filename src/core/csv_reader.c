@@ -172,6 +172,9 @@ static gonio_status read_names(gonio_i_csv_reader *r)
         csv_set_delim(r->parser, (unsigned char)r->delimiter);
         status = split(r, line, length);
     }
+    for (size_t k = 0; k < r->cells; k++) {
+        gonio_i_csv_blank_controls(r->cell[k], strlen(r->cell[k]));
+    }
     r->name = r->cell;
     r->name_room = r->room;
     r->columns = r->cells;
@@ -287,6 +290,7 @@ gonio_status gonio_i_csv_units_behind_names(gonio_i_csv_reader *reader)
     }
     char *at = room;
     for (size_t k = 0; k < reader->columns; k++) {
+        gonio_i_csv_blank_controls(reader->cell[k], strlen(reader->cell[k]));
         char *next = print_name(at, reader->name[k], reader->cell[k]);
         reader->name[k] = at;
         at = next;

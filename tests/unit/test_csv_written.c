@@ -110,6 +110,11 @@ static void test_written_again(void **state)
         /* planned, but not read */
         {ANGLES ",R_per_sr,G_per_sr,B_per_sr\n10,0,20,180,,,\n10,0,30,180,1,2,3\n", "",
          ANGLES ",R_per_sr,G_per_sr,B_per_sr\n10,0,20,180,,,\n10,0,30,180,1,2,3\n", ""},
+        /* a deviation without its value */
+        {ANGLES ",R_per_sr,R_deviation_per_sr,B_deviation_per_sr\n10,0,20,180,1,0.5,\n", "",
+         ANGLES ",R_per_sr,R_deviation_per_sr,G_per_sr,B_per_sr,G_deviation_per_sr,"
+                "B_deviation_per_sr\n10,0,20,180,1,0.5,,,,\n",
+         ""},
         /* a line for each wavelength */
         {ANGLES ",wavelength_nm,brdf\n10,0,20.5,180,650,2\n10,0,20.5,180,550,1\n"
                 "10,0,30,180,550,3\n",

@@ -149,6 +149,17 @@ static int rank(gonio_i_family family)
     return family == GONIO_I_WAVELENGTH ? 2 : family == GONIO_I_COLOUR ? 1 : 0;
 }
 
+/* Than those before; a name of nothing but a channel and a unit, as gonio's, before one that names
+ * a quantity. */
+static bool is_surer(const finder *f, const gonio_i_column_name *n)
+{
+    if (n->strength != f->strongest) {
+        return n->strength > f->strongest;
+    }
+    return rank(n->family) > rank(f->family) ||
+           (n->family == f->family && n->quantity == 0 && f->quantity != 0);
+}
+
 /* Which columns are those of values: the surest of them say their family and quantity. */
 static gonio_status choose_family(finder *f)
 {
@@ -162,9 +173,7 @@ static gonio_status choose_family(finder *f)
     f->family = GONIO_I_COLOUR;
     for (size_t k = 0; k < f->r->columns; k++) {
         const gonio_i_column_name *n = &f->name[k];
-        const bool surer = n->strength > f->strongest ||
-                           (n->strength == f->strongest && rank(n->family) > rank(f->family));
-        if (n->kind == GONIO_I_VALUE && surer) {
+        if (n->kind == GONIO_I_VALUE && is_surer(f, n)) {
             f->strongest = n->strength;
             f->family = n->family;
             f->quantity = n->quantity;
@@ -175,7 +184,8 @@ static gonio_status choose_family(finder *f)
 
 static bool is_chosen(const finder *f, const gonio_i_column_name *n)
 {
-    return n->kind == GONIO_I_VALUE && n->family == f->family && n->quantity == f->quantity &&
+    return n->kind == GONIO_I_VALUE && n->family == f->family &&
+           (n->quantity == f->quantity || n->quantity == 0) &&
            (n->strength > GONIO_I_BARE || f->strongest == GONIO_I_BARE);
 }
 
@@ -321,7 +331,16 @@ static void add_deviation(const finder *f, size_t k, size_t value, bool *taken)
     taken[c->column[value].index] = true;
 }
 
-/* Deviations belong to the values of the same name; of others they are not read. */
+static void try_deviation(const finder *f, size_t k, const key_list *list, bool *taken)
+{
+    const size_t value = value_of(f, list, &f->name[k]);
+    if (value < f->r->columns && !taken[f->c->column[value].index]) {
+        add_deviation(f, k, value, taken);
+    }
+}
+
+/* Deviations belong to the values of the same name; of others they are not read. Of two for the
+ * same, gonio's own name goes first. */
 static gonio_status find_deviations(const finder *f)
 {
     key_list list;
@@ -332,11 +351,11 @@ static gonio_status find_deviations(const finder *f)
         return status;
     }
     status = refuse_twice(f, &list);
-    for (size_t k = 0; k < f->r->columns && status == GONIO_OK; k++) {
-        const size_t value =
-            f->name[k].kind == GONIO_I_DEVIATION ? value_of(f, &list, &f->name[k]) : f->r->columns;
-        if (value < f->r->columns && !taken[f->c->column[value].index]) {
-            add_deviation(f, k, value, taken);
+    for (int own = 1; own >= 0 && status == GONIO_OK; own--) {
+        for (size_t k = 0; k < f->r->columns; k++) {
+            if (f->name[k].kind == GONIO_I_DEVIATION && f->name[k].own == (own == 1)) {
+                try_deviation(f, k, &list, taken);
+            }
         }
     }
     free(list.item);

@@ -1,6 +1,7 @@
 /* What the name of a column says: see csv_names.h. */
 #include "csv_names.h"
 
+#include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -485,22 +486,40 @@ static bool is_own_angle(const char *text)
     return k < 4;
 }
 
-gonio_i_column_name gonio_i_column_name_of(const char *text)
+static gonio_i_column_name name_of(const char *text)
 {
     gonio_i_column_name name = {0};
     gonio_i_words words;
-    if (strcasecmp(text, "channel") == 0) {
-        name.kind = GONIO_I_PLANNED;
-        name.own = true;
-        return name;
-    }
     gonio_i_words_split(text, &words);
     if (take_angle(&words, &name)) {
         name.own = is_own_angle(text);
-    } else if (take_value(text, &words, &name)) {
-        name.own = is_own_value(text);
-    } else {
-        name = (gonio_i_column_name){0};
+        return name;
     }
-    return name;
+    if (take_value(text, &words, &name)) {
+        name.own = is_own_value(text);
+        return name;
+    }
+    return (gonio_i_column_name){0};
+}
+
+/* Without capitals, which begin words elsewhere. */
+static gonio_i_column_name name_of_small(const char *text)
+{
+    char small[128];
+    size_t k = 0;
+    while (k + 1 < sizeof small && text[k] != '\0') {
+        small[k] = (char)tolower((unsigned char)text[k]);
+        k++;
+    }
+    small[k] = '\0';
+    return text[k] == '\0' ? name_of(small) : (gonio_i_column_name){0};
+}
+
+gonio_i_column_name gonio_i_column_name_of(const char *text)
+{
+    if (strcasecmp(text, "channel") == 0) {
+        return (gonio_i_column_name){.kind = GONIO_I_PLANNED, .own = true};
+    }
+    const gonio_i_column_name name = name_of(text);
+    return name.kind != GONIO_I_OTHER ? name : name_of_small(text);
 }

@@ -209,9 +209,34 @@ static void add_old_angle(printer *p, bool rewrite, size_t k)
     }
 }
 
+static bool has_name_of(const gonio_readings *r, size_t channel, const char *old_name)
+{
+    char value[GONIO_I_NAME_ROOM];
+    char deviation[GONIO_I_NAME_ROOM];
+    gonio_i_value_name(r, channel, false, value);
+    gonio_i_value_name(r, channel, true, deviation);
+    return strcasecmp(value, old_name) == 0 || strcasecmp(deviation, old_name) == 0;
+}
+
+/* Whether a column that was not read would be read from what is written: deviations of values that
+ * the file does not have, but gonio writes, empty. */
+static bool is_written_anew(const printer *p, const char *old_name)
+{
+    const gonio_readings *r = p->readings;
+    const gonio_i_column_name name = gonio_i_column_name_of(old_name);
+    if (name.kind == GONIO_I_DEVIATION && name.family == GONIO_I_COLOUR) {
+        return gonio_readings_are_colours(r);
+    }
+    bool same = false;
+    for (size_t k = 0; k < r->channels && !same && name.own; k++) {
+        same = has_name_of(r, k, old_name);
+    }
+    return same;
+}
+
 /* The columns of the file that was read: as they were, but values and deviations are those of now,
  * and dropped where there are none. */
-static void add_old_columns(printer *p, const gonio_i_csv_kept *kept)
+static void add_old_columns(printer *p, const gonio_i_csv_kept *kept, char *const *name)
 {
     const gonio_i_csv_columns *old = &kept->columns;
     for (size_t k = 0; k < old->count; k++) {
@@ -222,7 +247,9 @@ static void add_old_columns(printer *p, const gonio_i_csv_kept *kept)
             continue;
         }
         if (column->kind != GONIO_I_VALUE && !deviation) {
-            add_column(p, GONIO_I_OTHER, k);
+            if (column->kind == GONIO_I_PLANNED || !is_written_anew(p, name[k])) {
+                add_column(p, GONIO_I_OTHER, k);
+            }
             continue;
         }
         const size_t channel = channel_now(p, old, column);
@@ -269,7 +296,8 @@ static void add_directions(printer *p)
     }
 }
 
-static gonio_status choose_columns(gonio_context *context, printer *p, const gonio_i_csv_kept *old)
+static gonio_status choose_columns(gonio_context *context, printer *p, const gonio_i_csv_kept *old,
+                                   char *const *old_name)
 {
     const size_t most = (old != NULL ? old->columns.count : 0) + 5 + 2 * p->readings->channels;
     p->column = gonio_i_allocate(context, most, sizeof *p->column);
@@ -277,7 +305,7 @@ static gonio_status choose_columns(gonio_context *context, printer *p, const gon
         return GONIO_ERROR_MEMORY;
     }
     if (old != NULL) {
-        add_old_columns(p, old);
+        add_old_columns(p, old, old_name);
     } else {
         add_directions(p);
     }
@@ -325,7 +353,7 @@ static gonio_status print_over(gonio_context *context, printer *p, const gonio_i
         return status;
     }
     p->delimiter = old.delimiter;
-    status = choose_columns(context, p, kept);
+    status = choose_columns(context, p, kept, old.name);
     if (status == GONIO_OK) {
         status = print_comments(p, command) ? GONIO_OK : GONIO_ERROR_MEMORY;
     }
@@ -336,7 +364,7 @@ static gonio_status print_over(gonio_context *context, printer *p, const gonio_i
 
 static gonio_status print_new(gonio_context *context, printer *p, const char *command)
 {
-    gonio_status status = choose_columns(context, p, NULL);
+    gonio_status status = choose_columns(context, p, NULL, NULL);
     if (status == GONIO_OK) {
         status = print_comments(p, command) ? GONIO_OK : GONIO_ERROR_MEMORY;
     }
