@@ -125,6 +125,15 @@ static void print_channels(const description *d)
     }
 }
 
+/* "10 to 80 deg", or "10 deg" if that is all. */
+static void print_range(const char *name, const double radians[2])
+{
+    const double least = degrees(radians[0]);
+    const double most = degrees(radians[1]);
+    printf("%s %.4g", name, least);
+    printf(most > least ? " to %.4g deg" : " deg", most);
+}
+
 static void print_directions(const description *d)
 {
     const gonio_survey *s = d->survey;
@@ -135,20 +144,18 @@ static void print_directions(const description *d)
         }
         printf(" deg\n");
     } else {
-        printf("  light        theta_i %.4g to %.4g deg", degrees(s->theta_i[0]),
-               degrees(s->theta_i[1]));
+        print_range("  light        theta_i", s->theta_i);
         if (s->incidences > 0) {
             printf(", %zu polar angles", s->incidences);
         }
         putchar('\n');
     }
-    printf("  viewer       theta_o %.4g to %.4g deg; %s in the plane of incidence\n",
-           degrees(s->theta_o[0]), degrees(s->theta_o[1]),
-           s->in_plane == d->view->count ? "all"
-           : s->in_plane == 0            ? "none"
-                                         : "some");
-    printf("  half vector  theta_h %.3g to %.4g deg; 0 is the mirror direction\n",
-           degrees(s->theta_h[0]), degrees(s->theta_h[1]));
+    print_range("  viewer       theta_o", s->theta_o);
+    printf("; %s in the plane of incidence\n", s->in_plane == d->view->count ? "all"
+                                               : s->in_plane == 0            ? "none"
+                                                                             : "some");
+    print_range("  half vector  theta_h", s->theta_h);
+    puts("; 0 is the mirror direction");
 }
 
 static void print_one_albedo(const description *d, const gonio_incidence *incidence)
@@ -227,15 +234,27 @@ static void print_agreement(const gonio_survey *s)
     }
 }
 
+/* A line may have several readings. */
 static void print_outliers(const description *d)
 {
     const gonio_survey *s = d->survey;
+    size_t before = 0;
+    int listed = 0;
     printf("  suspicious   %zu reading%s far from those around %s: line%s", s->outliers,
            tool_plural(s->outliers), s->outliers == 1 ? "it" : "them", tool_plural(s->outliers));
-    for (size_t k = 0; k < s->outliers && k < MOST_LISTED; k++) {
-        printf("%s %zu", k > 0 ? "," : "", d->view->line[s->outlier[k]]);
+    for (size_t k = 0; k < s->outliers && k < GONIO_MOST_OUTLIERS && listed < MOST_LISTED; k++) {
+        const size_t line = d->view->line[s->outlier[k]];
+        if (line != before) {
+            printf("%s %zu", listed > 0 ? "," : "", line);
+            before = line;
+            listed++;
+        }
     }
     puts(s->outliers > MOST_LISTED ? " ..." : "");
+    if (s->outliers > s->measured / 100 && s->outliers > MOST_LISTED) {
+        puts("               so many are found of an anisotropic or a textured material, and of "
+             "noise");
+    }
 }
 
 /* What may be wrong. */
