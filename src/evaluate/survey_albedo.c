@@ -37,8 +37,10 @@ static int cell_of(vector v)
 /* The direction at a cell's centre; false if that is outside of the disc. */
 static bool centre_of(int cell, vector *v)
 {
-    v->x = (cell % ACROSS + 0.5) / UP - 1.0;
-    v->y = (cell / ACROSS + 0.5) / UP;
+    const int column = cell % ACROSS;
+    const int row = cell / ACROSS;
+    v->x = (column + 0.5) / UP - 1.0;
+    v->y = (row + 0.5) / UP;
     const double rest = 1.0 - v->x * v->x - v->y * v->y;
     v->z = sqrt(fmax(rest, 0.0));
     return rest > 0.0;
