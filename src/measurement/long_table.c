@@ -203,14 +203,6 @@ static gonio_status hand_on(const sums *s, const gonio_i_long_table *table,
     return gonio_i_import_add(import, &made);
 }
 
-static gonio_status refuse_twice(const gonio_i_import *import, const gonio_i_long_row *row)
-{
-    return gonio_i_fail(import->context, GONIO_ERROR_DATA,
-                        "%s:%zu: the same directions and wavelength as another line; delete one, "
-                        "or accept repeats with --average-repeats",
-                        import->readings->path, row->line);
-}
-
 static gonio_status import_groups(const gonio_i_long_table *table, const place *places,
                                   const double *wavelength, const sums *s, gonio_i_import *import)
 {
@@ -219,11 +211,7 @@ static gonio_status import_groups(const gonio_i_long_table *table, const place *
         const size_t first = k;
         clear(s);
         for (; k < table->count && places[k].first == places[first].first; k++) {
-            const size_t channel = channel_of(wavelength, s->channels, places[k].row->wavelength);
-            add(s, places[k].row, channel);
-            if (table->once && s->count[channel] > 1.0) {
-                return refuse_twice(import, places[k].row);
-            }
+            add(s, places[k].row, channel_of(wavelength, s->channels, places[k].row->wavelength));
         }
         status = hand_on(s, table, places[first].row, import);
     }

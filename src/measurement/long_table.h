@@ -24,7 +24,6 @@ typedef struct gonio_i_long_table {
     gonio_i_long_row *row; /* [count] */
     bool any_deviation;
     size_t numbered; /* channels without wavelengths, which rows number; 0: wavelengths */
-    bool once;       /* a direction and wavelength with more than one value is an error */
 } gonio_i_long_table;
 
 /* A table begins zero-initialised but for its context. Errors: _MEMORY. */
@@ -32,8 +31,7 @@ gonio_status gonio_i_long_table_add(gonio_i_long_table *table, const gonio_i_lon
 
 /* Says the channels of the import (numbered ones, or wavelengths ascending) and adds its rows.
  * The deviation of a mean of m values is the root of the sum of their squares, over m. Errors: as
- * of the import; _FORMAT for more than 4096 wavelengths; _DATA for what is there twice and may not
- * be; _MEMORY. */
+ * of the import; _FORMAT for more than 4096 wavelengths; _MEMORY. */
 gonio_status gonio_i_long_table_import(gonio_i_long_table *table, gonio_i_import *import);
 
 void gonio_i_long_table_free(gonio_i_long_table *table);

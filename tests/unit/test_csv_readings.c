@@ -373,7 +373,7 @@ static void test_bad_lines_for_each_wavelength(void **state)
         const char *message;
     } cases[] = {
         {ANGLES ",wavelength,brdf\n1,0,2,0,550,1\n1,0,2,0,500,1\n1,0,2,0,550,1\n",
-         "r.csv:4: the same directions and wavelength as another line"},
+         "r.csv:4: the same directions and channel as line 2"},
         {ANGLES ",wavelength,brdf\n1,0,2,0,,1\n", "r.csv:2: wavelength '' is no wavelength"},
         {ANGLES ",wavelength,brdf\n1,0,2,0,-5,1\n", "r.csv:2: wavelength '-5' is no wavelength"},
         {ANGLES ",wavelength,brdf\n1,0,2,0,0.55,1\n", "0.55 nm is no light; is it in um?"},

@@ -300,7 +300,6 @@ static void begin_import(csv_source *s, gonio_i_csv_kept *kept, const char *take
 static gonio_status import_long(csv_source *s)
 {
     s->table.context = s->context;
-    s->table.once = !s->readings->options.average_repeats;
     gonio_status status = take_rows(s);
     status = status == GONIO_OK ? gonio_i_long_table_import(&s->table, &s->in) : status;
     gonio_i_long_table_free(&s->table);
