@@ -2,7 +2,7 @@
  *
  * Candidate levels are compared by leave-one-out likelihood: the density of readings above zero,
  * per 1/sr, and the probability of zeros. The likelihood is the largest over models of usual and of
- * unusual materials; plain Gaussians suffice. */
+ * unusual materials. Plain Gaussians are sufficient. */
 #include "dark_level.h"
 
 #include <math.h>
@@ -11,8 +11,8 @@
 #include "parallel_for.h"
 #include "leave_one_out.h"
 
-/* Levels in units of s, and none: from what makes no difference to what makes an instrument
- * useless, 2^(1/2) apart. */
+/* Levels in units of s, 2^(1/2) apart, and none. The smallest has no effect; the largest makes an
+ * instrument useless. */
 static const double LEAST_LEVEL = 0.125;
 
 enum { LEVELS = 14 };
@@ -22,27 +22,27 @@ static double level(int k)
     return k == 0 ? 0.0 : LEAST_LEVEL * pow(2.0, 0.5 * (k - 1));
 }
 
-/* ln of how much likelier levels make all readings before they are believed, of three channels; of
- * more, which say the same again, as their number's square root. Of readings that lack nothing the
- * best levels explain less than 1 (docs/experiments.md). */
+/* The gain in log likelihood from which levels are accepted, for three channels. Further channels
+ * are not independent, so it grows with the square root of their number. Readings without a dark
+ * level have a gain below 1 (docs/experiments.md). */
 static const double CONVINCING = 8.0;
 
-/* From a usual material's to that of the most unusual one. */
+/* alpha of the models, from a usual material to the most unusual one. */
 static const gonio_i_model MODELS[] = {{1.0, 0.12, 0.0}, {1.0, 0.25, 8.0}, {1.0, 0.5, 8.0}};
 
 enum { MODELS_COUNT = sizeof MODELS / sizeof *MODELS };
 
-/* A zero is read for another reason. */
+/* The probability that a zero has another cause. */
 static const double OTHERWISE = 0.03;
 
-/* ln of the probability that a reading is as far down as its bound, from what the others say. */
+/* ln of the probability that a reading is at most its bound, from the leave-one-out prediction. */
 static double log_probability(double difference, double variance)
 {
     const double below = 0.5 * erfc(-difference / sqrt(2.0 * variance));
     return log((1.0 - OTHERWISE) * below + OTHERWISE);
 }
 
-/* ln of how likely the readings of a column are, but for a constant. */
+/* The log likelihood of the readings of a column, up to a constant. */
 static gonio_status score_readings(gonio_i_fit *e, const gonio_i_model *model,
                                    const gonio_i_column *column, double *score)
 {
@@ -50,7 +50,7 @@ static gonio_status score_readings(gonio_i_fit *e, const gonio_i_model *model,
     const gonio_status status = gonio_i_leave_one_out_differences(e, model, &difference);
     *score = 0.0;
     for (size_t i = 0; i < e->n && status == GONIO_OK; i++) {
-        /* What is left out or set aside is judged like all others. */
+        /* Readings that are left out or set aside are judged like all others. */
         const double others = difference[e->n + i] - gonio_i_fit_noise(e, i);
         const double variance = fmax(others, 0.0) + column->observation[i].variance;
         if (e->bound[i] < 0) {
@@ -76,7 +76,7 @@ static gonio_status score_model(gonio_i_fit *e, const gonio_i_model *model,
     return status == GONIO_OK ? score_readings(e, model, column, score) : status;
 }
 
-/* By the likeliest model. */
+/* The log likelihood under the most likely model. */
 static gonio_status score_values(gonio_i_fit *e, const gonio_i_column *column, double *score)
 {
     gonio_status status = GONIO_OK;
@@ -109,8 +109,8 @@ static double scale_of(const search *s, size_t column)
     return gonio_readings_scale(s->readings, column);
 }
 
-/* Beforehand, a level is the likelier the lower it is: readings that are all zero fit any that is
- * high enough. dark: scratch of [columns]. */
+/* The prior of a level falls with the level: readings that are all zero fit any level that is high
+ * enough. dark: scratch of [columns]. */
 static gonio_status try_levels(const search *s, size_t c, gonio_i_fit *e, double *dark)
 {
     gonio_status status = GONIO_OK;
@@ -177,8 +177,8 @@ static gonio_status score_columns(search *s, const gonio_i_columns *columns)
     return status;
 }
 
-/* The mean over the levels by their likelihood; adds to `gain` how much likelier the best one is
- * than none. */
+/* The mean over the levels, weighted by their likelihood. Adds the log likelihood ratio of the best
+ * level and none to `gain`. */
 static double mean_level(const double score[LEVELS], double *gain)
 {
     double best = score[0];
@@ -218,7 +218,7 @@ static bool allocate(search *s)
     return s->thinned && s->group && s->member && s->score && s->dark;
 }
 
-/* All but the level. */
+/* Frees all except the level. */
 static void release(search *s)
 {
     for (size_t c = 0; s->thinned != NULL && c < s->columns; c++) {

@@ -7,10 +7,10 @@
 
 #include "../linalg/linalg.h"
 
-/* Deviations from which on a reading is taken to be wrong, in units of what is usual among the
- * readings, or of the model's own if that is more; of a Gaussian one in 16,000 is. Where there are
- * many readings, more are far off without being wrong, and wrong ones stand out the more: it grows
- * with the sixth root of their number. */
+/* A reading is an outlier if its prediction error exceeds this number of standard deviations. The
+ * unit is the median error of the readings, or the model's standard deviation if that is larger.
+ * One in 16,000 of a Gaussian exceeds it. With many readings, more right ones have large errors,
+ * and wrong ones stand out more. So the threshold grows with the sixth root of their number. */
 static const double OUTLYING = 4.0;
 static const double MOST_OUTLYING = 6.0;
 static const double FEW = 40.0;
@@ -20,21 +20,21 @@ static double outlying_from(size_t n)
     return fmin(OUTLYING * pow(fmax((double)n / FEW, 1.0), 1.0 / 6.0), MOST_OUTLYING);
 }
 
-/* A contradicted reading's variance, in squares of its difference: it has hardly a say. */
+/* The variance of an outlier, in squares of its difference: it has hardly any weight. */
 static const double WIDENING = 100.0;
 
 enum { MOST_ROUNDS = 20 };
 
-/* Readings that speak for the prior in the misfit. */
+/* Readings as expected to which the misfit is shrunk. */
 static const double PRIOR_READINGS = 5.0;
 
-/* Of a reading that is set aside, in ln of the density: one in a hundred is wrong. */
+/* The cost of a reading that is set aside, in log density: one in a hundred is wrong. */
 static const double FOR_OUTLYING = 4.6;
 
-/* A variance that leaves a reading no say. */
+/* The variance of a reading without weight. */
 static const double NO_SAY = 1e6;
 
-/* Readings at which half the database's covariance is kept. */
+/* The number of readings at which h^2 is 1/2. */
 static const double HALF_KEPT = 5.0;
 
 double gonio_i_kernel_width(size_t n)
@@ -161,7 +161,7 @@ static double shrink(const gonio_i_model *model)
     return sqrt(1.0 - model->h * model->h);
 }
 
-/* ln q_j, but for what makes them add up to 1. */
+/* ln q_j, without the normalisation. */
 static double log_weight(const gonio_i_fit *e, size_t j)
 {
     return log(e->prior->share[j]) - 0.5 * square_sum(e->white + j * e->n, e->n);
@@ -197,7 +197,7 @@ gonio_status gonio_i_fit_solve(gonio_i_fit *e, const gonio_i_model *model)
     if (e->samples == 0) {
         e->model.h = 1.0;
     }
-    const bool mixture = e->model.h < 1.0; /* otherwise all samples say the same */
+    const bool mixture = e->model.h < 1.0; /* otherwise the samples have no effect */
     const gonio_status status = factorise(e, &logarithm);
     if (status != GONIO_OK) {
         return status;
@@ -278,7 +278,7 @@ gonio_status gonio_i_fit_leave_one_out(const gonio_i_fit *e, double *difference,
                                                   : status;
 }
 
-/* What settling needs to know of the readings. */
+/* Prediction errors of the readings, for gonio_i_fit_settle. */
 typedef struct judgement {
     double *difference; /* [n] */
     double *variance;   /* [n] */
@@ -293,8 +293,9 @@ static int compare_numbers(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* The median of the deviations, as a Gaussian's standard deviation; 1 at least: a material that
- * the prior knows badly is off everywhere, and that is no reason to believe none of it. */
+/* The standard deviation of a Gaussian with the median of the prediction errors, at least 1. A
+ * material that the prior describes badly is predicted badly everywhere. That is no reason to set
+ * all its readings aside. */
 static double usual_deviation(const gonio_i_fit *e, const judgement *j)
 {
     for (size_t i = 0; i < e->n; i++) {
@@ -304,12 +305,13 @@ static double usual_deviation(const gonio_i_fit *e, const judgement *j)
     return fmax(1.0, j->deviations[e->n / 2] / 0.6745);
 }
 
-/* A bound that the other readings keep by themselves says nothing. */
+/* A bound that the prediction from the other readings satisfies has no information. */
 static bool judge_bounds(gonio_i_fit *e, const judgement *j)
 {
     bool changed = false;
     for (size_t i = 0; i < e->n; i++) {
-        /* difference: reading less what the others say; of one left out, what the model says. */
+        /* difference: reading less its leave-one-out prediction; for one left out, less the
+         * prediction of the model. */
         const bool kept = e->bound[i] != 0 && e->bound[i] * j->difference[i] < 0.0;
         changed = changed || kept != e->left_out[i];
         e->left_out[i] = kept;
@@ -317,8 +319,8 @@ static bool judge_bounds(gonio_i_fit *e, const judgement *j)
     return changed;
 }
 
-/* The worst of the readings that the others contradict gets a variance to match; a few at a time,
- * as a wrong reading makes its neighbours look wrong. */
+/* The worst outliers get a variance to match. Only a few are changed at a time, because a wrong
+ * reading makes its neighbours look wrong. */
 static bool judge_readings(gonio_i_fit *e, const judgement *j)
 {
     const size_t most = 1 + e->n / 40;

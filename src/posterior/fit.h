@@ -5,9 +5,9 @@
 
 #include "sites.h"
 
-/* What the readings choose of the model; see posterior.h. */
+/* The parameters of the model that the readings choose; see posterior.h. */
 typedef struct gonio_i_model {
-    double h;     /* how much of the database's covariance each column keeps; 1 without samples */
+    double h;     /* kernel width: each kernel's covariance is h^2 I; 1 without samples */
     double alpha; /* of the remainder, log units */
     double peak;  /* of the remainder */
 } gonio_i_model;
@@ -17,7 +17,7 @@ static const double GONIO_I_KERNEL_WIDTH = 0.7;
 
 typedef struct gonio_i_fit {
     gonio_context *context;
-    const gonio_i_sites *sites; /* where was read: shared with other fits */
+    const gonio_i_sites *sites; /* the directions; shared with other fits */
     const gonio_i_prior *prior;
     size_t n;
     size_t components;
@@ -37,21 +37,21 @@ typedef struct gonio_i_fit {
     double misfit;   /* what the variances are multiplied by, see below */
 } gonio_i_fit;
 
-/* h of a mixture for a column of n readings: (n/(n + 5))^(1/2). The more there are, the less it
- * helps to stay near single columns of the database: a plain Gaussian is worse by 15 % at five
- * readings of the neural MERL materials and better by 3 % at forty. */
+/* h of a mixture for a column of n readings: (n/(n + 5))^(1/2). Narrow kernels help less with more
+ * readings: for the neural MERL materials a plain Gaussian is worse by 15 % with five readings, and
+ * better by 3 % with forty. */
 double gonio_i_kernel_width(size_t n);
 
-/* A fit of a column's values that stands on its sites, which must outlive it. plain: as a Gaussian,
+/* Begins a fit of a column's values over its sites, which must outlive it. plain: a Gaussian
  * without the samples of the prior. To be ended in any case. Errors: _MEMORY. */
 gonio_status gonio_i_fit_begin(gonio_context *context, const gonio_i_sites *sites, bool plain,
                                const gonio_i_column *column, gonio_i_fit *fit);
 
-/* Other values at the same sites: as if just begun with them. */
+/* Sets other values at the same sites. The fit is then as after gonio_i_fit_begin. */
 void gonio_i_fit_read(gonio_i_fit *fit, const gonio_i_column *column);
 void gonio_i_fit_end(gonio_i_fit *fit);
 
-/* The rest, for a model. Errors: _NUMERICAL, _MEMORY. */
+/* Solves the fit for a model. Errors: _NUMERICAL, _MEMORY. */
 gonio_status gonio_i_fit_solve(gonio_i_fit *fit, const gonio_i_model *model);
 
 /* The variance of a reading in the fit: so large that it has no weight if it is left out. */
@@ -63,8 +63,8 @@ double gonio_i_fit_noise(const gonio_i_fit *fit, size_t reading);
 gonio_status gonio_i_fit_leave_one_out(const gonio_i_fit *fit, double *difference,
                                        double *variance);
 
-/* Leaves out bounds that the prediction satisfies anyway. If judge_outliers is set, readings that
- * the others contradict get a variance to match, until nothing changes. outlying: their number. */
+/* Leaves out bounds that the prediction satisfies. If judge_outliers is set, gives outliers a
+ * variance to match, until nothing changes. outlying: the number of outliers. */
 gonio_status gonio_i_fit_settle(gonio_i_fit *fit, bool judge_outliers, size_t *outlying);
 
 /* Sum over the readings of the squared leave-one-out error over its variance. Sets misfit to its

@@ -1,4 +1,4 @@
-/* What readings are taken to mean: see interpret.h. */
+/* The interpretation of readings: see interpret.h. */
 #include "interpret.h"
 
 #include <stdlib.h>
@@ -16,7 +16,7 @@ gonio_status gonio_i_interpret(gonio_context *context, const gonio_i_prior *prio
         status = gonio_i_mistake_find(context, prior, readings, noise, columns, *dark, mistake);
     }
     if (*mistake != NULL) {
-        free(*dark); /* of readings that are not what they say */
+        free(*dark); /* the level was of readings with a mistake */
         *dark = NULL;
     }
     const gonio_i_transform transform = {.factor = 1.0, .dark = *dark};

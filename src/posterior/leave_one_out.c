@@ -1,4 +1,4 @@
-/* Readings that models and wrong directions are scored by: see leave_one_out.h. */
+/* Scores by leave-one-out prediction: see leave_one_out.h. */
 #include "leave_one_out.h"
 
 #include <math.h>

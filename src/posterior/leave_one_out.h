@@ -1,4 +1,4 @@
-/* Models and mistakes are judged by leaving readings out: by the density of each reading given the
+/* Scores of models and mistakes by leave-one-out prediction: the density of each reading given the
  * others, on at most 128 readings of at most 8 columns. */
 #ifndef GONIO_LEAVE_ONE_OUT_H
 #define GONIO_LEAVE_ONE_OUT_H
@@ -7,8 +7,8 @@
 
 enum { GONIO_I_SUBSET_COLUMNS = 8, GONIO_I_SUBSET_READINGS = 128 };
 
-/* At most so many readings of a column, evenly spaced: thinned has room for them, and may be the
- * column's own. Returns how many. */
+/* Copies evenly spaced readings of a column, at most the given number, to `thinned`, which may be
+ * the column's own. Returns their number. */
 size_t gonio_i_thin(const gonio_i_column *column, size_t most, gonio_i_observation *thinned);
 
 /* Thinned copies of columns, copies[count], each to be freed in any case. Errors: _MEMORY. */
@@ -30,18 +30,18 @@ gonio_status gonio_i_subset_begin(gonio_context *context, const gonio_i_prior *p
                                   gonio_i_subset *subset);
 void gonio_i_subset_end(gonio_i_subset *subset);
 
-/* Takes the values again from the columns that the subset is of, whose directions are the same. */
+/* Reads the values again from the subset's columns. Their directions must be the same. */
 void gonio_i_subset_read(gonio_i_subset *subset, const gonio_i_column *columns);
 
-/* The model while wrong readings are looked for: found only afterwards, they would pass for a
- * remainder. */
+/* The alpha of the model while wrong readings are searched. If models were chosen first, wrong
+ * readings would look like a remainder. */
 static const gonio_i_model GONIO_I_SETTLING = {GONIO_I_KERNEL_WIDTH, 0.12, 0.0};
 
 /* The prior's penalty for each factor of e in alpha, in the unit of scores. */
 static const double GONIO_I_FOR_REMAINDERS = 16.0 / 3.0;
 
-/* Solves for the model, and predicts each reading from the others: the difference to it [n], then
- * its variance [n]. difference belongs to the caller, in any case. Errors: _MEMORY, _NUMERICAL. */
+/* Solves for the model and predicts each reading from the others. *difference: the differences [n],
+ * then their variances [n]; the caller frees it in any case. Errors: _MEMORY, _NUMERICAL. */
 gonio_status gonio_i_leave_one_out_differences(gonio_i_fit *fit, const gonio_i_model *model,
                                                double **difference);
 

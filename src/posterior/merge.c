@@ -1,4 +1,4 @@
-/* Many readings as fewer: see merge.h. */
+/* Merging of readings: see merge.h. */
 #include "merge.h"
 
 #include <math.h>
@@ -8,7 +8,7 @@ static const double FINEST = 0.05;
 static const double COARSER = 1.2;
 static const double COARSEST = 20.0; /* one cell holds all that have the same signs */
 
-/* Of every variance: it does not average out. */
+/* A part of every variance that does not average out. */
 static const double LEFT_OPEN = GONIO_I_MODEL_DEVIATION * GONIO_I_MODEL_DEVIATION;
 
 /* A reading and its cell of the lattice. */
@@ -50,7 +50,7 @@ static void list_members(const gonio_i_column *column, member *members)
     }
 }
 
-/* Puts members in the order of their cells; returns how many cells there are. */
+/* Sorts members by their cells; returns the number of cells. */
 static size_t sort_into_cells(member *members, size_t count, double pitch)
 {
     for (size_t i = 0; i < count; i++) {

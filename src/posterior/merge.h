@@ -1,13 +1,11 @@
-/* Many readings as fewer: neighbours become one.
+/* Merging of neighbouring readings ("superobservations"; Lorenc 1981).
  *
- * The posterior holds the covariance of a column's readings, n x n. Of more than it can hold, those
- * that share a cell of a lattice in the coordinates in which the remainder is smooth
- * (gonio_i_place) are merged into one observation, as is usual for dense observations of smooth
- * fields ("superobservations"; Lorenc 1981): their mean weighted by 1/variance, at the one nearest
- * to their middle. Noise averages out, what the model leaves open inside a cell does not. Bounds
- * are merged with bounds of the same kind only. The lattice is the finest, in steps of 1.2, by
- * which few enough are left; cells of 1/20 of the remainder's length, half a bin of theta_h, at
- * least. */
+ * The posterior stores the covariance of a column's readings, n x n. If there are too many,
+ * readings in one cell of a lattice in the coordinates of the remainder (gonio_i_place) are merged
+ * into one observation: their mean weighted by 1/variance, at the reading nearest to their middle.
+ * Noise averages out. The variation inside a cell does not. Bounds are merged with bounds of the
+ * same kind only. The lattice is the finest, in steps of 1.2, that leaves few enough observations.
+ * Its cells are at least 1/20 of the remainder's length scale, half a bin of theta_h. */
 #ifndef GONIO_MERGE_H
 #define GONIO_MERGE_H
 

@@ -12,12 +12,12 @@
 
 /* A factor of pi alone is not among the hypotheses: materials differ by more than that. */
 
-/* How much likelier a mistake has to make the readings: e^30. */
+/* The log likelihood ratio from which a mistake is reported. */
 static const double CONVINCING = 30.0;
 
-/* Of the remainder, log units: some; and much, which the readings as they are may have too, so that
- * an unusual material is not taken for a mistake. With peaks, as those of a mirror are higher than
- * any in the database. */
+/* alpha of the remainder, log units. The readings without a mistake may also have the larger one,
+ * so that an unusual material is not taken for a mistake. Narrow peaks are included, because those
+ * of a mirror are higher than any in the database. */
 static const double SOME = 0.25;
 static const double MUCH = 0.5;
 static const double PEAK = 8.0;
@@ -57,10 +57,10 @@ static const struct hypothesis {
      "the values are reflectance factors in per cent; divide them by 100 pi"},
     {{.factor = 1.0, .merl = true},
      "the values are numbers of a MERL file; multiply them by (1, 1.15, 1.66)/1500"},
-    {{.factor = 1.0, .turn = from_radians}, "the angles are in radians; write them in degrees"},
-    {{.factor = 1.0, .turn = from_elevation},
+    {{.factor = 1.0, .change = from_radians}, "the angles are in radians; write them in degrees"},
+    {{.factor = 1.0, .change = from_elevation},
      "theta is measured from the surface; give 90 degrees less theta"},
-    {{.factor = 1.0, .turn = from_mirror},
+    {{.factor = 1.0, .change = from_mirror},
      "phi_o is measured from the mirror direction; add 180 degrees to it"},
 };
 
@@ -69,10 +69,10 @@ enum { HYPOTHESES = sizeof hypotheses / sizeof *hypotheses };
 /* Whether the directions exist under a hypothesis. */
 static bool is_possible(const gonio_readings_view *view, const gonio_i_transform *transform)
 {
-    for (size_t k = 0; k < view->count && transform->turn != NULL; k++) {
-        const gonio_pair turned = transform->turn(view->pair[k]);
-        const double largest = fmax(turned.incident.theta, turned.outgoing.theta);
-        const double least = fmin(turned.incident.theta, turned.outgoing.theta);
+    for (size_t k = 0; k < view->count && transform->change != NULL; k++) {
+        const gonio_pair changed = transform->change(view->pair[k]);
+        const double largest = fmax(changed.incident.theta, changed.outgoing.theta);
+        const double least = fmin(changed.incident.theta, changed.outgoing.theta);
         if (!(largest < M_PI / 2.0 && least >= 0.0)) {
             return false;
         }
@@ -80,7 +80,7 @@ static bool is_possible(const gonio_readings_view *view, const gonio_i_transform
     return true;
 }
 
-/* What hypotheses are tried on: MOST_TRIED readings of a few columns. */
+/* The readings on which hypotheses are tried: MOST_TRIED readings of a few columns. */
 typedef struct trial {
     gonio_context *context;
     const gonio_i_prior *prior;
@@ -153,22 +153,22 @@ static gonio_status weigh_columns(const trial *t, gonio_i_sites *const *sites,
 }
 
 /* ln of the density of the values under a transform and with a remainder of size alpha, scaled from
- * the readings that are tried to all. Only directions that are turned need other sites. */
+ * the readings that are tried to all. Only directions that change need other sites. */
 static gonio_status weigh(trial *t, const gonio_i_transform *transform, double alpha,
                           double *evidence)
 {
     for (size_t k = 0; k < t->count; k++) {
         gonio_i_column_transform(t->readings, t->noise, transform, &t->column[k]);
     }
-    if (transform->turn == NULL) {
+    if (transform->change == NULL) {
         return weigh_columns(t, t->sites, transform, alpha, evidence);
     }
-    gonio_i_sites *turned[MOST_COLUMNS] = {NULL};
-    gonio_status status = gonio_i_sites_share(t->context, t->prior, t->column, t->count, turned);
+    gonio_i_sites *changed[MOST_COLUMNS] = {NULL};
+    gonio_status status = gonio_i_sites_share(t->context, t->prior, t->column, t->count, changed);
     if (status == GONIO_OK) {
-        status = weigh_columns(t, turned, transform, alpha, evidence);
+        status = weigh_columns(t, changed, transform, alpha, evidence);
     }
-    gonio_i_sites_release(turned, t->count);
+    gonio_i_sites_release(changed, t->count);
     return status;
 }
 
@@ -204,7 +204,7 @@ gonio_status gonio_i_mistake_find(gonio_context *context, const gonio_i_prior *p
     trial t = {.context = context, .prior = prior, .readings = readings, .noise = noise};
     *mistake = NULL;
     if (prior->view->channels == GONIO_JOINT) {
-        return GONIO_OK; /* its columns hold all channels: nothing to compare one by one */
+        return GONIO_OK; /* the only column holds all channels */
     }
     gonio_status status = begin(&t, columns);
     if (status == GONIO_OK) {

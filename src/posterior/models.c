@@ -1,4 +1,4 @@
-/* Choosing and weighing models by leaving readings out: see models.h. */
+/* The choice and the weights of models by leave-one-out prediction: see models.h. */
 #include "models.h"
 
 #include <assert.h>
@@ -7,24 +7,23 @@
 
 #include "parallel_for.h"
 
-/* Narrow peaks only where there is much that the database does not know: for materials like its own
- * they cost a tenth. */
+/* Models with narrow peaks need a large alpha: for materials like the database's own, peaks
+ * increase the error by a tenth. */
 static const struct remainder {
     double alpha;
     double peak;
 } REMAINDERS[] = {{0.0, 0.0},  {0.03, 0.0}, {0.06, 0.0}, {0.12, 0.0}, {0.25, 0.0},
                   {0.25, 8.0}, {0.5, 0.0},  {0.5, 8.0},  {1.0, 0.0},  {1.0, 8.0}};
 
-/* ln of the density of what is left out counts by this share: channels, and readings near each
- * other, say the same again, and a sum over all of them is far too sure. */
+/* The share of the score that counts. Channels and neighbouring readings are not independent, so
+ * the sum over all of them is overconfident. */
 static const double SHARE = 1.0 / 8.0;
 
-/* What a plain Gaussian is the less likely for beforehand than a mixture, in ln. Found, as the
- * share and what counts against remainders, on two splits of the neural MERL materials
- * (docs/experiments.md). */
+/* The log prior ratio of a plain Gaussian and a mixture. Chosen, like the share and the prior of
+ * alpha, on two splits of the neural MERL materials (docs/experiments.md). */
 static const double FOR_PLAIN = 2.0 / 3.0;
 
-/* Models with less weight than this beside the likeliest are left out. */
+/* Models with less than this fraction of the largest weight are left out. */
 static const double NEGLIGIBLE = 0.02;
 
 enum {
@@ -39,7 +38,7 @@ static gonio_i_model choice(int k, size_t readings)
     return (gonio_i_model){h, remainder.alpha, remainder.peak};
 }
 
-/* ln of how likely a model is beforehand, but for a constant. */
+/* The log prior of a model, up to a constant. */
 static double log_prior(int k)
 {
     const double least = REMAINDERS[1].alpha;
@@ -48,9 +47,9 @@ static double log_prior(int k)
            (k < ALL_REMAINDERS ? 0.0 : FOR_PLAIN);
 }
 
-/* What setting aside single readings has to explain, for each direction's worth of them, in the
- * unit of scores: readings of unknown kinds of materials that look wrong explain 0 to 15 a
- * direction (40 readings), wrong ones 24 and more. */
+/* The gain in score from which outliers are set aside, for each direction's worth of them. With 40
+ * readings, right readings of unusual materials gain 0 to 15 a direction, wrong readings 24 and
+ * more. */
 static const double FOR_WRONG_DIRECTION = 14.0;
 
 /* Scores of every model given the readings, with outliers judged or not. */
@@ -134,7 +133,7 @@ static gonio_status score_columns(gonio_context *context, const gonio_i_subset *
     return status;
 }
 
-/* The likeliest model's score, with what models are less likely for beforehand. */
+/* The best score of the models, with the log prior added. */
 static double best_score(const subset_scores *o)
 {
     double best = -INFINITY;
@@ -173,7 +172,7 @@ static gonio_i_models normalise(const double log_weight[CHOICES], size_t reading
     return models;
 }
 
-/* Whether outliers are wrong readings rather than readings of an unknown kind of material. */
+/* Whether outliers are wrong readings rather than right readings of an unusual material. */
 static bool outliers_are_wrong(const gonio_i_prior *prior, size_t columns,
                                const subset_scores *judged, const subset_scores *unjudged)
 {

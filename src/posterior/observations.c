@@ -29,7 +29,7 @@ static double variance_of(double value, double deviation, double s, const gonio_
            GONIO_I_MODEL_DEVIATION * GONIO_I_MODEL_DEVIATION;
 }
 
-/* What a value is multiplied by. */
+/* The factor of a value. */
 static double factor_of(gonio_pair pair, double s, const gonio_i_transform *transform)
 {
     const double cosine = transform->by_cosine ? cos(pair.outgoing.theta) : 1.0;
@@ -61,7 +61,7 @@ static int bound_of(double read, const gonio_i_noise *noise)
     return saturated ? 1 : read <= 0.0 ? -1 : 0;
 }
 
-/* What a value means in log space; deviation: its own, or NaN. */
+/* The observation of a value in log space; deviation: that of the value, or NaN. */
 static void set_value(gonio_i_observation *o, double value, double deviation, double s,
                       const gonio_i_noise *noise)
 {
@@ -95,8 +95,8 @@ void gonio_i_column_transform(const gonio_readings *readings, const gonio_i_nois
         const double read = gonio_readings_value(readings, o->reading, channel);
         set_value(o, true_value(pair, channel, read, s, transform),
                   true_deviation(view, o->reading, channel, s, transform), s, noise);
-        if (transform->turn != NULL) {
-            o->at = gonio_half_difference_from_pair(transform->turn(pair));
+        if (transform->change != NULL) {
+            o->at = gonio_half_difference_from_pair(transform->change(pair));
         }
     }
 }

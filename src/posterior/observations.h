@@ -13,13 +13,13 @@ typedef struct gonio_i_noise {
     double saturation; /* readings of this value or more, 1/sr, are lower bounds; 0: none are */
 } gonio_i_noise;
 
-/* What readings are taken to mean. */
+/* A transform of readings: how the values and directions of the material follow from those read. */
 typedef struct gonio_i_transform {
-    double factor;                       /* of the values; */
-    bool by_cosine;                      /* which are divided by cos theta_o too */
-    bool merl;                           /* and multiplied by s */
-    const double *dark;                  /* [channels]: added to them (dark_level.h), or NULL */
-    gonio_pair (*turn)(gonio_pair pair); /* NULL: as they are */
+    double factor;                         /* of the values; */
+    bool by_cosine;                        /* which are divided by cos theta_o too */
+    bool merl;                             /* and multiplied by s */
+    const double *dark;                    /* [channels]: added to them (dark_level.h), or NULL */
+    gonio_pair (*change)(gonio_pair pair); /* of directions; NULL: none */
 } gonio_i_transform;
 
 /* The readings of each channel; of all channels together for a joint basis. */
@@ -35,8 +35,7 @@ gonio_status gonio_i_columns_create(gonio_context *context, const gonio_basis_vi
                                     gonio_i_columns *columns);
 void gonio_i_columns_free(gonio_i_columns *columns);
 
-/* Sets the observations of a column to what the same readings mean by a transform; directions
- * change only if it turns them. */
+/* Sets the observations of a column to the same readings under a transform. */
 void gonio_i_column_transform(const gonio_readings *readings, const gonio_i_noise *noise,
                               const gonio_i_transform *transform, gonio_i_column *column);
 
@@ -44,11 +43,12 @@ void gonio_i_column_transform(const gonio_readings *readings, const gonio_i_nois
 gonio_status gonio_i_columns_check(gonio_context *context, const gonio_i_columns *columns,
                                    const gonio_readings *readings);
 
-/* What is missing from a reading of a channel, 1/sr. dark: of the columns, or NULL for none. */
+/* The value that a dark level subtracts from a reading of a channel, 1/sr. dark: of the columns, or
+ * NULL for none. */
 double gonio_i_dark_level_missing(const double *dark, size_t channel, double theta_i);
 
-/* ln of how much a transform stretches the values of a column around them: sum ln(dg'/dv), without
- * bounds, which have a probability and no density. */
+/* ln of the Jacobian of a transform at the values of a column: sum ln(dg'/dv), without bounds,
+ * which have a probability and no density. */
 double gonio_i_transform_logarithm(const gonio_readings *readings, size_t channel,
                                    const gonio_i_noise *noise, const gonio_i_transform *transform);
 

@@ -1,4 +1,4 @@
-/* Work done side by side: see parallel_for.h. */
+/* A parallel loop: see parallel_for.h. */
 #include "parallel_for.h"
 
 #include <stdlib.h>
@@ -21,7 +21,7 @@ gonio_status gonio_i_parallel_for(gonio_context *context, gonio_i_steps *steps, 
     gonio_context *shared = gonio_i_shared_context_begin(context);
     gonio_status result = GONIO_OK;
     size_t failed = count;
-    /* Fewer pieces than threads are done one by one, each by all threads. */
+    /* Fewer tasks than threads are done one by one, each by all threads. */
 #pragma omp parallel for schedule(dynamic, 1) if (count >= threads) num_threads((int)threads)
     for (size_t k = 0; k < count; k++) {
         size_t before;

@@ -68,7 +68,7 @@ static void find_coefficients(const gonio_i_fit *e, double *c)
     }
 }
 
-/* Sum of squares of what is left between the readings and the field at them: D S^-1 (y - F z). */
+/* The sum of squared residuals of the field at the readings: D S^-1 (y - F z). */
 static double square_left(const gonio_i_fit *e)
 {
     double sum = 0.0;
@@ -79,7 +79,7 @@ static double square_left(const gonio_i_fit *e)
     return sum;
 }
 
-/* Adds what a model says, by its weight. c: scratch of K; sum[K]. */
+/* Adds a model's solution, times its weight. c: scratch of K; sum[K]. */
 static void add_model(const gonio_i_fit *e, double weight, double *c, double *sum,
                       const gonio_i_field_column *field)
 {
@@ -115,7 +115,7 @@ static gonio_status mix_models(gonio_i_fit *e, const gonio_i_models *models, dou
     return status;
 }
 
-/* The best model, with readings that the others contradict set aside. */
+/* The best model, with outliers set aside. */
 static gonio_status settle(const finding *all, gonio_i_fit *e, size_t *outlying)
 {
     const gonio_status status = gonio_i_fit_solve(e, &all->models.best);
@@ -378,15 +378,16 @@ static totals add_up(const finding *all)
     return t;
 }
 
-/* 100 times the root of an error's square by g's: the estimate is shorter than g by the error. */
+/* 100 times the root of the error's square over that of g. The square of g is that of the estimate
+ * plus that of the error. */
 static double relative(const totals *t, double error)
 {
     return 100.0 * sqrt(error / (t->sums.square + error));
 }
 
-/* From sums over the columns to what they stand for. Of the error the Gaussian of the likeliest
- * model has one opinion and the database another; the geometric mean of both is nearer to the truth
- * than either, in and out of the database (docs/experiments.md). */
+/* From sums over the columns to the results. The expected error is the geometric mean of that of
+ * the most likely model's Gaussian and that learned from the database. It is closer to the true
+ * error than either, in and out of the database (docs/experiments.md). */
 static void conclude(const finding *all)
 {
     const totals t = add_up(all);

@@ -25,8 +25,8 @@
 
 #include "../prior/prior.h"
 
-/* Standard deviation, in log units, of what interpolation between cells and the inside of a cell
- * leave open of a reading: the smallest of 0.01, 0.03, 0.06 at which the error of left-out
+/* Standard deviation, in log units, of the errors of interpolation between cells and of the
+ * variation inside a cell: of 0.01, 0.03, 0.06 the smallest at which the error of left-out
  * materials still falls. */
 #define GONIO_I_MODEL_DEVIATION 0.03
 

@@ -119,7 +119,8 @@ static void test_transforms(void **state)
     const double deviation[COUNT * CHANNELS] = {0.03, NAN, 0.002, 0.1, 0.1, 0.05};
     const double dark[CHANNELS] = {0.01, 0.02, 0.03};
     const gonio_i_transform nothing = {.factor = 1.0};
-    const gonio_i_transform tenth = {.factor = 0.1, .by_cosine = true, .dark = dark, .turn = swap};
+    const gonio_i_transform tenth = {
+        .factor = 0.1, .by_cosine = true, .dark = dark, .change = swap};
     gonio_context *context = support_context();
     gonio_readings *readings = make(context, deviation);
     gonio_i_columns columns = columns_of(context, readings, GONIO_SEPARATE);
