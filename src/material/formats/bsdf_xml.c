@@ -1,5 +1,5 @@
-/* BSDF-XML files, as WINDOW and Radiance have them: the reflection of one side, in a
- * Klems basis or as a tensor tree.
+/* BSDF-XML files, as WINDOW and Radiance write them: the reflection of one side, in a Klems basis
+ * or as a tensor tree.
  *
  * WindowElement/Optical/Layer/DataDefinition holds AngleBasis, rings of patches; WavelengthData a
  * block for each wavelength and direction, with ScatteringData, means of the BRDF over pairs of
@@ -283,7 +283,7 @@ static gonio_status take_matrices(const reader *in, const choice *c, xml_brdf *k
     return GONIO_OK;
 }
 
-/* The trees pass from the blocks to the material. */
+/* Moves the trees from the blocks to the material. */
 static gonio_status take_trees(reader *in, const choice *c, xml_brdf *k)
 {
     k->tree = gonio_i_allocate(in->context, c->channels, sizeof *k->tree);

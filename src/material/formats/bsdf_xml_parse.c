@@ -217,7 +217,7 @@ static void read_tree(parse *p, int dimensions, gonio_i_xml_block *b)
     }
 }
 
-/* Keeps reflection only. */
+/* Drops blocks that are not of reflection. */
 static void add_block(parse *p)
 {
     gonio_i_xml *x = p->xml;
@@ -329,7 +329,7 @@ static void XMLCALL on_text(void *user, const XML_Char *text, int length)
     p->text[p->length] = '\0';
 }
 
-/* Whatever an entity stands for, these files have none. */
+/* Refuses entities, which these files do not need. */
 static void XMLCALL on_entity(void *user, const XML_Char *name, int is_parameter,
                               const XML_Char *value, int value_length, const XML_Char *base,
                               const XML_Char *system, const XML_Char *public, const XML_Char *kind)
@@ -345,7 +345,7 @@ static void XMLCALL on_entity(void *user, const XML_Char *name, int is_parameter
     stop(user, GONIO_ERROR_FORMAT, "an entity is declared; gonio does not expand entities");
 }
 
-/* What is wrong with the XML, in words. */
+/* A message that says what is wrong with the XML. */
 static const char *name_error(enum XML_Error code)
 {
     const bool ends = code == XML_ERROR_NO_ELEMENTS || code == XML_ERROR_UNCLOSED_TOKEN ||

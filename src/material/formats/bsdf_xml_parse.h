@@ -1,4 +1,4 @@
-/* BSDF-XML as blocks of numbers and bases of angles, before anything is made of them. */
+/* BSDF-XML parsed into blocks of numbers and bases of angles. */
 #ifndef GONIO_BSDF_XML_PARSE_H
 #define GONIO_BSDF_XML_PARSE_H
 

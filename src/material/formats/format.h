@@ -11,8 +11,8 @@ typedef struct gonio_i_format_reader {
     const char *name; /* for "this file is not one of: ..." */
     /* Whether the content (never the name) looks like this format. */
     bool (*probe)(const gonio_i_file *file);
-    /* Opens it: gives a source and a description in words, to be released with free(). A
-     * description that is NULL, for want of memory, is the caller's to report. */
+    /* Opens the file. Gives a source and a text that describes it, to be released with free().
+     * The text is NULL if out of memory; the caller reports this. */
     gonio_status (*open)(gonio_context *context, const gonio_i_file *file,
                          gonio_material_source *source, char **description);
 } gonio_i_format_reader;
@@ -25,7 +25,7 @@ typedef struct gonio_i_format_reader {
 #define GONIO_I_DECLARE_READER(name) extern const gonio_i_format_reader gonio_i_##name##_reader;
 GONIO_I_MATERIAL_READERS(GONIO_I_DECLARE_READER)
 
-/* The name of the format that a file is of; NULL if of none. */
+/* The name of a file's format; NULL if it is none of these. */
 const char *gonio_i_material_format_of(const gonio_i_file *file);
 
 /* The names of the formats; NULL past the last. */

@@ -1,4 +1,4 @@
-/* Writing a material as readings in CSV, at directions on a grid: what every program can read. */
+/* Writing a material as readings in CSV, at directions on a grid. Every program can read these. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -24,7 +24,7 @@ static size_t count_steps(double range, double step)
     return (size_t)fmin(floor(range / step + 1e-9), MOST_STEPS) + 1;
 }
 
-/* Whole circles end a step before they begin again; at the pole one azimuth will do. */
+/* A full circle ends a step before 360 degrees. At the pole there is one azimuth. */
 static size_t count_azimuths(double theta, double step)
 {
     return theta > 0.0 ? count_steps(2.0 * M_PI - step, step) : 1;

@@ -36,7 +36,7 @@ static void release(void *self)
 
 /* ---- evaluation ---- */
 
-/* As gonio_half_difference_from_pair, but phi_d over the whole circle, as a place in 0 .. 1. */
+/* As gonio_half_difference_from_pair, with phi_d over the full circle, scaled to 0 .. 1. */
 static double place_of_phi_d(gonio_pair pair, double theta_h)
 {
     const double x = sin(pair.incident.theta) * cos(pair.incident.phi);

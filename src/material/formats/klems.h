@@ -1,8 +1,8 @@
 /* Klems bases: the hemisphere in rings of patches, as WINDOW and Radiance divide it.
  *
- * Patch j of a ring of n is centred at azimuth 2 pi j/n. Incident light goes the way it travels, so
- * that the patch of a mirrored direction has the same number as that of the incident one: the
- * direction towards the light is at the patch's azimuth + pi. */
+ * Patch j of a ring of n is centred at azimuth 2 pi j/n. An incident patch is named by the
+ * direction in which light travels: the direction towards the light is at the patch's azimuth + pi.
+ * So the patches of an incident direction and of its mirror direction have the same number. */
 #ifndef GONIO_KLEMS_H
 #define GONIO_KLEMS_H
 

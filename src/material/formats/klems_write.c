@@ -25,7 +25,7 @@ typedef struct writer {
     double *rgb;
 } writer;
 
-/* Sample k of a patch; `shift` sets the samples of one apart from those of another. */
+/* Sample k of a patch. `shift` makes the samples of different patches different. */
 static gonio_angles sample_patch(const gonio_i_klems *basis, size_t patch, size_t k, double shift,
                                  bool incident)
 {
@@ -49,7 +49,7 @@ static void set_directions(const writer *w, size_t in)
     }
 }
 
-/* The means of an incident patch, of samples with data; 0 where none has. */
+/* Stores the means over the samples with data for an incident patch; 0 without data. */
 static void store(const writer *w, size_t in)
 {
     for (size_t out = 0; out < w->patches; out++) {

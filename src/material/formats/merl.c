@@ -102,7 +102,7 @@ static gonio_status read_exactly(gonio_context *context, const merl_table *table
     return GONIO_OK;
 }
 
-/* Where a slab's plane of a channel stands in a file of 180 bins. */
+/* The offset of a slab's plane of a channel in a file of 180 bins. */
 static off_t plane_offset(int channel, int theta_h)
 {
     return (off_t)(HEADER + PLANE * (size_t)(GONIO_THETA_H_BINS * channel + theta_h));
@@ -129,7 +129,7 @@ GONIO_I_VECTORISED static size_t to_reflectance(double *rho)
     return negative;
 }
 
-/* Once a material. */
+/* Notes negative numbers, once a material. */
 static void note_negative(gonio_context *context, merl_table *table)
 {
     bool before;
@@ -220,10 +220,10 @@ static gonio_status check_shape(gonio_context *context, const gonio_i_file *file
     return GONIO_OK;
 }
 
-/* More than noise and rounding do, in a share of the RMS. */
+/* The limit of the RMS difference as a fraction of the RMS. Noise and rounding are below it. */
 static const double much = 0.1;
 
-/* How far the halves of a table of 360 bins are apart, which is warned of if it is much. */
+/* Compares the halves of a table of 360 bins, and warns if they differ much. */
 static gonio_status compare_halves(gonio_context *context, const merl_table *table,
                                    double *difference)
 {
@@ -327,7 +327,7 @@ static gonio_status write_slab(const writer *w, int theta_h, double *rho)
     return status == GONIO_OK ? report_slab(w) : status;
 }
 
-/* Some slabs, whose way to the disk begins while the next ones are made. */
+/* Writes some slabs, and starts their transfer to the disk while the next ones are computed. */
 static gonio_status write_block(const writer *w, int first, double *rho)
 {
     gonio_status status = GONIO_OK;

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-/* Not for -1, NaN and infinity. Slightly negative numbers are noise around zero. */
+/* Whether a number is data. -1, NaN and infinity are not. Slightly negative numbers are noise. */
 static bool has_data(double stored)
 {
     return stored > -1.0 && stored < INFINITY;

@@ -8,8 +8,8 @@
 
 enum { GONIO_I_MERL_FULL_CIRCLE = 2 * GONIO_PHI_D_BINS };
 
-/* The mean of those of either half that hold data, half[GONIO_THETA_D_BINS][GONIO_PHI_D_BINS]; -1
- * without data. */
+/* half[GONIO_THETA_D_BINS][GONIO_PHI_D_BINS]: the mean over the halves that have data; -1 without
+ * data. */
 void gonio_i_merl_fold(const double *full, double *half);
 
 /* Sums over bins with data in both halves, begun with zeros. */

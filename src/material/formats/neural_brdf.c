@@ -1,5 +1,6 @@
 /* Neural BRDFs (Sztrajman et al. 2021): Keras weights in HDF5 of a network 6-21-21-3 that maps
- * (h, d) to ln(1 + rho). Layer names vary from file to file, so the attributes are followed. */
+ * (h, d) to ln(1 + rho). Layer names vary from file to file. So the reader follows the attributes.
+ */
 #include "format.h"
 
 #include <math.h>
@@ -91,8 +92,8 @@ static void fill_inputs(int theta_h, int theta_d, const double cos_phi[PHI],
     }
 }
 
-/* rho = exp(y) - 1, clamped at 0, in the valid bins. Absurd weights give a y beyond the range of
- * numbers; it stays finite. */
+/* rho = exp(y) - 1, clamped at 0, in the valid bins. It is finite even for weights that overflow.
+ */
 static void store_row(int theta_h, int theta_d, double y[GONIO_CHANNELS][PADDED], double *rho)
 {
     const double largest = 600.0;
@@ -136,7 +137,7 @@ static bool is_kernel(const char *name)
     return strstr(name, "kernel") != NULL;
 }
 
-/* Reads one weight dataset; returns what is wrong with it, or NULL. */
+/* Reads one weight dataset. Returns NULL, or a text that says what is wrong. */
 static const char *read_weights(hid_t group, const char *name, int layer, network *net)
 {
     const bool kernel = is_kernel(name);

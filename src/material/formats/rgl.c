@@ -99,8 +99,8 @@ static gonio_angles to_angles(vector v)
     return (gonio_angles){atan2(hypot(v.x, v.y), v.z), atan2(v.y, v.x)};
 }
 
-/* Files of materials with symmetry hold azimuths of incidence from -pi on, of half a circle or a
- * quarter: both directions are turned or mirrored until the incident one is there. */
+/* Files of symmetrical materials hold azimuths of incidence of a half or a quarter circle from -pi
+ * on. Both directions are rotated or mirrored until the incident one is in this range. */
 static void reduce(const gonio_i_rgl *r, vector *i, vector *o)
 {
     if (r->repeats >= 2) {
@@ -165,7 +165,7 @@ const gonio_i_rgl *gonio_i_rgl_of(const gonio_material *material)
 
 /* ---- reading ---- */
 
-/* What is being read. */
+/* A file while it is read. */
 typedef struct reader {
     gonio_context *context;
     gonio_i_tensor_file file;
@@ -268,7 +268,7 @@ static gonio_status read_values(const reader *in)
     return gonio_i_tensor_floats(in->context, &in->file, field, &r->value);
 }
 
-/* All of a field of bytes; NULL, and 0 of them, if there is no such field. */
+/* Reads a field of bytes; NULL and size 0 if there is no such field. */
 static gonio_status read_bytes(const reader *in, const char *name, unsigned char **bytes,
                                size_t *count)
 {
@@ -298,7 +298,7 @@ static gonio_status read_jacobian(const reader *in)
     return status;
 }
 
-/* What evaluation does without, for a copy of the file. */
+/* Reads the fields that only a copy of the file needs. */
 static gonio_status read_rest(const reader *in)
 {
     gonio_i_rgl *r = in->r;

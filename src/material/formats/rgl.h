@@ -41,11 +41,11 @@ typedef struct gonio_i_rgl {
 /* An image at (x, y) in the unit square, bilinear. */
 double gonio_i_rgl_image_at(const gonio_i_rgl_image *image, double x, double y);
 
-/* Where angles stand on the axes of images: u(theta), and v(phi) in [0, 1). */
+/* The coordinates of angles in images: u(theta), and v(phi) in [0, 1). */
 double gonio_i_rgl_place_of_theta(double theta);
 double gonio_i_rgl_place_of_phi(double phi);
 
-/* What a material was read from; NULL if not from an RGL file. It belongs to the material. */
+/* The RGL file of a material, which belongs to the material; NULL if it was not read from one. */
 const gonio_i_rgl *gonio_i_rgl_of(const gonio_material *material);
 
 /* Writes it as it is, at most fields that gonio does not know missing. Errors: _IO, _MEMORY. */

@@ -15,7 +15,7 @@ static float *as_floats(gonio_context *context, const double *values, size_t cou
     return floats;
 }
 
-/* What has to be made from the doubles in memory. */
+/* Arrays that are converted from the doubles in memory. */
 typedef struct copies {
     float *phi;
     float *theta;

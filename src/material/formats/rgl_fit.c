@@ -1,15 +1,15 @@
 /* Values of an RGL .bsdf fitted to the material.
  *
- * Linear interpolation between values at single places is too high where a curve bends upwards, as
- * beside every highlight, and follows noise. So the values are moved until what is interpolated
- * from them fits at many directions in between: the grid's bins and their reverse. At each
- * direction
+ * Linear interpolation between values of the material is too high where a curve bends upwards, as
+ * beside every highlight, and it follows noise. So the values are changed until the interpolation
+ * fits at many directions in between: the grid's bins and their reciprocals. At each direction
  *
  *     e = ln((rho + s)/(rho' + s)) (rho' + s)/rho'
  *
- * is the relative change of the interpolated rho' that log space asks for; each value is multiplied
- * by the exponential of the mean of e over the directions that it counts for, by its weight there.
- * A few rounds of this (Jacobi's method for least squares, in logarithms) halve E6. */
+ * is the relative change of the interpolated rho' that reduces the error in log space. Each value
+ * is multiplied by the exponential of the mean of e over the directions that use it, weighted by
+ * its interpolation weight. A few rounds of this (Jacobi's method for least squares, in logarithms)
+ * halve E6. */
 #include "rgl_fit.h"
 
 #include <math.h>
@@ -29,9 +29,9 @@ enum {
     MOST_KEPT = 1 << 24 /* values that are kept from round to round: 128 MB */
 };
 
-static const double STEEPEST = 80.0 * M_PI / 180.0; /* beyond, measurements are not to be trusted */
+static const double STEEPEST = 80.0 * M_PI / 180.0; /* measurements beyond are not reliable */
 static const double LARGEST = 0.5;                  /* of a change, in logarithms */
-static const double HELD = 0.3;                     /* weight of leaving a value as it is */
+static const double HELD = 0.3;                     /* weight of no change */
 
 /* Where a direction is among the values: between two incidences and four places. */
 typedef struct spot {
@@ -111,7 +111,7 @@ static double scale_of(const fit *f, size_t channel)
     return gonio_i_merl_scale[f->sampler->view->wavelength == NULL ? channel : 0];
 }
 
-/* The change that a direction asks of a channel, whose values at the corners are at `index`. */
+/* e of a direction in a channel; the values at the corners are at `index`. */
 static double find_error(const fit *f, const corners *around, const size_t *index, double factor,
                          double s, double rho)
 {
@@ -156,7 +156,7 @@ static void add_direction(const fit *f, const spot *at, const double *rho)
     }
 }
 
-/* The material's values of a block of directions, which from the second round on may be there. */
+/* The material's values of a block of directions. From the second round on they may be kept. */
 static gonio_status find_values(const fit *f, int round, size_t first, size_t count,
                                 const double **values)
 {

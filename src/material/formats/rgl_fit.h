@@ -5,7 +5,7 @@
 #include "../sampler.h"
 #include "../warp.h"
 
-/* The file's values and what they are interpolated by. */
+/* The file's values, and the data by which they are interpolated. */
 typedef struct gonio_i_rgl_values {
     size_t thetas;
     const float *theta; /* [thetas], of incidence, radians */

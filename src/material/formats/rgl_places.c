@@ -1,9 +1,9 @@
-/* Where an RGL .bsdf has its places: more where its values bend.
+/* The density of the places of an RGL .bsdf: higher where its values bend.
  *
  * Between nodes at a distance h, linear interpolation of values V along u errs by up to
  * h^2 V''/8; in log space, g = ln(1 + rho/s), by h^2 (V''/V) rho/(rho + s)/8. With h = 1/density,
- * the sum of squared errors is least where the density goes like (their mean square)^(1/5). A share
- * of the places stays evenly spaced, for what was not looked at. */
+ * the sum of squared errors is least if the density is proportional to (their mean square)^(1/5). A
+ * share of the places is evenly spaced, for directions that the means do not include. */
 #include "rgl_places.h"
 
 #include <math.h>

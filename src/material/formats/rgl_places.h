@@ -1,4 +1,4 @@
-/* Where an RGL .bsdf has its places: rgl_write.c says what for. */
+/* The density of the places of an RGL .bsdf: rgl_write.c explains their use. */
 #ifndef GONIO_RGL_PLACES_H
 #define GONIO_RGL_PLACES_H
 

@@ -37,7 +37,7 @@ enum {
 /* Incidences are denser towards grazing: theta_i = pi/2 (1 - (1 - x)^GRAZING), x evenly spaced. */
 static const double GRAZING = 1.3;
 
-/* The most polar angle at which tables still have data around. */
+/* The largest polar angle at which tables have data all around. */
 static const double STEEPEST = 88.0 * M_PI / 180.0;
 
 typedef struct writer {
@@ -180,7 +180,7 @@ static gonio_status find_vndf(writer *w)
 
 /* ---- the values ---- */
 
-/* A place of the grid over s: where it leads. */
+/* A place of the grid over s: the direction that it is warped to. */
 typedef struct place {
     double factor; /* from rho to the file's value; negative below the horizon */
     double angle;  /* what the file's value counts for in sampling; 0 below the horizon */
@@ -207,7 +207,7 @@ static place set_direction(const writer *w, size_t t, size_t node, gonio_pair *p
                    .measured = theta_i <= w->limit && to.outgoing.theta <= w->limit};
 }
 
-/* Empty places get the mean of their neighbours, ring by ring, in all channels. */
+/* Fills empty places with the mean of their neighbours, ring by ring, in all channels. */
 static void fill_empty(double *value, size_t side, size_t channels, bool *known)
 {
     const size_t nodes = side * side;
@@ -301,7 +301,7 @@ static void set_all_directions(const writer *w, size_t t, gonio_pair *pairs, pla
     }
 }
 
-/* What find_values works in. */
+/* Scratch of find_values. */
 typedef struct workplace {
     gonio_pair *pairs;
     place *places;
@@ -324,8 +324,8 @@ static gonio_status allocate(const writer *w, workplace *p)
                : GONIO_ERROR_MEMORY;
 }
 
-/* An incidence without any data, as beyond the steepest that a table was measured at, gets those of
- * the last one before it that has some, or of the first. */
+/* An incidence without any data, as beyond the largest measured angle, gets the values of the last
+ * incidence with data before it, or of the first with data. */
 static gonio_status read_all(writer *w, workplace *p)
 {
     size_t missing = 0; /* before the first incidence with data */
@@ -429,7 +429,7 @@ static size_t choose_side(size_t channels)
     return (size_t)fmin(fmax(side, COARSE), SIDE);
 }
 
-/* Which of the material's channels each of the file's is: wavelengths ascend in the file. */
+/* The material's channel of each channel of the file, whose wavelengths ascend. */
 static void find_order(writer *w)
 {
     const double *wavelength = w->view->wavelength;

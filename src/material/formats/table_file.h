@@ -1,4 +1,4 @@
-/* Tables of any channels in HDF5: what reader and writer have in common.
+/* Tables of any channels in HDF5: the layout that reader and writer share.
  *
  * Root attributes: format ("gonio BRDF table"), version (1), name, unit ("1/sr"). Datasets: rho,
  * float32 [channel][theta_h 90][theta_d 90][phi_d 180], NaN for no data; theta_h, theta_d, phi_d,

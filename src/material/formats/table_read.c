@@ -73,8 +73,8 @@ static bool find_shape(hid_t rho, table *t)
            extents[3] == GONIO_PHI_D_BINS;
 }
 
-/* Whether rho is in this file, not in others that it names, and may be as large as it says:
- * deflation makes numbers a thousand times smaller at most. */
+/* Whether rho is in this file, not in others that it names, and can have the stated size:
+ * compression makes numbers at most a thousand times smaller. */
 static bool is_stored(hid_t rho, const table *t)
 {
     enum { MOST_DEFLATION = 2000 };

@@ -62,7 +62,7 @@ static bool take(reader *r, char c)
     return true;
 }
 
-/* Makes room for `more` nodes, whose first index is returned; (size_t)-1 without. */
+/* Makes room for `more` nodes. Returns the index of the first; (size_t)-1 if out of memory. */
 static size_t add_nodes(reader *r, size_t more)
 {
     gonio_i_tensor_tree *t = r->tree;

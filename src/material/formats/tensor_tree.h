@@ -1,10 +1,10 @@
 /* Tensor trees of BSDF-XML: BRDFs of variable resolution, as Radiance makes them.
  *
- * The BRDF over a unit cube of 3 dimensions (isotropic) or 4, halved along all of them at once
- * where it needs to be. Directions are mapped from the unit disk to the square by Shirley and
- * Chiu's concentric map. 4: the incident direction as light travels (towards the light + 180
- * degrees), then the outgoing one. 3: (1 - sin theta_i)/2, then the outgoing direction turned so
- * that light travels along azimuth 0. */
+ * The BRDF over a unit cube of 3 dimensions (isotropic) or 4. A box is divided in halves along all
+ * dimensions at once where the resolution requires it. Directions are mapped from the unit disk to
+ * the square by Shirley and Chiu's concentric map. 4: the incident direction as light travels
+ * (towards the light + 180 degrees), then the outgoing one. 3: (1 - sin theta_i)/2, then the
+ * outgoing direction, rotated so that light travels along azimuth 0. */
 #ifndef GONIO_TENSOR_TREE_H
 #define GONIO_TENSOR_TREE_H
 

@@ -6,8 +6,8 @@
  * polar angles end at 75 degrees. Linear between them. Negative values are noise in the dark, taken
  * as 0.
  *
- * Files of the database hold 140 times the BRDF. Such values cannot be a BRDF: they reflect far
- * more light than there is, by which they are told from files that hold the BRDF itself. */
+ * Files of the database hold 140 times the BRDF. Such values would reflect far more light than
+ * arrives. This distinguishes them from files that hold the BRDF itself. */
 #include <endian.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -119,7 +119,7 @@ static double from_file(double value)
     return value;
 }
 
-/* The largest mean over azimuths of incidence of the reflected share of light, up to 75 degrees. */
+/* The largest albedo up to 75 degrees, as a mean over azimuths of incidence. */
 static double find_albedo(const utia *u)
 {
     double most = 0.0;
