@@ -6,6 +6,7 @@
 #include <string.h>
 
 enum { FIRST_ROOM = 256, MOST_WAVELENGTHS = 4096 };
+enum { LEAST_CELLS = 1000000, MOST_HOLES = 16 }; /* holes for each value */
 
 gonio_status gonio_i_long_table_add(gonio_i_long_table *table, const gonio_i_long_row *row)
 {
@@ -218,6 +219,22 @@ static gonio_status import_groups(const gonio_i_long_table *table, const place *
     return status;
 }
 
+/* A table of all channels may have holes, but not many times as many as it has values: a small file
+ * would fill the memory. */
+static gonio_status check_holes(const gonio_i_long_table *table, const place *places,
+                                size_t channels, const gonio_i_import *import)
+{
+    size_t readings = 1;
+    for (size_t k = 1; k < table->count; k++) {
+        readings += places[k].first != places[k - 1].first;
+    }
+    return readings * channels <= LEAST_CELLS + MOST_HOLES * table->count
+               ? GONIO_OK
+               : gonio_i_fail(import->context, GONIO_ERROR_FORMAT,
+                              "%s: %zu directions and %zu wavelengths, but only %zu values",
+                              import->readings->path, readings, channels, table->count);
+}
+
 static gonio_status import_rows(const gonio_i_long_table *table, const double *wavelength,
                                 size_t channels, gonio_i_import *import)
 {
@@ -227,7 +244,10 @@ static gonio_status import_rows(const gonio_i_long_table *table, const double *w
     if (status == GONIO_OK) {
         const sums s = {channels, room, room + channels, room + 2 * channels};
         group(table, places);
-        status = import_groups(table, places, wavelength, &s, import);
+        status = check_holes(table, places, channels, import);
+        if (status == GONIO_OK) {
+            status = import_groups(table, places, wavelength, &s, import);
+        }
     }
     free(places);
     free(room);

@@ -31,7 +31,8 @@ gonio_status gonio_i_long_table_add(gonio_i_long_table *table, const gonio_i_lon
 
 /* Says the channels of the import (numbered ones, or wavelengths ascending) and adds its rows.
  * The deviation of a mean of m values is the root of the sum of their squares, over m. Errors: as
- * of the import; _FORMAT for more than 4096 wavelengths; _MEMORY. */
+ * of the import; _FORMAT for more than 4096 wavelengths, and where most of a large table would be
+ * holes; _MEMORY. */
 gonio_status gonio_i_long_table_import(gonio_i_long_table *table, gonio_i_import *import);
 
 void gonio_i_long_table_free(gonio_i_long_table *table);

@@ -292,7 +292,7 @@ static void test_open_material(void **state)
     gonio_readings *readings = read_good(
         "{\"$schema\":\"material_brdf_schema.json\",\"brdf\":{\"lookupTable\":["
         "[5.5e-07,0.5,0.25,3.141592653589793,0.3],[6.5e-07,0.5,0.25,3.141592653589793,0.4],"
-        "[5.5e-07,0.5,1.6,0,0.5]]}}",
+        "[5.50000000001e-07,0.5,1.6,0,0.5]]}}",
         "an OpenMATERIAL lookup table: angles in radians, values in 1/sr, wavelengths in metres; 1 "
         "reading; left out: 1 at or below the horizon");
     const gonio_readings_view *view = gonio_readings_describe(readings);
@@ -509,6 +509,32 @@ static void test_bad_files(void **state)
     support_remove(folder);
 }
 
+/* A file of 10,000 lines may not ask for the memory of 10,000 x 4,000 values. */
+static void test_sparse_tables(void **state)
+{
+    (void)state;
+    enum { ROWS = 10000 };
+    char *folder = support_folder();
+    char *text = NULL;
+    size_t size = 0;
+    gonio_readings *readings = NULL;
+    gonio_context *context = support_context();
+    FILE *stream = open_memstream(&text, &size);
+    fprintf(stream, "{\"brdf\":{\"lookupTable\":[");
+    for (int k = 0; k < ROWS; k++) {
+        fprintf(stream, "%s[%de-10,%.4f,0.5,0,1]", k > 0 ? "," : "", 4000 + k % 4000, 1e-4 * k);
+    }
+    fprintf(stream, "]}}");
+    fclose(stream);
+    assert_int_equal(made_readings(context, folder, "sparse.xompt", text, NULL, &readings),
+                     GONIO_ERROR_FORMAT);
+    assert_non_null(
+        strstr(support_message(), "10000 directions and 4000 wavelengths, but only 10000 values"));
+    free(text);
+    gonio_context_free(&context);
+    support_remove(folder);
+}
+
 /* Brackets without end are refused before they fill the stack. */
 static void test_deep_json(void **state)
 {
@@ -542,6 +568,7 @@ int main(void)
         cmocka_unit_test(test_curet),
         cmocka_unit_test(test_rgl_samples),
         cmocka_unit_test(test_bad_files),
+        cmocka_unit_test(test_sparse_tables),
         cmocka_unit_test(test_deep_json),
     };
     return cmocka_run_group_tests_name("formats of databases and institutes", tests, NULL, NULL);

@@ -9,6 +9,12 @@
 
 enum { WAVELENGTH, THETA_I, THETA_O, DIFFERENCE, BRDF, NUMBERS };
 
+/* Metres that differ by their rounding only are the same. */
+static double millionths_of_nm(double metres)
+{
+    return nearbyint(metres * 1e15) / 1e15;
+}
+
 static gonio_status add_row(const gonio_i_readings_file *file, const gonio_i_import *in,
                             const json_t *numbers, size_t row, gonio_i_long_table *table)
 {
@@ -26,7 +32,7 @@ static gonio_status add_row(const gonio_i_readings_file *file, const gonio_i_imp
     const gonio_i_long_row made = {.degrees = {gonio_i_import_degrees(in, x[THETA_I]), 0.0,
                                                gonio_i_import_degrees(in, x[THETA_O]),
                                                gonio_i_import_degrees(in, x[DIFFERENCE])},
-                                   .wavelength = x[WAVELENGTH],
+                                   .wavelength = millionths_of_nm(x[WAVELENGTH]),
                                    .value = x[BRDF],
                                    .deviation = NAN,
                                    .line = row + 1};
