@@ -84,7 +84,7 @@ static size_t channel_of(const double *wavelength, size_t count, double wanted)
 
 typedef struct place {
     const gonio_i_long_row *row;
-    size_t repeat; /* how many rows before have its directions, wavelength and state */
+    size_t repeat; /* how many values before have its directions, wavelength and state */
     size_t first;  /* the place of the first row of its directions and repeat */
 } place;
 
@@ -140,9 +140,13 @@ static int compare_first(const void *a, const void *b)
 static void count_repeats(const gonio_i_long_table *table, place *places)
 {
     qsort(places, table->count, sizeof *places, compare_repeats);
-    for (size_t k = 1; k < table->count; k++) {
-        const bool same = compare_keys(places[k - 1].row, places[k].row) == 0;
-        places[k].repeat = same ? places[k - 1].repeat + 1 : 0;
+    size_t before = 0;
+    for (size_t k = 0; k < table->count; k++) {
+        const bool same = k > 0 && compare_keys(places[k - 1].row, places[k].row) == 0;
+        const bool has_value = !isnan(places[k].row->value);
+        before = same ? before : 0;
+        places[k].repeat = has_value ? before : 0;
+        before += has_value;
     }
 }
 
