@@ -11,7 +11,7 @@ write_basic_package_version_file(gonioConfigVersion.cmake COMPATIBILITY SameMajo
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/gonioConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/gonioConfigVersion.cmake
         DESTINATION ${package_dir})
 if(GONIO_RENDER)
-  set(gonio_render_requires " assimp libpng cairo stb")
+  set(gonio_render_requires " assimp libpng cairo")
   # OpenEXR's own file asks for its C++ libraries too; Embree has none.
   set(gonio_render_libraries " -lembree3 -lOpenEXRCore")
 endif()

@@ -6,7 +6,7 @@ set -eu
 
 packages="gcc libc6-dev make cmake ninja-build pkg-config libopenblas-dev liblapacke-dev libhdf5-dev
 libxxhash-dev libcsv-dev libjansson-dev libpopt-dev zlib1g-dev libexpat1-dev libembree-dev libopenexr-dev libassimp-dev
-libpng-dev libcairo2-dev libstb-dev"
+libpng-dev libcairo2-dev"
 if [ "$2" = check ]; then
     packages="$packages libcmocka-dev clang-format clang-tidy libomp-dev mandoc gnuplot-nox
 libopenmpi-dev openmpi-bin"

@@ -476,7 +476,7 @@ gonio_status gonio_i_basis_read_hdf5(gonio_context *context, const char *path, g
     contents c = {.context = context, .path = path};
     gonio_i_hdf_session session;
     gonio_i_hdf_enter(&session);
-    c.file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+    c.file = gonio_i_hdf_open(path);
     if (c.file < 0) {
         status = gonio_i_fail(
             context, GONIO_ERROR_FORMAT,

@@ -23,6 +23,15 @@ void gonio_i_hdf_leave(gonio_i_hdf_session *session)
     pthread_mutex_unlock(&hdf_lock);
 }
 
+hid_t gonio_i_hdf_open(const char *path)
+{
+    const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+    H5Pset_file_locking(access, false, true);
+    const hid_t file = H5Fopen(path, H5F_ACC_RDONLY, access);
+    H5Pclose(access);
+    return file;
+}
+
 enum { LONGEST_LIST = 1 << 20, LONGEST_STRING = 1 << 20 };
 
 /* Number of elements of a dataspace of the given rank; false on overflow or a wrong rank. */

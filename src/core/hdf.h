@@ -15,6 +15,10 @@ typedef struct gonio_i_hdf_session {
 void gonio_i_hdf_enter(gonio_i_hdf_session *session);
 void gonio_i_hdf_leave(gonio_i_hdf_session *session);
 
+/* A file opened for reading, without a lock: another program may have it open for writing. Negative
+ * if it cannot be opened. */
+hid_t gonio_i_hdf_open(const char *path);
+
 /* Reads a list of strings (fixed or variable length, rank 0 or 1) from an attribute, or from a
  * dataset if `dataset` is set. The result is one block, released with free(). False if it is
  * missing or is not a list of strings. */

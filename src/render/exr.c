@@ -1,5 +1,7 @@
 /* OpenEXR images, by the C library of OpenEXR (OpenEXRCore). */
+#include <endian.h>
 #include <limits.h>
+#include <math.h>
 #include <openexr.h>
 #include <stdlib.h>
 #include <string.h>
@@ -101,6 +103,71 @@ static channels find_channels(const exr_attr_chlist_t *list)
     return (channels){colour, grey && !colour, found[3]};
 }
 
+/* IEEE 754 binary16. */
+static float half_to_float(uint16_t half)
+{
+    const int exponent = half >> 10 & 31;
+    const int mantissa = half & 1023;
+    const float size = exponent == 31  ? mantissa != 0 ? NAN : INFINITY
+                       : exponent == 0 ? ldexpf((float)mantissa, -24)
+                                       : ldexpf((float)(mantissa + 1024), exponent - 25);
+    return (half & 0x8000) != 0 ? -size : size;
+}
+
+static float value_of(const uint8_t *from, exr_pixel_type_t type)
+{
+    uint16_t half = 0;
+    uint32_t word = 0;
+    float value = 0.0F;
+    if (type == EXR_PIXEL_HALF) {
+        memcpy(&half, from, sizeof half);
+        return half_to_float(le16toh(half));
+    }
+    memcpy(&word, from, sizeof word);
+    word = le32toh(word);
+    memcpy(&value, &word, sizeof value);
+    return type == EXR_PIXEL_FLOAT ? value : (float)word;
+}
+
+/* Puts one line of a channel in its place. */
+static void unpack_line(const exr_coding_channel_info_t *channel, const uint8_t *from, int line)
+{
+    uint8_t *to = channel->decode_to_ptr;
+    if (to == NULL) {
+        return;
+    }
+    to += (ptrdiff_t)line * channel->user_line_stride;
+    for (int x = 0; x < channel->width; x++, to += channel->user_pixel_stride) {
+        const float value = value_of(from + (ptrdiff_t)x * channel->bytes_per_element,
+                                     (exr_pixel_type_t)channel->data_type);
+        memcpy(to, &value, sizeof value);
+    }
+}
+
+/* The library's own unpacking takes all channels for wanted where three of them are half floats.
+ * Lines follow one another; in each, the channels. */
+static exr_result_t unpack(exr_decode_pipeline_t *decoder)
+{
+    const uint8_t *from = decoder->unpacked_buffer;
+    size_t left = from != NULL ? decoder->chunk.unpacked_size : 0;
+    for (int y = 0; y < decoder->chunk.height; y++) {
+        for (int k = 0; k < decoder->channel_count; k++) {
+            const exr_coding_channel_info_t *channel = &decoder->channels[k];
+            const size_t size = (size_t)channel->width * (size_t)channel->bytes_per_element;
+            if (channel->height == 0 || (decoder->chunk.start_y + y) % channel->y_samples != 0) {
+                continue;
+            }
+            if (size > left) {
+                return EXR_ERR_CORRUPT_CHUNK;
+            }
+            unpack_line(channel, from, y);
+            from += size;
+            left -= size;
+        }
+    }
+    return EXR_ERR_SUCCESS;
+}
+
 /* Decodes one chunk whose first pixel is at column x, row y of the image. */
 static exr_result_t decode(exr_context_t exr, const exr_chunk_info_t *chunk, int x, int y,
                            channels wanted, gonio_image *image, bool first,
@@ -127,6 +194,7 @@ static exr_result_t decode(exr_context_t exr, const exr_chunk_info_t *chunk, int
         channel->user_data_type = EXR_PIXEL_FLOAT;
     }
     code = first ? exr_decoding_choose_default_routines(exr, 0, decoder) : EXR_ERR_SUCCESS;
+    decoder->unpack_and_convert_fn = unpack;
     return code == EXR_ERR_SUCCESS ? exr_decoding_run(exr, 0, decoder) : code;
 }
 

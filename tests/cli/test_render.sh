@@ -184,7 +184,7 @@ one='\x00\x00\x80\x3f' minus_one='\x00\x00\x80\xbf' zero='\x00\x00\x00\x00' nan=
 # ---- materials, memory, places to write ----
 
 expect_ok convert atlas:oak-sawn holes.binary
-head -c 200000 /dev/zero | tr '\0' '\277' | dd of=holes.binary bs=1 seek=5000000 conv=notrunc status=none
+head -c 200000 /dev/zero | tr '\0' '\377' | dd of=holes.binary bs=1 seek=5000000 conv=notrunc status=none
 # shellcheck disable=SC2086
 expect_ok render holes.binary $small -o holes.png
 expect_true 'holes are told' grep -q 'note: holes: .* directions have no data' "$root/work/stderr"

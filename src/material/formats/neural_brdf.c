@@ -228,7 +228,7 @@ static gonio_status read_network(gonio_context *context, const char *path, netwo
     gonio_i_hdf_session session;
     gonio_i_hdf_enter(&session);
     gonio_status status = GONIO_OK;
-    const hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+    const hid_t file = gonio_i_hdf_open(path);
     if (file < 0) {
         status = gonio_i_fail(context, GONIO_ERROR_FORMAT,
                               "%s: cannot be opened as HDF5: damaged or truncated", path);

@@ -175,7 +175,7 @@ static gonio_status read_file(gonio_context *context, const char *path, table *t
 {
     gonio_i_hdf_session session;
     gonio_i_hdf_enter(&session);
-    const hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+    const hid_t file = gonio_i_hdf_open(path);
     const gonio_status status = file >= 0 ? read_table(context, path, file, t)
                                           : damaged(context, path, "a damaged HDF5 file");
     if (file >= 0) {
