@@ -92,7 +92,7 @@ static void test_other_bases(void **state)
     const gonio_i_split *split = &splits.split[1];
     gonio_i_method_entry method = *gonio_i_method_at(GONIO_I_CHOSEN);
     gonio_error *errors = calloc(split->test_count, sizeof *errors);
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < (support_small() ? 2 : 3); k++) {
         double condition = NAN;
         method.representation = k == 0 ? GONIO_BIVARIATE : GONIO_FULL;
         method.channels = k == 2 ? GONIO_JOINT : GONIO_SEPARATE;
