@@ -18,14 +18,6 @@ double now(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-void check(bool fine, const char *what)
-{
-    if (!fine) {
-        fprintf(stderr, "gonio-bench: %s failed\n", what);
-        exit(1);
-    }
-}
-
 static int compare_doubles(const void *a, const void *b)
 {
     const double x = *(const double *)a;

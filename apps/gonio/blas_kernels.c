@@ -8,7 +8,7 @@
 #include <strings.h>
 #include <unistd.h>
 
-/* What OpenBLAS calls its kernels, by the vectors that they need. */
+/* OpenBLAS's names of its kernels, and the vectors that they need. */
 static const char *const wide[] = {"SkylakeX", "Cooperlake", "SapphireRapids", NULL}; /* AVX-512 */
 static const char *const narrow[] = {"Haswell", "Zen", "Excavator", NULL};            /* AVX2 */
 

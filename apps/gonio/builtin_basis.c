@@ -13,7 +13,7 @@ static bool make_folder(const char *path)
     return mkdir(path, 0777) == 0 || errno == EEXIST;
 }
 
-/* $XDG_CACHE_HOME/gonio or ~/.cache/gonio, made if need be; NULL if that cannot be. */
+/* $XDG_CACHE_HOME/gonio or ~/.cache/gonio, created if necessary; NULL if that fails. */
 static char *cache_folder(void)
 {
     const char *cache = getenv("XDG_CACHE_HOME");
@@ -85,8 +85,8 @@ static gonio_status make_builtin(tool *t, const char *path, bool paper)
     return status;
 }
 
-/* To be raised when gonio learn makes something else of the same materials, so that what an earlier
- * build left in the cache is not taken for it. */
+/* To be incremented when gonio learn makes another basis of the same materials. Bases that earlier
+ * builds left in the cache are then not used. */
 enum { RECIPE = 4 };
 
 gonio_status tool_builtin_basis(tool *t, bool paper, char **path)

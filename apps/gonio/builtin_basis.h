@@ -8,7 +8,7 @@
  * the cache folder. */
 gonio_status tool_basis(tool *t, const char *path, const char *method, gonio_basis **basis);
 
-/* The built-in basis's path, made if need be; to be released with free(). */
+/* The path of the built-in basis, which is learned if necessary; to be released with free(). */
 gonio_status tool_builtin_basis(tool *t, bool paper, char **path);
 
 #endif

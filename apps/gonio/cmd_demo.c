@@ -80,7 +80,7 @@ static int run_step(const step *s)
     while (s->words[count] != NULL) {
         count++;
     }
-    /* popt wants an array that it may keep. */
+    /* popt keeps the array. */
     const char *words[MOST_WORDS + 1] = {0};
     memcpy(words, s->words, sizeof s->words);
     return s->run(count, words);
@@ -112,7 +112,8 @@ static void say_where_the_page_is(const char *folder)
     }
 }
 
-/* Makes the folder if need be and goes there, for the commands are run in it. Returns an exit code.
+/* Creates the folder if necessary and changes to it, because the commands run in it. Returns an
+ * exit code.
  */
 static int enter(const char *folder)
 {

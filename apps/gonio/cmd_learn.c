@@ -95,7 +95,7 @@ static bool choose(const tool *t, const char *option, const char *word, const ch
     return word == NULL || tool_check_word(t, option, word, words, choice);
 }
 
-/* What is not said is as usual on the grid. */
+/* Options that are not given have the defaults of the grid. */
 static bool choose_recipe(const tool *t, const options *o, gonio_recipe *recipe)
 {
     const char *const representations[] = {gonio_representation_name(GONIO_BIVARIATE),

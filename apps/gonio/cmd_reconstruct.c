@@ -29,7 +29,7 @@ typedef struct options {
     gonio_write_options how; /* from write */
 } options;
 
-/* How much of the light the result reflects where it reflects most. */
+/* The largest albedo of the result. */
 typedef struct energy {
     bool known;
     double albedo;

@@ -70,7 +70,7 @@ static bool is_end(const struct poptOption *option)
     return option->longName == NULL && option->shortName == '\0' && option->arg == NULL;
 }
 
-/* A line an option: "-n --number N". */
+/* Prints a line for each option: "-n --number N". */
 static void list_options(const struct poptOption *table)
 {
     for (const struct poptOption *option = table; !is_end(option); option++) {

@@ -34,7 +34,7 @@ enum { TOOL_HELP = 'h', TOOL_LIST_OPTIONS = 'l' };
          NULL,           NULL},                                                                    \
         {"help", 'h', POPT_ARG_NONE, NULL, TOOL_HELP, "Show this help", NULL}, POPT_TABLEEND
 
-/* What a command does, and how its command line is written. */
+/* The work of a command, and the usage of its command line. */
 typedef struct tool_command_line {
     const struct poptOption *table; /* ends with TOOL_OPTIONS */
     const char *usage;              /* stands behind the command's name in the help */

@@ -9,7 +9,7 @@
 /* A JSON number; null if it is infinite or NaN, which JSON lacks. */
 json_t *tool_json_number(double value);
 
-/* A name from elsewhere, which need not be UTF-8: bytes that are not become U+FFFD. NULL: null. */
+/* A name that may not be UTF-8. Bytes that are not become U+FFFD. NULL: null. */
 json_t *tool_json_text(const char *text);
 
 /* An error by every metric: {"e6_percent": ..., ...} (gonio_metric_view.key). */
@@ -19,9 +19,8 @@ json_t *tool_error_json(const gonio_error *error);
  * Returns an exit code. */
 int tool_print_json(const tool *t, json_t *json);
 
-/* For commands that run others: until the next call, tool_print_json keeps what it is given in
- * *kept (borrowed, *kept NULL at first), for the caller to release, instead of printing it. NULL:
- * print again. */
+/* For commands that run others. Until the next call, tool_print_json stores its JSON in *kept (NULL
+ * at first) instead of printing it. The caller releases it. NULL: print again. */
 void tool_keep_json(json_t **kept);
 
 #endif

@@ -27,7 +27,7 @@ static void print_help(FILE *stream)
           stream);
 }
 
-/* What was printed must have arrived: a full disk makes a command fail. */
+/* Flushes the output, so that a full disk makes the command fail. */
 static int finish_output(const char *name, int code)
 {
     const bool flushed = fflush(stdout) == 0;

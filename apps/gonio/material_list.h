@@ -10,8 +10,8 @@ typedef struct material_list {
     char **path;
 } material_list;
 
-/* Adds what each argument stands for: the materials of a folder by name, 'atlas:' for all built-in
- * ones, or itself. Returns an exit code, 0 if fine. */
+/* Adds the materials of each argument: those of a folder by name, all built-in ones for 'atlas:',
+ * or the file itself. Returns an exit code, 0 if fine. */
 int material_list_add_all(const tool *t, material_list *list, const char *const *arguments,
                           size_t count);
 

@@ -71,7 +71,7 @@ void tool_on_message(void *user, gonio_message_level level, const char *text)
     tool_say(user, level, text);
 }
 
-/* In minutes when there is no need for more. */
+/* Prints the remaining time, in minutes if it is long. */
 static void draw_time_left(double seconds)
 {
     if (seconds >= 120.0) {

@@ -7,8 +7,8 @@
 #include <stddef.h>
 #include <stdio.h>
 
-/* Interrupts end the work at its next progress report; a reader that has gone and a full disk are
- * errors of writing. */
+/* Interrupts end the work at its next progress report. A closed pipe and a full disk are errors of
+ * writing. */
 void tool_catch_signals(void);
 
 /* Whether only errors are wanted. */
@@ -27,21 +27,21 @@ typedef struct tool_messages {
     bool progress_visible;
 } tool_messages;
 
-/* Says a line on standard error; anything but errors only if it is wanted. */
+/* Prints a line on standard error. With --quiet only errors are printed. */
 void tool_say(tool_messages *m, gonio_message_level level, const char *text);
 
 /* The callbacks of a context whose user is a tool_messages. */
 void tool_on_message(void *user, gonio_message_level level, const char *text);
 int tool_on_progress(void *user, const char *task, double fraction);
 
-/* Takes the progress bar off the terminal. */
+/* Removes the progress bar from the terminal. */
 void tool_clear_progress(tool_messages *m);
 
 /* Says on standard error what would explain readings better (gonio_reconstruction.suspicion), and
  * nothing for NULL. path: what is concerned. */
 void tool_note_suspicion(const char *command, const char *path, const char *suspicion);
 
-/* What makes a noun one of `count`: "s", or nothing for one. */
+/* The ending of a noun for `count`: "s", or nothing for one. */
 const char *tool_plural(size_t count);
 
 #endif

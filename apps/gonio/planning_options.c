@@ -1,4 +1,4 @@
-/* What a plan is to aim at, for the commands that plan: see planning_options.h. */
+/* The options of planning that several commands share: see planning_options.h. */
 #include "planning_options.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* What a plan is to aim at: the options that the commands that plan share. */
+/* The options of planning that several commands share: metric, number, target, candidates. */
 #ifndef GONIO_PLANNING_OPTIONS_H
 #define GONIO_PLANNING_OPTIONS_H
 
@@ -35,8 +35,8 @@ typedef struct planning_options {
 /* Whether all is well, after a complaint if it is not. `output`: the plan's file. */
 bool planning_options_check(const tool *t, const planning_options *o, const char *output);
 
-/* Sets what a plan is made with. `candidates` is read from its file and belongs to the caller, to
- * be released with free() after the plan is made; NULL if there are none. */
+/* Sets the options of the library. `candidates` is read from its file. The caller releases it with
+ * free() after the plan is made; NULL if there are none. */
 gonio_status planning_options_apply(const tool *t, const planning_options *o,
                                     gonio_plan_options *how, gonio_pair **candidates);
 

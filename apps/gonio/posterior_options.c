@@ -1,4 +1,4 @@
-/* What the posterior is told of the instrument: see posterior_options.h. */
+/* The options of the instrument's noise: see posterior_options.h. */
 #include "posterior_options.h"
 
 posterior_options posterior_options_default(void)

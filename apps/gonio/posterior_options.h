@@ -1,4 +1,4 @@
-/* What the posterior is told of the instrument: the options that the commands that use it share. */
+/* The options of the instrument's noise and of checks, which several commands share. */
 #ifndef GONIO_POSTERIOR_OPTIONS_H
 #define GONIO_POSTERIOR_OPTIONS_H
 
@@ -45,7 +45,7 @@ posterior_options posterior_options_default(void);
 /* Whether all is well, after a complaint if it is not. */
 bool posterior_options_check(const tool *t, const posterior_options *o);
 
-/* Sets what a reconstruction is made with. */
+/* Sets the options of the library. */
 void posterior_options_apply(const posterior_options *o, gonio_reconstruct_options *how);
 
 #endif

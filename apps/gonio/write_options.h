@@ -1,4 +1,4 @@
-/* How a material is written: options that commands share. */
+/* The options of writing materials, which several commands share. */
 #ifndef GONIO_WRITE_OPTIONS_H
 #define GONIO_WRITE_OPTIONS_H
 

@@ -1,17 +1,17 @@
-/* What each kind of piece computes: the numbers of the experiments. */
+/* The computation of each kind of piece: the numbers of the experiments. */
 #ifndef GONIO_REPRODUCE_COMPUTATIONS_H
 #define GONIO_REPRODUCE_COMPUTATIONS_H
 
 #include "experiments.h"
 
-/* One piece: what kind it is, and which of them. */
+/* One piece: its kind, and its place among those of the kind. */
 typedef struct gonio_i_piece {
     int kind; /* in the table of experiments.c */
     size_t split;
     size_t index; /* of the grid's components, the method, the chosen size, the left-out material */
 } gonio_i_piece;
 
-/* Computes a piece into a JSON object, in the form that experiments.h tells. */
+/* Computes a piece into a JSON object, in the form described in experiments.h. */
 typedef gonio_status gonio_i_compute(const gonio_i_study *study, gonio_context *context,
                                      const gonio_i_piece *p, json_t *result);
 

@@ -49,8 +49,8 @@ static double grid_cost(const gonio_i_study *study, const gonio_i_piece *p)
     return cost;
 }
 
-/* Methods of the full grid. Those that learn the same cost the same, so that for each split they
- * follow each other and the second finds the basis that the first has left in the cache. */
+/* Methods of the full grid. Methods with the same basis have the same cost. So they follow each
+ * other in each split, and the second finds the basis of the first in the cache. */
 static const double JOINT_COST = 40.0;
 static const double SEPARATE_COST = 15.0;
 

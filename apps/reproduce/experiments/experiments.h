@@ -1,4 +1,4 @@
-/* The paper's experiments as pieces of work (checkpoint.h), and what comes of them. */
+/* The paper's experiments as pieces of work (checkpoint.h), and their results. */
 #ifndef GONIO_REPRODUCE_EXPERIMENTS_H
 #define GONIO_REPRODUCE_EXPERIMENTS_H
 

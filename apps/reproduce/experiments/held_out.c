@@ -36,7 +36,7 @@ void gonio_i_trial_end(gonio_i_trial *trial)
 
 /* ---- from coefficients to errors ---- */
 
-/* What a noise-free reading of a test material gives, less the mean. */
+/* A noise-free reading of a test material, less the mean. */
 static double centred_reading(const gonio_i_trial *t, size_t test, size_t row)
 {
     const size_t cell = (size_t)t->view->cell[row / GONIO_CHANNELS];

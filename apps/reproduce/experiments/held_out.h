@@ -1,4 +1,4 @@
-/* One trial: a basis, a plan, readings of test materials, and the errors of what they make. */
+/* One trial: a basis, a plan, readings of test materials, and the errors of the reconstructions. */
 #ifndef GONIO_REPRODUCE_HELD_OUT_H
 #define GONIO_REPRODUCE_HELD_OUT_H
 
@@ -53,7 +53,7 @@ gonio_status gonio_i_trial_seen(gonio_context *context, const gonio_i_collection
                                 const gonio_i_viewer *viewer, double *condition,
                                 gonio_error *errors);
 
-/* The same for any basis, by way of whole tables: what the others do for the paper's basis, slower.
+/* The same for any basis, by whole tables. It is slower than the functions for the paper's basis.
  * Bases of the full grid are large, and the collection's cache has room for one: for one thread at
  * a time. */
 gonio_status gonio_i_trial_tables(gonio_context *context, const gonio_i_collection *collection,

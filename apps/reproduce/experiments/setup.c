@@ -1,4 +1,4 @@
-/* What the experiments are run on: see setup.h. */
+/* The setup of the experiments: see setup.h. */
 #include "setup.h"
 
 #include <inttypes.h>
@@ -216,7 +216,7 @@ static json_t *sizes(const size_t *size, size_t count)
     return list;
 }
 
-/* What --only leaves out belongs to the run all the same: it can be added later. */
+/* Experiments that --only leaves out belong to the run, so that they can be added later. */
 json_t *gonio_i_study_identity(const gonio_i_study *study)
 {
     json_t *materials = json_object();

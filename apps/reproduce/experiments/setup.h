@@ -1,4 +1,4 @@
-/* What the experiments of the paper are run on, and at which sizes. */
+/* The setup of the experiments: materials, splits and sizes. */
 #ifndef GONIO_REPRODUCE_SETUP_H
 #define GONIO_REPRODUCE_SETUP_H
 
@@ -69,7 +69,7 @@ gonio_status gonio_i_study_create(gonio_context *context, const char *const *pat
                                   const gonio_reproduce_options *options, gonio_i_study *study);
 void gonio_i_study_free(gonio_i_study *study);
 
-/* Which run this is: the build, by the sources that its numbers come from; materials with
+/* The identity of a run: the build, by the sources that its numbers come from; materials with
  * fingerprints, splits, sizes, seed. */
 json_t *gonio_i_study_identity(const gonio_i_study *study);
 

@@ -117,7 +117,7 @@ static void put_plot(FILE *script, const gonio_i_curves *figure)
     fputc('\n', script);
 }
 
-/* Where a curve's points stand, in the middle of those that are drawn apart. */
+/* The horizontal shift of a curve, if curves are drawn apart. */
 static void put_place(FILE *script, const gonio_i_curves *figure)
 {
     const double middle = 0.5 * (double)(figure->count + 1);
