@@ -94,7 +94,8 @@ int cmd_measure(int argc, const char **argv)
 {
     options o = {0};
     const struct poptOption table[] = {
-        {"output", 'o', POPT_ARG_STRING, &o.output, 0, "The readings to write (CSV)", "READINGS"},
+        {"output", 'o', POPT_ARG_STRING, &o.output, 0,
+         "The readings to write: CSV; .json or .brdf is BRDF JSON", "READINGS"},
         {"noise", '\0', POPT_ARG_DOUBLE, &o.noise, 0,
          "Noise in per cent of each reading, standard deviation (default: 0)", "PERCENT"},
         {"floor", '\0', POPT_ARG_DOUBLE, &o.floor, 0,

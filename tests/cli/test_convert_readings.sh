@@ -19,6 +19,10 @@ expect_true 'the mirror direction' test "$(rows fred.csv | grep ',1.5$')" = 30,0
 expect_ok convert fred.csv fred.json
 expect_ok convert fred.json back.csv
 expect_true 'CSV to JSON and back' test "$(rows fred.csv)" = "$(rows back.csv)"
+expect_ok measure fred.csv fred.txt -o read.json
+expect_true 'what is measured is written as JSON' grep -q '"BRDF": {"unit": "sr^-1"' read.json
+expect_ok convert read.json read.csv
+expect_true 'and is read again' test "$(rows fred.csv)" = "$(rows read.csv)"
 expect_ok convert fred.txt --as values=percent percent.csv
 expect_true 'per cent of a reflectance factor' \
     test "$(rows percent.csv | grep '^30,0,30,180' | cut -d, -f5)" = 0.004774648293
