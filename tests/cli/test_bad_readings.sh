@@ -219,6 +219,32 @@ head -c -1 r.csv >unended.csv
 same_as_good unended.csv
 sed 's/_deg/_DEG/g; s/_per_sr/_PER_SR/g; s/,R,/,r,/' r.csv >case.csv
 same_as_good case.csv
+sed 's/^#.*/&,,,,/; $a,,,,,,,' r.csv >padded.csv
+same_as_good padded.csv
+sed '/^#/!s/,/;/g; s/^#.*/"&";;;/; 1isep=;' r.csv >excel.csv
+same_as_good excel.csv
+tr '\n' '\r' <r.csv >cr.csv
+same_as_good cr.csv
+# Names that are not gonio's are said in a note, and so are numbers that are not read.
+sed 's/^theta_i_deg,.*/incident angle,phi_in [deg],view zenith,view azimuth,channel,brdf R,brdf G,brdf B/' \
+    r.csv >words.csv
+same_as_good words.csv
+expect_true 'a note says what columns were taken for' \
+    grep -q "note: words.csv: taken as CSV (angles 'incident angle', 'phi_in \[deg\]', 'view zenith'" \
+    "$root/work/stderr"
+sed '/^theta/s/$/,lux/; /^[0-9]/s/$/,250/' r.csv >lux.csv
+same_as_good lux.csv
+expect_true 'a note names numbers that are not read' \
+    grep -q "lux.csv: columns of numbers that are not read: 'lux'" "$root/work/stderr"
+if iconv -l >"$root/work/noise" 2>&1; then
+    for order in UTF-16LE UTF-16BE; do
+        { printf '\xef\xbb\xbf'; tr , '\t' <r.csv; } | iconv -f UTF-8 -t $order >unicode.txt
+        same_as_good unicode.txt
+        expect_output 'unicode.txt: gonio readings' info unicode.txt
+    done
+else
+    skip 'UTF-16: no iconv'
+fi
 reversed() { # columns in the opposite order, and one more
     local line cells
     while IFS= read -r line; do

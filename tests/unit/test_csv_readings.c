@@ -135,7 +135,10 @@ static void test_names_of_values(void **state)
         {"# Values: BRF\n", "550nm", 550.0, 0.5 / M_PI, "reflectance factors"},
         {"# units: degrees, %\n", "550nm", 550.0, 0.005 / M_PI, "per cent"},
         {"# unit: bananas\n", "R", 0.0, 0.5, "the comment 'bananas' is not understood"},
-        {"# unit: reflectance factor\n", "R_per_sr", 0.0, 0.5, ""}, /* the name is nearer */
+        {"# unit: reflectance factor\n", "R_per_sr", 0.0, 0.5,
+         "the comment 'reflectance factor' is not used"},
+        {"# unit: 1/sr\n", "R_per_sr", 0.0, 0.5, ""},
+        {"# values: corrected for the lamp\n", "R_per_sr", 0.0, 0.5, ""},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         check_value(&cases[k]);

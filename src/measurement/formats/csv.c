@@ -263,10 +263,13 @@ static gonio_status write_notes(csv_source *s)
 {
     gonio_status status = GONIO_OK;
     if (s->columns->unclear != NULL) {
-        status = gonio_i_readings_note(s->context, s->readings,
-                                       "the comment '%.60s' is not understood as a unit of values; "
-                                       "--as values=... says what they are",
-                                       s->columns->unclear);
+        status = gonio_i_readings_note(
+            s->context, s->readings,
+            s->columns->stated.values == 0
+                ? "the comment '%.60s' is not understood as a unit of values; --as values=... says "
+                  "what they are"
+                : "the comment '%.60s' is not used: the names of columns say another unit",
+            s->columns->unclear);
     }
     return status == GONIO_OK ? gonio_i_csv_others_note(&s->others, &s->reader, s->readings)
                               : status;

@@ -211,6 +211,17 @@ static gonio_status add_value(const finder *f, size_t k, size_t *unit_by, size_t
     return status;
 }
 
+/* What a comment says of values that their names do not. */
+static void take_value_comment(gonio_i_csv_columns *c, const char *comment)
+{
+    const int kind = comment != NULL ? gonio_i_value_kind_in(comment) : 0;
+    const bool by_name = c->stated.values != 0;
+    const bool of_angles = comment != NULL && kind == 0 && gonio_i_angle_unit_in(comment) != 0;
+    c->stated.values = by_name ? c->stated.values : kind;
+    const bool heeded = by_name ? kind == 0 || kind == c->stated.values : kind != 0;
+    c->unclear = heeded || of_angles ? NULL : comment;
+}
+
 static gonio_status find_values(const finder *f)
 {
     static const char *const keys[] = {"values", "unit", "units", "value unit", "quantity", NULL};
@@ -224,12 +235,7 @@ static gonio_status find_values(const finder *f)
             status = add_value(f, k, &unit_by, &wave_by);
         }
     }
-    const char *comment = comment_of(f, keys);
-    if (c->stated.values == 0 && comment != NULL) {
-        c->stated.values = gonio_i_value_kind_in(comment);
-        const bool clear = c->stated.values != 0 || gonio_i_angle_unit_in(comment) != 0;
-        c->unclear = clear ? NULL : comment;
-    }
+    take_value_comment(c, comment_of(f, keys));
     return status;
 }
 

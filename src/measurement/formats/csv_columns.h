@@ -22,7 +22,8 @@ typedef struct gonio_i_csv_columns {
     size_t channels;
     double *wavelength; /* [channels], as the names have them; NULL: colours or unnamed channels */
     gonio_convention stated; /* by names, units and comments; 0 where nothing states it */
-    const char *unclear;     /* a comment on values that is not understood; belongs to the reader */
+    const char *unclear; /* a comment on values that is not understood or not heeded; belongs to the
+                          * reader */
     size_t difference_gives; /* the azimuth that a difference replaces, 1 or 3; 0: there is none */
     bool by_wavelength;      /* a row has the value of one wavelength */
     bool own_angles;         /* named as gonio does */
