@@ -32,7 +32,8 @@ for command in 'info folder' 'convert folder x.binary' 'measure p.csv folder -o 
     expect_fail 1 'folder: cannot read: Is a directory' $command
 done
 expect_fail 1 'folder: no materials (*.binary, *.h5) in this folder' learn folder -o x.gonio
-expect_fail 1 'pipe: cannot read: not a regular file' convert pipe x.binary
+expect_fail 1 'pipe: cannot read: not a regular file' report pipe -o x.html
+expect_fail 1 "pipe: these are readings; 'gonio reconstruct' makes" convert pipe x.binary
 expect_fail 1 "a?b: cannot read: No such file" convert $'a\nb' x.binary
 if permissions_apply; then
     cp good.binary secret.binary
@@ -63,7 +64,8 @@ expect_fail 1 "noise.binary: not a basis that gonio reads (gonio basis), nor a m
 RGL .bsdf, KAIST .pbsdf, UTIA .bin, BSDF-XML), nor an image (OpenEXR, Radiance .hdr), nor a mesh (OBJ, PLY), nor readings (" info noise.binary
 # every_table PART FILE: what is said of readings, which will do where the part is.
 every_table() {
-    expect_fail 1 "$2: readings (CSV), not a material" convert "$2" x.binary
+    expect_fail 1 "$2: these are readings; 'gonio reconstruct' makes a material" convert "$2" x.binary
+    expect_fail 1 "$2: readings (CSV), not a material" report "$2" -o x.html
     expect_fail 1 "$2: readings (CSV), not a material" \
         learn "$2" atlas:oak-sawn atlas:plaster-cast -o x.gonio
     expect_fail 1 "$2: readings (CSV), not a material; gonio reconstruct makes" render "$2" -o x.png --size 8
