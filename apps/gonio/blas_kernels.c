@@ -1,4 +1,4 @@
-/* Chooses the kernels of OpenBLAS: see blas_kernels.h. */
+/* Chooses the kernels and threads of OpenBLAS: see blas_kernels.h. */
 #include "blas_kernels.h"
 
 #include <cblas.h>
@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 #include <strings.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 /* OpenBLAS's names of its kernels, and the vectors that they need. */
@@ -40,13 +41,29 @@ static const char *better_kernels(const char *used)
     return NULL;
 }
 
+/* Sets a variable that neither the user nor an earlier start has set. */
+static bool set_once(const char *variable, const char *value)
+{
+    return value != NULL && getenv(variable) == NULL && setenv(variable, value, 1) == 0;
+}
+
+/* "1" where the address space is limited: OpenBLAS' own threads, which gonio does not use, try for
+ * ever to map their buffers where there is no room. */
+static const char *fewer_threads(void)
+{
+    struct rlimit limit;
+    const bool limited = getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+    return limited ? "1" : NULL;
+}
+
 void blas_kernels_choose(char **argv)
 {
-    static const char variable[] = "OPENBLAS_CORETYPE"; /* set: by the user, or here before */
     char path[PATH_MAX];
-    const char *better = getenv(variable) == NULL ? better_kernels(openblas_get_corename()) : NULL;
-    const ssize_t length = better != NULL ? readlink("/proc/self/exe", path, sizeof path - 1) : -1;
-    if (length > 0 && setenv(variable, better, 1) == 0) {
+    const bool kernels = set_once("OPENBLAS_CORETYPE", better_kernels(openblas_get_corename()));
+    const bool threads = set_once("OPENBLAS_NUM_THREADS", fewer_threads());
+    const ssize_t length =
+        kernels || threads ? readlink("/proc/self/exe", path, sizeof path - 1) : -1;
+    if (length > 0) {
         path[length] = '\0';
         execv(path, argv); /* if it fails, slower kernels do */
     }

@@ -1,4 +1,5 @@
 /* The context: messages, progress, threads; and the library's status texts and version. */
+#include "blas_buffers.h"
 #include "core.h"
 #include "number.h"
 #include "options.h"
@@ -83,6 +84,15 @@ gonio_status gonio_context_create(gonio_context **context, const gonio_context_o
     made->task = "";
     pthread_mutex_init(&made->callbacks, NULL);
     gonio_i_keep_blas_on_one_thread();
+    const int threads = gonio_context_threads(made);
+    if (!gonio_i_reserve_blas_buffers(threads)) {
+        gonio_i_fail(made, GONIO_ERROR_MEMORY,
+                     "out of memory: the address space is limited (ulimit -v), and each of %d "
+                     "threads needs 160 MB of it; allow fewer threads or more room",
+                     threads);
+        gonio_context_free(&made);
+        return GONIO_ERROR_MEMORY;
+    }
     *context = made;
     return GONIO_OK;
 }
