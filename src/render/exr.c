@@ -149,7 +149,10 @@ static void unpack_line(const exr_coding_channel_info_t *channel, const uint8_t 
 static exr_result_t unpack(exr_decode_pipeline_t *decoder)
 {
     const uint8_t *from = decoder->unpacked_buffer;
-    size_t left = from != NULL ? decoder->chunk.unpacked_size : 0;
+    size_t left = decoder->chunk.unpacked_size;
+    if (from == NULL) {
+        return EXR_ERR_CORRUPT_CHUNK;
+    }
     for (int y = 0; y < decoder->chunk.height; y++) {
         for (int k = 0; k < decoder->channel_count; k++) {
             const exr_coding_channel_info_t *channel = &decoder->channels[k];
