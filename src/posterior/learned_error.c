@@ -30,6 +30,12 @@ typedef struct fold {
     double *mean;       /* [K] */
     double *covariance; /* [n][n], without noise */
     double *cross;      /* [n][K]: of the readings and z */
+    /* Of the columns that it leaves out, in their order, with a = z - mean, M the metric and C the
+     * cross covariance: a M a', a M C' and C M C'. NULL for the last fold, and where n > K, as more
+     * work than they save. */
+    double *square;       /* [left out] */
+    double *mixed;        /* [left out][n] */
+    double *cross_square; /* [n][n] */
 } fold;
 
 struct gonio_i_learned_error {
@@ -201,6 +207,71 @@ static gonio_status fill_fold(gonio_context *context, gonio_i_folds *folds, size
                               : status;
 }
 
+/* The columns of materials that fold k leaves out; column: room for all of them. */
+static size_t list_left_out(const gonio_i_learned_error *x, size_t k, size_t *column)
+{
+    size_t count = 0;
+    for (size_t j = 0; j < x->measured; j++) {
+        if (is_of_fold(x, j, k)) {
+            column[count++] = j;
+        }
+    }
+    return count;
+}
+
+static size_t most_left_out(const gonio_i_learned_error *x)
+{
+    return (x->prior->view->materials / FOLDS + 1) * x->each;
+}
+
+/* What find_errors needs: away, moved: scratch of [columns][K]; cross: of [n][K]. */
+static gonio_status fill_products(gonio_context *context, const gonio_i_learned_error *x, size_t n,
+                                  const size_t *column, size_t count, double *away, double *moved,
+                                  double *cross, fold *f)
+{
+    const size_t k = x->components;
+    for (size_t j = 0; j < count * k; j++) {
+        away[j] = x->prior->sample[column[j / k] * k + j % k] - f->mean[j % k];
+    }
+    gonio_status status = gonio_i_product(context, away, count, k, x->metric, k, moved);
+    if (status == GONIO_OK) {
+        status = gonio_i_product(context, f->cross, n, k, x->metric, k, cross);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_product_transposed(context, moved, count, k, f->cross, n, f->mixed, n);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_product_transposed(context, cross, n, k, f->cross, n, f->cross_square, n);
+    }
+    for (size_t j = 0; j < count; j++) {
+        f->square[j] = gonio_i_dot(away + j * k, moved + j * k, k);
+    }
+    return status;
+}
+
+static gonio_status fill_left_out(gonio_context *context, gonio_i_folds *folds, size_t k)
+{
+    fold *f = &folds->fold[k];
+    const gonio_i_learned_error *x = folds->of;
+    const size_t n = folds->sites->n;
+    const size_t most = most_left_out(x);
+    size_t *column = gonio_i_allocate(context, most, sizeof *column);
+    double *room = gonio_i_allocate(context, (2 * most + n) * x->components, sizeof *room);
+    f->square = gonio_i_allocate(context, most, sizeof *f->square);
+    f->mixed = gonio_i_allocate(context, most * n, sizeof *f->mixed);
+    f->cross_square = gonio_i_allocate(context, n * n, sizeof *f->cross_square);
+    const bool done = column && room && f->square && f->mixed && f->cross_square;
+    gonio_status status = done ? GONIO_OK : GONIO_ERROR_MEMORY;
+    if (done) {
+        double *moved = room + most * x->components;
+        status = fill_products(context, x, n, column, list_left_out(x, k, column), room, moved,
+                               moved + most * x->components, f);
+    }
+    free(column);
+    free(room);
+    return status;
+}
+
 static gonio_status draw_noise(gonio_context *context, gonio_i_folds *folds)
 {
     const size_t n = folds->sites->n;
@@ -230,6 +301,9 @@ static gonio_status fill_folds(gonio_context *context, gonio_i_folds *folds)
                               : draw_noise(context, folds);
     for (size_t k = 0; k <= FOLDS && status == GONIO_OK; k++) {
         status = fill_fold(context, folds, k, &s);
+        if (status == GONIO_OK && k < FOLDS && folds->sites->n <= x->components) {
+            status = fill_left_out(context, folds, k);
+        }
     }
     free(s.share);
     free(s.seen);
@@ -265,6 +339,9 @@ void gonio_i_folds_free(gonio_i_folds **folds)
         free((*folds)->fold[k].mean);
         free((*folds)->fold[k].covariance);
         free((*folds)->fold[k].cross);
+        free((*folds)->fold[k].square);
+        free((*folds)->fold[k].mixed);
+        free((*folds)->fold[k].cross_square);
     }
     free((*folds)->noise);
     free(*folds);
@@ -368,13 +445,29 @@ typedef struct column_scratch {
     size_t *column;
     double *y;      /* [columns][n] */
     double *solved; /* [columns][n] */
-    double *error;  /* [columns][K]: of z */
-    double *turned; /* [columns][K]: times the metric */
+    double *error;  /* [columns][K]: of z; not used where a fold has products */
+    double *turned; /* [columns][K]: times the metric; or [columns][n]: times C M C' */
+    double *square; /* [columns]: of the error, by the metric */
 } column_scratch;
 
-/* What is off in z of the columns, once they are solved. */
-static gonio_status find_errors(const gonio_i_learned_error *x, const gonio_i_fit *e, const fold *f,
-                                size_t count, const column_scratch *s)
+/* The error of z is a - s C, with s solved: its square from the fold's products. */
+static gonio_status expand_squares(const gonio_i_fit *e, const fold *f, size_t count,
+                                   const column_scratch *s)
+{
+    const size_t n = e->n;
+    const gonio_status status =
+        gonio_i_product(e->context, s->solved, count, n, f->cross_square, n, s->turned);
+    for (size_t j = 0; j < count && status == GONIO_OK; j++) {
+        const double *solved = s->solved + j * n;
+        s->square[j] = f->square[j] - 2.0 * gonio_i_dot(solved, f->mixed + j * n, n) +
+                       gonio_i_dot(solved, s->turned + j * n, n);
+    }
+    return status;
+}
+
+/* The same from the errors themselves. */
+static gonio_status square_errors(const gonio_i_learned_error *x, const gonio_i_fit *e,
+                                  const fold *f, size_t count, const column_scratch *s)
 {
     const size_t k = x->components;
     gonio_status status =
@@ -385,9 +478,20 @@ static gonio_status find_errors(const gonio_i_learned_error *x, const gonio_i_fi
             s->error[j * k + i] = z[i] - f->mean[i] - s->error[j * k + i];
         }
     }
-    return status == GONIO_OK
-               ? gonio_i_product(e->context, s->error, count, k, x->metric, k, s->turned)
-               : status;
+    if (status == GONIO_OK) {
+        status = gonio_i_product(e->context, s->error, count, k, x->metric, k, s->turned);
+    }
+    for (size_t j = 0; j < count && status == GONIO_OK; j++) {
+        s->square[j] = gonio_i_dot(s->error + j * k, s->turned + j * k, k);
+    }
+    return status;
+}
+
+/* Squares of what is off in z of the columns, once they are solved. */
+static gonio_status find_squares(const gonio_i_learned_error *x, const gonio_i_fit *e,
+                                 const fold *f, size_t count, const column_scratch *s)
+{
+    return f->square != NULL ? expand_squares(e, f, count, s) : square_errors(x, e, f, count, s);
 }
 
 /* Lessons from the columns that fold k leaves out, added to what is there. */
@@ -396,25 +500,21 @@ static gonio_status learn_fold(const gonio_i_folds *folds, const gonio_i_fit *e,
 {
     const gonio_i_learned_error *x = folds->of;
     const fold *f = &folds->fold[k];
-    size_t columns = 0;
-    for (size_t j = 0; j < x->measured; j++) {
-        if (is_of_fold(x, j, k)) {
-            read_column(e, folds, f, j, s->y + columns * e->n);
-            s->column[columns++] = j;
-        }
+    const size_t columns = list_left_out(x, k, s->column);
+    for (size_t j = 0; j < columns; j++) {
+        read_column(e, folds, f, s->column[j], s->y + j * e->n);
     }
     memcpy(s->solved, s->y, columns * e->n * sizeof *s->y);
     solver with = {0};
     gonio_status status = begin_solver(e, f, &with);
     if (status == GONIO_OK) {
         solve(&with, columns, e->n, s->solved);
-        status = find_errors(x, e, f, columns, s);
+        status = find_squares(x, e, f, columns, s);
     }
     for (size_t j = 0; j < columns && status == GONIO_OK; j++) {
         lesson *l = &lessons[(*count)++];
         find_features(e, f, s->y + j * e->n, s->solved + j * e->n, with.diagonal, l->feature);
-        l->square =
-            gonio_i_dot(s->error + j * x->components, s->turned + j * x->components, x->components);
+        l->square = fmax(s->square[j], 0.0);
     }
     end_solver(&with);
     return status;
@@ -423,13 +523,14 @@ static gonio_status learn_fold(const gonio_i_folds *folds, const gonio_i_fit *e,
 static gonio_status learn_folds(const gonio_i_folds *folds, const gonio_i_fit *e, lesson *lessons)
 {
     const gonio_i_learned_error *x = folds->of;
-    const size_t most = (x->prior->view->materials / FOLDS + 1) * x->each;
+    const size_t most = most_left_out(x);
     column_scratch s = {gonio_i_allocate(e->context, most, sizeof *s.column),
                         gonio_i_allocate(e->context, most * e->n, sizeof *s.y),
                         gonio_i_allocate(e->context, most * e->n, sizeof *s.solved),
                         gonio_i_allocate(e->context, most * x->components, sizeof *s.error),
-                        gonio_i_allocate(e->context, most * x->components, sizeof *s.turned)};
-    const bool done = s.column && s.y && s.solved && s.error && s.turned;
+                        gonio_i_allocate(e->context, most * x->components, sizeof *s.turned),
+                        gonio_i_allocate(e->context, most, sizeof *s.square)};
+    const bool done = s.column && s.y && s.solved && s.error && s.turned && s.square;
     gonio_status status = done ? GONIO_OK : GONIO_ERROR_MEMORY;
     size_t count = 0;
     for (size_t k = 0; k < FOLDS && status == GONIO_OK; k++) {
@@ -440,6 +541,7 @@ static gonio_status learn_folds(const gonio_i_folds *folds, const gonio_i_fit *e
     free(s.solved);
     free(s.error);
     free(s.turned);
+    free(s.square);
     return status;
 }
 

@@ -48,6 +48,7 @@ struct gonio_i_rows {
     double *t;      /* [count][size], or NULL: made where it is needed */
     double *itself; /* [count]: k(x, x), 0 if alpha is 0 */
     double *bins;   /* [count]: of the row's cell */
+    double *gram;   /* [size][size]: sum of bins t' t, if t is there: see find_sums; or NULL */
 };
 
 static void fill_t(const gonio_i_rows *r, size_t number, double *t)
@@ -80,6 +81,22 @@ static void fill_row(gonio_i_rows *r, size_t number)
     }
 }
 
+/* Sum of bins t' t over the rows. */
+static gonio_status find_gram(gonio_context *context, gonio_i_rows *r)
+{
+    double *scaled = gonio_i_allocate(context, r->count * r->size, sizeof *scaled);
+    if (scaled == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    for (size_t k = 0; k < r->count * r->size; k++) {
+        scaled[k] = sqrt(r->bins[k / r->size]) * r->t[k];
+    }
+    const gonio_status status =
+        gonio_i_gram_rows(context, scaled, r->count, r->size, r->size, r->gram);
+    free(scaled);
+    return status;
+}
+
 gonio_status gonio_i_rows_create(gonio_context *context, const gonio_i_sites *sites,
                                  const gonio_i_model *model, bool all, gonio_i_rows **rows)
 {
@@ -97,7 +114,8 @@ gonio_status gonio_i_rows_create(gonio_context *context, const gonio_i_sites *si
     r->itself = gonio_i_allocate(context, r->count, sizeof *r->itself);
     r->bins = gonio_i_allocate(context, r->count, sizeof *r->bins);
     r->t = all ? NULL : gonio_i_allocate(context, r->count * r->size, sizeof *r->t);
-    if (r->itself == NULL || r->bins == NULL || (!all && r->t == NULL)) {
+    r->gram = all ? NULL : gonio_i_allocate(context, r->size * r->size, sizeof *r->gram);
+    if (r->itself == NULL || r->bins == NULL || (!all && (r->t == NULL || r->gram == NULL))) {
         gonio_i_rows_free(&r);
         return GONIO_ERROR_MEMORY;
     }
@@ -105,8 +123,12 @@ gonio_status gonio_i_rows_create(gonio_context *context, const gonio_i_sites *si
     for (size_t k = 0; k < r->count; k++) {
         fill_row(r, k);
     }
+    const gonio_status status = all ? GONIO_OK : find_gram(context, r);
+    if (status != GONIO_OK) {
+        gonio_i_rows_free(&r);
+    }
     *rows = r;
-    return GONIO_OK;
+    return status;
 }
 
 void gonio_i_rows_free(gonio_i_rows **rows)
@@ -117,6 +139,7 @@ void gonio_i_rows_free(gonio_i_rows **rows)
     free((*rows)->t);
     free((*rows)->itself);
     free((*rows)->bins);
+    free((*rows)->gram);
     free(*rows);
     *rows = NULL;
 }
@@ -276,26 +299,42 @@ static void find_row(const variance *s, size_t number, const double *t, const do
     const double model = s->e->misfit * fmax(prior + dot(t, product, s->size), 0.0);
     const double square = calibrated(model, &FOR_SQUARES);
     const double bins = s->rows->bins[number];
-    if (s->deviation != NULL) {
-        s->deviation[row] = sqrt(calibrated(model, &FOR_BANDS));
-    }
+    s->deviation[row] = sqrt(calibrated(model, &FOR_BANDS));
     sums->bins += bins;
     sums->error += bins * square;
     sums->square += bins * g * g;
+}
+
+/* Without deviations, only sums over the rows are wanted, in which the variances are linear:
+ * the sum of bins t Q t' is that of the elements of Q times those of the rows' gram matrix. */
+static void find_sums(const variance *s, gonio_i_variance_sums *sums)
+{
+    const gonio_i_rows *rows = s->rows;
+    const double alpha = s->e->model.alpha;
+    double model = 0.0;
+    for (size_t k = 0; k < rows->count; k++) {
+        const double *t = rows->t + k * s->size;
+        const double g = fmax(value_of(s, k * rows->step, t), 0.0);
+        model += s->n > 0 ? rows->bins[k] * alpha * alpha * rows->itself[k] : 0.0;
+        sums->bins += rows->bins[k];
+        sums->square += rows->bins[k] * g * g;
+    }
+    model += dot(s->q, rows->gram, s->size * s->size);
+    sums->error = FOR_SQUARES.factor * s->e->misfit * fmax(model, 0.0) +
+                  FOR_SQUARES.left_open * FOR_SQUARES.left_open * sums->bins;
 }
 
 static gonio_status find_block(const variance *s, size_t first, size_t count, const workspace *w,
                                gonio_i_variance_sums *sums)
 {
     const gonio_i_rows *rows = s->rows;
-    const double *t = rows->t != NULL ? rows->t + first * s->size : w->t;
-    for (size_t b = 0; b < count && rows->t == NULL; b++) {
+    for (size_t b = 0; b < count; b++) {
         fill_t(rows, first + b, w->t + b * s->size);
     }
-    const gonio_status status = gonio_i_product_transposed(s->e->context, t, count, s->size, s->q,
-                                                           s->size, w->product, s->size);
+    const gonio_status status = gonio_i_product_transposed(s->e->context, w->t, count, s->size,
+                                                           s->q, s->size, w->product, s->size);
     for (size_t b = 0; b < count && status == GONIO_OK; b++) {
-        find_row(s, first + b, t + b * s->size, w->product + b * s->size, sums);
+        find_row(s, first + b, w->t + b * s->size, w->product + b * s->size, sums);
     }
     return status;
 }
@@ -328,6 +367,21 @@ static gonio_status find_blocks(const variance *s, size_t blocks, gonio_i_varian
     return result;
 }
 
+/* Deviations of all rows, and the sums over them. */
+static gonio_status find_deviations(const variance *s, gonio_i_variance_sums *sums)
+{
+    const size_t blocks = (s->rows->count + BLOCK - 1) / BLOCK;
+    gonio_i_variance_sums *part = gonio_i_allocate(s->e->context, blocks, sizeof *part);
+    const gonio_status status = part == NULL ? GONIO_ERROR_MEMORY : find_blocks(s, blocks, part);
+    for (size_t k = 0; k < blocks && status == GONIO_OK; k++) {
+        sums->bins += part[k].bins;
+        sums->error += part[k].error;
+        sums->square += part[k].square;
+    }
+    free(part);
+    return status;
+}
+
 gonio_status gonio_i_variance_find(const gonio_i_fit *fit, const gonio_i_rows *rows,
                                    const double *c, double *deviation, double *covariance,
                                    gonio_i_variance_sums *sums)
@@ -336,22 +390,22 @@ gonio_status gonio_i_variance_find(const gonio_i_fit *fit, const gonio_i_rows *r
         .e = fit, .rows = rows, .c = c, .deviation = deviation, .n = rows->n, .size = rows->size};
     const size_t components = fit->components;
     const double step = (double)rows->step;
-    const size_t blocks = (rows->count + BLOCK - 1) / BLOCK;
-    gonio_i_variance_sums *part = gonio_i_allocate(fit->context, blocks, sizeof *part);
-    gonio_status status = part == NULL ? GONIO_ERROR_MEMORY : find_q(&s);
-    if (status == GONIO_OK) {
-        status = find_blocks(&s, blocks, part);
+    gonio_i_variance_sums found = {0};
+    gonio_status status = find_q(&s);
+    if (status == GONIO_OK && deviation != NULL) {
+        status = find_deviations(&s, &found);
+    } else if (status == GONIO_OK) {
+        find_sums(&s, &found);
     }
     for (size_t k = 0; covariance != NULL && k < components * components && status == GONIO_OK;
          k++) {
         covariance[k] = s.q[k / components * s.size + k % components];
     }
-    for (size_t k = 0; k < blocks && status == GONIO_OK; k++) {
-        sums->bins += step * part[k].bins;
-        sums->error += step * part[k].error;
-        sums->square += step * part[k].square;
+    if (status == GONIO_OK) {
+        sums->bins += step * found.bins;
+        sums->error += step * found.error;
+        sums->square += step * found.square;
     }
     free(s.q);
-    free(part);
     return status;
 }
