@@ -300,6 +300,17 @@ static void test_columns_with_names_in_a_comment(void **state)
     gonio_readings_free(&readings);
 }
 
+/* A column called brdf is no reflectance factor, azimuths or not. */
+static void test_a_plane_without_azimuths(void **state)
+{
+    (void)state;
+    gonio_readings *readings = read_good("# theta_i theta_o brdf\n30 30 0.5\n30 -10 0.25\n",
+                                         "values in 1/sr, 0 means not measured; 2 readings");
+    assert_reading(readings, 0, 30.0, 30.0, 180.0, 0.5);
+    assert_reading(readings, 1, 30.0, 10.0, 0.0, 0.25);
+    gonio_readings_free(&readings);
+}
+
 static void test_in_plane_spectra(void **state)
 {
     (void)state;
@@ -406,6 +417,7 @@ int main(void)
         cmocka_unit_test(test_zemax_round_trip),
         cmocka_unit_test(test_fred),
         cmocka_unit_test(test_columns_with_names_in_a_comment),
+        cmocka_unit_test(test_a_plane_without_azimuths),
         cmocka_unit_test(test_in_plane_spectra),
         cmocka_unit_test(test_bad_files),
     };

@@ -93,10 +93,21 @@ static int role_of(const char *name, size_t length)
     return wavelength_of(name, length) > 0.0 ? VALUE : -1;
 }
 
+/* Whether a table of reflectance factors may have a column: Incident_angle, Measure_angle, or
+ * values by wavelength alone. */
+static bool is_of_factors(int role, const char *name, size_t length)
+{
+    static const char angle[] = "angle";
+    const size_t end = sizeof angle - 1;
+    return role == VALUE ? wavelength_of(name, length) > 0.0
+                         : length > end && strncasecmp(name + length - end, angle, end) == 0;
+}
+
 /* Names of a line to columns; false unless all are known and there are angles and values. */
 static bool find_columns(const char *line, const char *end, columns *c)
 {
     size_t length = 0;
+    bool factors = true;
     c->count = 0;
     c->values = 0;
     memset(c->found, 0, sizeof c->found);
@@ -111,8 +122,9 @@ static bool find_columns(const char *line, const char *end, columns *c)
         if (role < VALUE) {
             c->found[role] = true;
         }
+        factors = factors && is_of_factors(role, at, length);
     }
-    c->factors = !c->found[PHI_I] && !c->found[PHI_O];
+    c->factors = factors && !c->found[PHI_I] && !c->found[PHI_O];
     return c->found[THETA_I] && c->found[THETA_O] && c->found[PHI_I] == c->found[PHI_O] &&
            c->values > 0;
 }
