@@ -439,6 +439,9 @@ static int info(const tool *t, const char *path, json_t *results)
     if (strcmp(path, "atlas:") == 0) {
         return info_atlas(results);
     }
+    if (tool_names_format(t)) {
+        return tool_info_readings(t, path, results);
+    }
     unsigned any = 0;
     gonio_kind kind = GONIO_KIND_UNKNOWN;
     for (int k = 0; k < KINDS; k++) {

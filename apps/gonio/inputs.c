@@ -20,6 +20,12 @@ static gonio_status take_convention(const tool *t, gonio_readings_options *how)
     return tool_as != NULL ? gonio_convention_parse(t->context, tool_as, &how->as) : GONIO_OK;
 }
 
+bool tool_names_format(const tool *t)
+{
+    gonio_readings_options how = tool_any_values;
+    return take_convention(t, &how) == GONIO_OK && how.as.format != NULL;
+}
+
 gonio_status tool_read_readings(const tool *t, const char *path,
                                 const gonio_readings_options *options, gonio_readings **readings)
 {

@@ -20,6 +20,9 @@ extern const char *tool_as;
 /* As gonio_material_open, after gonio_file_expect. */
 gonio_status tool_open_material(const tool *t, const char *path, gonio_material **material);
 
+/* Whether --as names a format of readings, which is what the files are then. */
+bool tool_names_format(const tool *t);
+
 /* As gonio_readings_read, after gonio_file_expect. */
 gonio_status tool_read_readings(const tool *t, const char *path,
                                 const gonio_readings_options *options, gonio_readings **readings);

@@ -28,6 +28,11 @@ expect_true 'per cent of a reflectance factor' \
     test "$(rows percent.csv | grep '^30,0,30,180' | cut -d, -f5)" = 0.004774648293
 expect_output '"readings": "fred.txt"' convert fred.txt --json x.json
 
+# An RGL file is a material, and has readings in it.
+expect_ok convert atlas:red-cotton cotton.bsdf
+expect_output 'RGL isotropic BSDF' info cotton.bsdf
+expect_output 'taken as the samples of an RGL .bsdf' info --as format=rgl cotton.bsdf
+
 expect_fail 1 "these are readings; 'gonio reconstruct' makes a material of them" \
     convert fred.txt x.binary
 expect_fail 2 'the choices are brdf, factor' convert -q fred.txt --as values=lux x.csv
