@@ -44,9 +44,9 @@ static inline void gonio_context_options_default(gonio_context_options *options)
     gonio_context_options_default_of(options, sizeof *options);
 }
 
-/* Makes a context; options may be NULL for the defaults. *context is the caller's. Where the address
- * space is limited, room for matrix products of each thread is taken. Errors: GONIO_ERROR_MEMORY;
- * without a message GONIO_ERROR_ARGUMENT for threads < 0 and for options that
+/* Makes a context; options may be NULL for the defaults. *context is the caller's. Where the
+ * address space is limited, room for matrix products of each thread is taken. Errors:
+ * GONIO_ERROR_MEMORY; without a message GONIO_ERROR_ARGUMENT for threads < 0 and for options that
  * were not initialised. */
 GONIO_API gonio_status gonio_context_create(gonio_context **context,
                                             const gonio_context_options *options);

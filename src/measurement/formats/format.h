@@ -43,8 +43,9 @@ typedef struct gonio_i_readings_format {
 #define GONIO_I_READINGS_FORMATS(FORMAT)                                                           \
     FORMAT(rgl)                                                                                    \
     FORMAT(scattered)                                                                              \
-    FORMAT(alta) FORMAT(pab) FORMAT(astm) FORMAT(tracepro) FORMAT(zemax) FORMAT(fred)              \
-        FORMAT(curet) FORMAT(openmaterial) FORMAT(brdf_json) FORMAT(in_plane) FORMAT(csv)
+    FORMAT(alta)                                                                                   \
+    FORMAT(pab) FORMAT(astm) FORMAT(tracepro) FORMAT(zemax) FORMAT(fred) FORMAT(curet)             \
+        FORMAT(openmaterial) FORMAT(brdf_json) FORMAT(in_plane) FORMAT(csv)
 
 #define GONIO_I_DECLARE_FORMAT(name) extern const gonio_i_readings_format gonio_i_readings_##name;
 GONIO_I_READINGS_FORMATS(GONIO_I_DECLARE_FORMAT)
