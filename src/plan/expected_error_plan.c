@@ -211,11 +211,20 @@ static double azimuth_of(gonio_angles a)
     return a.theta < POLE ? 0.0 : phi < 0.0 ? phi + 2.0 * M_PI : phi + 0.0; /* no -0 */
 }
 
+static int compare_angles(const named_pair *a, const named_pair *b)
+{
+    int order = 0;
+    for (int k = 0; k < 4 && order == 0; k++) {
+        order = (a->angle[k] > b->angle[k]) - (a->angle[k] < b->angle[k]);
+    }
+    return order;
+}
+
 static int compare_named(const void *a, const void *b)
 {
     const named_pair *x = a;
     const named_pair *y = b;
-    int order = memcmp(x->angle, y->angle, sizeof x->angle);
+    const int order = compare_angles(x, y);
     return order != 0 ? order : (x->candidate > y->candidate) - (x->candidate < y->candidate);
 }
 
@@ -235,8 +244,7 @@ static gonio_status allow_once(place_list *p, const gonio_plan_options *options)
     }
     qsort(named, p->rows, sizeof *named, compare_named);
     for (size_t k = 0; k < p->rows; k++) {
-        p->allowed[named[k].candidate] =
-            k == 0 || memcmp(named[k].angle, named[k - 1].angle, sizeof named[k].angle) != 0;
+        p->allowed[named[k].candidate] = k == 0 || compare_angles(&named[k], &named[k - 1]) != 0;
     }
     free(named);
     return GONIO_OK;

@@ -36,8 +36,10 @@ static double factor_of(const gonio_i_rgl *rgl, const double u[2], gonio_angles 
 /* Where a sample is, by the one incidence that it belongs to. u: where it is among half vectors. */
 static gonio_i_rgl_mirrored place_of(const gonio_i_rgl *rgl, size_t slice, size_t node, double u[2])
 {
-    const double s[2] = {(double)(node % rgl->side) / (double)(rgl->side - 1),
-                         (double)(node / rgl->side) / (double)(rgl->side - 1)};
+    const size_t row = node / rgl->side;
+    const size_t column = node % rgl->side;
+    const double last = (double)(rgl->side - 1);
+    const double s[2] = {(double)column / last, (double)row / last};
     const gonio_i_blend blend = {.count = 1, .slice = {slice}, .weight = {1.0}};
     gonio_i_warp_sample(&rgl->vndf, &blend, s, u);
     /* Of anisotropic materials u holds the azimuth itself, which the mirror counts from the light.

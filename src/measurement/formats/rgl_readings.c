@@ -59,7 +59,7 @@ static gonio_status read(gonio_i_readings_file *file, gonio_readings *readings)
                               "known",
                               file->path);
     }
-    if (status == GONIO_OK) {
+    if (status == GONIO_OK && rgl != NULL) {
         status = add_samples(&in, rgl);
     }
     gonio_material_free(&material);

@@ -211,7 +211,7 @@ static void find_angles(const grid *g, size_t k, double angle[AXES])
 static gonio_status import_grid(const grid *g, gonio_i_import *in)
 {
     gonio_status status = gonio_i_import_channels(in, g->planes, NULL);
-    const size_t count = total(g);
+    const size_t count = g->line != NULL ? total(g) : 0;
     for (size_t k = 0; k < count && status == GONIO_OK; k++) {
         double angle[AXES];
         double value[MOST_PLANES];
