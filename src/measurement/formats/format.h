@@ -40,12 +40,12 @@ typedef struct gonio_i_readings_format {
 } gonio_i_readings_format;
 
 /* The formats, in the order in which they are tried; CSV takes what nothing else does. */
-#define GONIO_I_READINGS_FORMATS(FORMAT)                                                           \
-    FORMAT(rgl)                                                                                    \
-    FORMAT(scattered)                                                                              \
-    FORMAT(alta)                                                                                   \
-    FORMAT(pab) FORMAT(astm) FORMAT(tracepro) FORMAT(zemax) FORMAT(fred) FORMAT(curet)             \
-        FORMAT(openmaterial) FORMAT(brdf_json) FORMAT(in_plane) FORMAT(csv)
+/* clang-format off */
+#define GONIO_I_READINGS_FORMATS(FORMAT) \
+    FORMAT(rgl) FORMAT(scattered) FORMAT(alta) FORMAT(pab) FORMAT(astm) FORMAT(tracepro) \
+    FORMAT(zemax) FORMAT(fred) FORMAT(curet) FORMAT(openmaterial) FORMAT(brdf_json) \
+    FORMAT(in_plane) FORMAT(csv)
+/* clang-format on */
 
 #define GONIO_I_DECLARE_FORMAT(name) extern const gonio_i_readings_format gonio_i_readings_##name;
 GONIO_I_READINGS_FORMATS(GONIO_I_DECLARE_FORMAT)
