@@ -186,18 +186,9 @@ static gonio_status read_rows(gonio_i_numbers *n, gonio_i_import *in, const head
     return status;
 }
 
-static gonio_i_numbers numbers_of(const gonio_i_readings_file *file)
-{
-    return (gonio_i_numbers){.context = file->context,
-                             .path = file->path,
-                             .at = file->text,
-                             .end = file->text + file->size,
-                             .line = 1};
-}
-
 static gonio_status read(gonio_i_readings_file *file, gonio_readings *readings)
 {
-    gonio_i_numbers n = numbers_of(file);
+    gonio_i_numbers n = gonio_i_numbers_of(file->context, file->path, file->text, file->size, 0);
     gonio_i_import in;
     header h;
     read_header(&n, &h);

@@ -102,14 +102,6 @@ static gonio_status read_columns(gonio_i_readings_file *file, const char *vars, 
 
 /* ---- rows ---- */
 
-/* Numbers with commas between them become numbers with blanks. */
-static void drop_commas(char *text, const char *end)
-{
-    for (char *at = text; at < end; at++) {
-        *at = *at == ',' ? ' ' : *at;
-    }
-}
-
 static gonio_status read_row(gonio_i_numbers *n, gonio_i_import *in, const columns *c,
                              double *number)
 {
@@ -147,15 +139,6 @@ static gonio_status read_rows(gonio_i_numbers *n, gonio_i_import *in, const colu
     return status;
 }
 
-static size_t line_of(const char *text, const char *at)
-{
-    size_t line = 1;
-    for (const char *k = text; k < at; k++) {
-        line += *k == '\n';
-    }
-    return line;
-}
-
 /* Whether as many rows came as NUM_POINTS says. */
 static gonio_status check_points(gonio_i_readings_file *file, const char *points, size_t rows)
 {
@@ -179,16 +162,13 @@ static size_t rows_seen(const gonio_i_import *in)
 static gonio_status read_table(gonio_i_readings_file *file, const char *vars, gonio_i_import *in)
 {
     columns c = {0};
-    const char *end = file->text + file->size;
     const char *points = find_key(file->text, file->size, "NUM_POINTS");
     gonio_status status = read_columns(file, vars, &c);
     if (status == GONIO_OK) {
-        gonio_i_numbers n = {.context = file->context,
-                             .path = file->path,
-                             .at = vars + strcspn(vars, "\n"),
-                             .end = end,
-                             .line = line_of(file->text, vars)};
-        drop_commas(file->text + (n.at - file->text), end);
+        gonio_i_numbers n =
+            gonio_i_numbers_of(file->context, file->path, file->text, file->size, 0);
+        n.commas = true;
+        gonio_i_numbers_go_to(&n, vars + strcspn(vars, "\n"));
         status = read_rows(&n, in, &c);
     }
     if (status == GONIO_OK) {

@@ -18,17 +18,6 @@ static bool is_whole(double number)
     return number >= 1.0 && number <= 1e6 && floor(number) == number;
 }
 
-static gonio_i_numbers numbers_of(gonio_context *context, const char *path, const char *text,
-                                  size_t size)
-{
-    return (gonio_i_numbers){.context = context,
-                             .path = path,
-                             .at = text,
-                             .end = text + size,
-                             .line = 1,
-                             .comment = '#'};
-}
-
 /* ---- the directions ---- */
 
 static char *beside(gonio_context *context, const char *path)
@@ -79,7 +68,7 @@ static gonio_status read_directions(const gonio_i_readings_file *file, double (*
     char *path = beside(file->context, file->path);
     gonio_status status = path != NULL ? read_table(file, path, &text, &size) : GONIO_ERROR_MEMORY;
     if (status == GONIO_OK) {
-        gonio_i_numbers n = numbers_of(file->context, path, text, size);
+        gonio_i_numbers n = gonio_i_numbers_of(file->context, path, text, size, '#');
         status = parse_directions(&n, angle);
     }
     free(text);
@@ -159,7 +148,7 @@ static gonio_status import_sample(const samples *s, const double (*angle)[4], go
 static gonio_status read_sample(gonio_i_readings_file *file, gonio_readings *readings, samples *s)
 {
     const int wanted = readings->options.as.sample;
-    gonio_i_numbers n = numbers_of(file->context, file->path, file->text, file->size);
+    gonio_i_numbers n = gonio_i_numbers_of(file->context, file->path, file->text, file->size, '#');
     const gonio_status status = read_samples(&n, wanted, s);
     return status == GONIO_OK ? choose_sample(file, readings, s, wanted) : status;
 }
@@ -185,7 +174,7 @@ static gonio_status read(gonio_i_readings_file *file, gonio_readings *readings)
 /* A whole number and 205 numbers in the first line. */
 static bool probe(const char *text, size_t size)
 {
-    gonio_i_numbers n = numbers_of(NULL, "", text, size);
+    gonio_i_numbers n = gonio_i_numbers_of(NULL, "", text, size, '#');
     double row[ROW];
     return gonio_i_numbers_skip(&n) && gonio_i_numbers_row(&n, row, ROW) == ROW && is_whole(row[0]);
 }

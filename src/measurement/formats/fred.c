@@ -118,12 +118,7 @@ static gonio_status read(gonio_i_readings_file *file, gonio_readings *readings)
                                             .values = GONIO_VALUE_BRDF,
                                             .mirror = GONIO_MIRROR_0,
                                             .zeros = GONIO_ZEROS_MISSING};
-    gonio_i_numbers n = {.context = file->context,
-                         .path = file->path,
-                         .at = file->text,
-                         .end = file->text + file->size,
-                         .line = 1,
-                         .comment = '!'};
+    gonio_i_numbers n = gonio_i_numbers_of(file->context, file->path, file->text, file->size, '!');
     gonio_i_import in;
     gonio_i_import_begin(&in, file->context, readings, "FRED text", &stated);
     gonio_i_import_leniently(&in);

@@ -288,28 +288,12 @@ static gonio_status begin_channels(gonio_i_import *in, const char *text, const c
     return gonio_i_import_channels(in, c->values, named ? c->wavelength : NULL);
 }
 
-/* Commas between numbers become blanks. */
-static void drop_commas(char *text, const char *end)
-{
-    for (char *at = text; at < end; at++) {
-        *at = *at == ',' ? ' ' : *at;
-    }
-}
-
 static gonio_status read_table(gonio_i_readings_file *file, columns *c, const char *names,
                                const char *stop, gonio_i_import *in)
 {
-    char *rows = file->text + (stop - file->text);
-    gonio_i_numbers n = {.context = file->context,
-                         .path = file->path,
-                         .at = rows,
-                         .end = file->text + file->size,
-                         .line = 1,
-                         .comment = '#'};
-    for (const char *at = file->text; at < stop; at++) {
-        n.line += *at == '\n';
-    }
-    drop_commas(rows, n.end);
+    gonio_i_numbers n = gonio_i_numbers_of(file->context, file->path, file->text, file->size, '#');
+    n.commas = true;
+    gonio_i_numbers_go_to(&n, stop);
     if (!c->factors && are_exchanged(n, c)) {
         exchange(c);
         in->taken_as = "columns of text (phi is the polar angle, theta the azimuth)";

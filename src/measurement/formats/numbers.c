@@ -6,6 +6,29 @@
 #include <stdlib.h>
 #include <string.h>
 
+gonio_i_numbers gonio_i_numbers_of(gonio_context *context, const char *path, const char *text,
+                                   size_t size, char comment)
+{
+    return (gonio_i_numbers){.context = context,
+                             .path = path,
+                             .at = text,
+                             .end = text + size,
+                             .line = 1,
+                             .comment = comment};
+}
+
+void gonio_i_numbers_go_to(gonio_i_numbers *n, const char *place)
+{
+    for (; n->at < place; n->at++) {
+        n->line += *n->at == '\n';
+    }
+}
+
+static bool at_blank(const gonio_i_numbers *n)
+{
+    return isspace((unsigned char)*n->at) || (n->commas && *n->at == ',');
+}
+
 static bool at_comment(const gonio_i_numbers *n)
 {
     return n->comment != '\0' && *n->at == n->comment;
@@ -19,7 +42,7 @@ static const char *line_end(const gonio_i_numbers *n)
 
 bool gonio_i_numbers_skip(gonio_i_numbers *n)
 {
-    while (n->at < n->end && (isspace((unsigned char)*n->at) || at_comment(n))) {
+    while (n->at < n->end && (at_blank(n) || at_comment(n))) {
         n->at = at_comment(n) ? line_end(n) : n->at;
         n->line += n->at < n->end && *n->at == '\n';
         n->at += n->at < n->end;
@@ -29,7 +52,7 @@ bool gonio_i_numbers_skip(gonio_i_numbers *n)
 
 bool gonio_i_numbers_skip_blanks(gonio_i_numbers *n)
 {
-    while (n->at < n->end && *n->at != '\n' && (isspace((unsigned char)*n->at) || at_comment(n))) {
+    while (n->at < n->end && *n->at != '\n' && (at_blank(n) || at_comment(n))) {
         n->at = at_comment(n) ? line_end(n) : n->at + 1;
     }
     return n->at < n->end && *n->at != '\n';
@@ -45,7 +68,7 @@ void gonio_i_numbers_next_line(gonio_i_numbers *n)
 void gonio_i_numbers_word(gonio_i_numbers *n, char word[GONIO_I_WORD])
 {
     size_t length = 0;
-    for (; n->at < n->end && !isspace((unsigned char)*n->at) && !at_comment(n); n->at++) {
+    for (; n->at < n->end && !at_blank(n) && !at_comment(n); n->at++) {
         if (length < GONIO_I_WORD - 1) {
             word[length++] = *n->at;
         }

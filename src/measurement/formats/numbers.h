@@ -13,7 +13,15 @@ typedef struct gonio_i_numbers {
     const char *end;
     size_t line;  /* from 1 */
     char comment; /* the sign that begins a comment, which goes to the end of its line; 0: none */
+    bool commas;  /* stand between words, as blanks do */
 } gonio_i_numbers;
+
+/* At the beginning of a text, which is kept. */
+gonio_i_numbers gonio_i_numbers_of(gonio_context *context, const char *path, const char *text,
+                                   size_t size, char comment);
+
+/* Passes to a place further on. */
+void gonio_i_numbers_go_to(gonio_i_numbers *numbers, const char *place);
 
 /* Passes over blanks, line ends and comments; whether there is more. */
 bool gonio_i_numbers_skip(gonio_i_numbers *numbers);

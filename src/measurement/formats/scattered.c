@@ -34,7 +34,7 @@ static bool begins_with_wavelengths(gonio_i_numbers *n, size_t most)
  * What is wrong with their values is for the reader to say. */
 static bool probe(const char *text, size_t size)
 {
-    gonio_i_numbers n = {.at = text, .end = text + size, .line = 1, .comment = '#'};
+    gonio_i_numbers n = gonio_i_numbers_of(NULL, "", text, size, '#');
     char word[GONIO_I_WORD] = "";
     const size_t before = gonio_i_numbers_skip(&n) ? n.line : 0;
     gonio_i_numbers_word(&n, word);
@@ -101,12 +101,7 @@ static gonio_status read(gonio_i_readings_file *file, gonio_readings *readings)
 {
     static const gonio_convention stated = {
         .angles = GONIO_RADIANS, .values = GONIO_VALUE_BRDF, .wavelengths = GONIO_NANOMETRES};
-    gonio_i_numbers n = {.context = file->context,
-                         .path = file->path,
-                         .at = file->text,
-                         .end = file->text + file->size,
-                         .line = 1,
-                         .comment = '#'};
+    gonio_i_numbers n = gonio_i_numbers_of(file->context, file->path, file->text, file->size, '#');
     gonio_i_import in;
     gonio_i_import_begin(&in, file->context, readings, "scattered readings (Cornell, pbrt)",
                          &stated);

@@ -102,11 +102,7 @@ static gonio_status read(gonio_i_readings_file *file, gonio_readings *readings)
 {
     static const gonio_convention stated = {
         .angles = GONIO_DEGREES, .values = GONIO_VALUE_BRDF, .wavelengths = GONIO_MICROMETRES};
-    gonio_i_numbers n = {.context = file->context,
-                         .path = file->path,
-                         .at = file->text,
-                         .end = file->text + file->size,
-                         .line = 1};
+    gonio_i_numbers n = gonio_i_numbers_of(file->context, file->path, file->text, file->size, 0);
     gonio_i_long_table table = {.context = file->context};
     gonio_i_import in;
     gonio_i_import_begin(&in, file->context, readings, "a TracePro table", &stated);

@@ -233,12 +233,7 @@ static gonio_status read(gonio_i_readings_file *file, gonio_readings *readings)
 {
     static const gonio_convention stated = {
         .angles = GONIO_DEGREES, .values = GONIO_VALUE_BRDF, .zeros = GONIO_ZEROS_MISSING};
-    gonio_i_numbers n = {.context = file->context,
-                         .path = file->path,
-                         .at = file->text,
-                         .end = file->text + file->size,
-                         .line = 1,
-                         .comment = '#'};
+    gonio_i_numbers n = gonio_i_numbers_of(file->context, file->path, file->text, file->size, '#');
     gonio_i_import in;
     grid g = {0};
     gonio_i_import_begin(&in, file->context, readings,
