@@ -100,7 +100,7 @@ gonio_status gonio_i_import_channels(gonio_i_import *import, size_t channels,
 
 /* ---- angles ---- */
 
-static double rounded(double degrees)
+double gonio_i_import_rounded(double degrees)
 {
     if (degrees == 0.0 || !isfinite(degrees)) {
         return fabs(degrees);
@@ -113,7 +113,8 @@ static double rounded(double degrees)
 
 double gonio_i_import_degrees(const gonio_i_import *import, double angle)
 {
-    return import->how.angles == GONIO_RADIANS ? rounded(angle * 180.0 / M_PI) : angle;
+    return import->how.angles == GONIO_RADIANS ? gonio_i_import_rounded(angle * 180.0 / M_PI)
+                                               : angle;
 }
 
 static double as_in_file(const gonio_i_import *in, double degrees)
@@ -142,7 +143,7 @@ static void fold(double *theta, double *phi)
         *phi += *phi < 180.0 ? 180.0 : -180.0;
     }
     if (fabs(*phi) > 360.0) {
-        *phi = rounded(fmod(*phi, 360.0));
+        *phi = gonio_i_import_rounded(fmod(*phi, 360.0));
     }
 }
 
@@ -321,7 +322,6 @@ static const char *const reasons[GONIO_I_REASONS] = {
     [GONIO_I_LOST] = "too low or too high near the horizon",
     [GONIO_I_REPEATED] = "said again of the same directions",
     [GONIO_I_EXTRAPOLATED] = "extrapolated",
-    [GONIO_I_TRANSMITTED] = "transmitted light",
 };
 
 static void print_left_out(const gonio_i_import *in, FILE *stream)
@@ -418,7 +418,7 @@ void gonio_i_from_mirror(double theta_i, double radial, double azimuth, double *
     const double x = -sin(t) * along + cos(t) * towards;
     const double y = sin(r) * sin(a);
     const double z = cos(t) * along + sin(t) * towards;
-    *theta_o = rounded(atan2(hypot(x, y), z) * 180.0 / M_PI);
-    *phi_difference = *theta_o < 1e-6 ? 0.0 : rounded(atan2(y, x) * 180.0 / M_PI);
+    *theta_o = gonio_i_import_rounded(atan2(hypot(x, y), z) * 180.0 / M_PI);
+    *phi_difference = *theta_o < 1e-6 ? 0.0 : gonio_i_import_rounded(atan2(y, x) * 180.0 / M_PI);
     *theta_o = *theta_o < 1e-6 ? 0.0 : *theta_o;
 }

@@ -16,7 +16,6 @@ typedef enum gonio_i_reason {
     GONIO_I_REPEATED,     /* the same directions and values */
     GONIO_I_LOST,         /* cut off near the horizon, or stray light there (horizon.h) */
     GONIO_I_EXTRAPOLATED, /* the file says that the value was made up */
-    GONIO_I_TRANSMITTED,
     GONIO_I_REASONS
 } gonio_i_reason;
 
@@ -60,9 +59,13 @@ void gonio_i_import_leniently(gonio_i_import *import);
 gonio_status gonio_i_import_channels(gonio_i_import *import, size_t channels,
                                      const double *wavelength);
 
-/* An angle as the file has it in degrees, rounded to nine digits, so that the same direction is the
- * same number. */
+/* An angle as the file has it in degrees; from radians rounded. */
 double gonio_i_import_degrees(const gonio_i_import *import, double angle);
+
+/* Degrees that were computed, rounded to nine digits, so that the same direction is the same
+ * number.
+ */
+double gonio_i_import_rounded(double degrees);
 
 /* Adds a row or leaves it out. Errors: _DATA for what cannot be an angle or a value; the message
  * has the number as it is in the file. */

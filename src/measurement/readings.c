@@ -65,6 +65,11 @@ void gonio_readings_free(gonio_readings **readings)
     *readings = NULL;
 }
 
+static double to_degrees(double radians)
+{
+    return radians * 180.0 / M_PI;
+}
+
 /* ---- what is in them ---- */
 
 void gonio_i_readings_update_view(gonio_readings *readings)
@@ -105,6 +110,14 @@ double gonio_readings_value(const gonio_readings *readings, size_t reading, size
 double gonio_readings_scale(const gonio_readings *readings, size_t channel)
 {
     return gonio_log_scale(gonio_readings_are_colours(readings) ? (int)channel : GONIO_CHANNELS);
+}
+
+double gonio_i_readings_degrees(const gonio_readings *readings, size_t reading, size_t which)
+{
+    const gonio_pair *pair = &readings->pair[reading];
+    const double radians[4] = {pair->incident.theta, pair->incident.phi, pair->outgoing.theta,
+                               pair->outgoing.phi};
+    return readings->given != NULL ? readings->given[reading][which] : to_degrees(radians[which]);
 }
 
 void gonio_i_value_name(const gonio_readings *readings, size_t channel, bool deviation,
@@ -391,11 +404,6 @@ gonio_status gonio_i_readings_finish(gonio_context *context, gonio_readings *rea
 }
 
 /* ---- from arrays ---- */
-
-static double to_degrees(double radians)
-{
-    return radians * 180.0 / M_PI;
-}
 
 static double within_a_turn(double phi)
 {

@@ -85,6 +85,10 @@ static inline double *gonio_i_readings_values(gonio_readings *readings, size_t r
     return readings->value + reading * readings->channels;
 }
 
+/* theta_i, phi_i, theta_o or phi_o (which: 0 to 3) in degrees: as the file has it, if that is kept,
+ * or of the pair. */
+double gonio_i_readings_degrees(const gonio_readings *readings, size_t reading, size_t which);
+
 /* The name of a channel's column of values: R_per_sr, 400nm_per_sr, value_per_sr; of their
  * deviations: R_deviation_per_sr and so on. */
 enum { GONIO_I_NAME_ROOM = 64 };

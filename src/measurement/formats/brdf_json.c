@@ -322,11 +322,6 @@ static gonio_status note_polarisation(const gonio_i_readings_file *file, gonio_r
                                        what, found.s ? "s" : "p");
 }
 
-static double nine_digits(double degrees)
-{
-    return nearbyint(degrees * 1e7) / 1e7;
-}
-
 static gonio_status add_row(const gonio_i_readings_file *file, const columns *c, double factor,
                             size_t k, gonio_i_long_table *table)
 {
@@ -337,7 +332,7 @@ static gonio_status add_row(const gonio_i_readings_file *file, const columns *c,
     row.deviation *= c->deviation.relative ? fabs(number_at(&c->value, k)) : 1.0;
     for (int a = 0; a < ANGLES; a++) {
         const double degrees = number_at(&c->angle[a], k);
-        row.degrees[a] = c->angle[a].scale == 1.0 ? degrees : nine_digits(degrees);
+        row.degrees[a] = c->angle[a].scale == 1.0 ? degrees : gonio_i_import_rounded(degrees);
         if (!isfinite(row.degrees[a])) {
             return gonio_i_fail(file->context, GONIO_ERROR_FORMAT,
                                 "%s: entry %zu: an angle is not a number", file->path, k + 1);

@@ -12,6 +12,7 @@ typedef struct printer {
     FILE *stream;
     const gonio_readings *readings;
     const bool *held; /* [channels]: any reading has a value of it */
+    size_t angle;     /* that print_angle prints */
 } printer;
 
 /* Prints what belongs to one value. */
@@ -32,14 +33,6 @@ static void print_number(FILE *stream, double number)
 
 /* ---- the columns ---- */
 
-static double degrees_of(const gonio_readings *r, size_t reading, size_t which)
-{
-    const gonio_pair *pair = &r->pair[reading];
-    const double radians[4] = {pair->incident.theta, pair->incident.phi, pair->outgoing.theta,
-                               pair->outgoing.phi};
-    return r->given != NULL ? r->given[reading][which] : radians[which] * 180.0 / M_PI;
-}
-
 /* From 0 to below 360, also when it is printed. */
 static double turned(double degrees)
 {
@@ -49,34 +42,11 @@ static double turned(double degrees)
 }
 
 /* Twelve digits, as CSV has, so that 60 degrees are 60. */
-static void print_degrees(const printer *p, size_t reading, size_t which)
+static void print_angle(const printer *p, size_t reading, size_t channel)
 {
-    const double degrees = degrees_of(p->readings, reading, which);
-    fprintf(p->stream, "%.12g", which % 2 == 1 ? turned(degrees) : degrees);
-}
-
-static void print_theta_i(const printer *p, size_t reading, size_t channel)
-{
+    const double degrees = gonio_i_readings_degrees(p->readings, reading, p->angle);
     (void)channel;
-    print_degrees(p, reading, 0);
-}
-
-static void print_phi_i(const printer *p, size_t reading, size_t channel)
-{
-    (void)channel;
-    print_degrees(p, reading, 1);
-}
-
-static void print_theta_r(const printer *p, size_t reading, size_t channel)
-{
-    (void)channel;
-    print_degrees(p, reading, 2);
-}
-
-static void print_phi_r(const printer *p, size_t reading, size_t channel)
-{
-    (void)channel;
-    print_degrees(p, reading, 3);
+    fprintf(p->stream, "%.12g", p->angle % 2 == 1 ? turned(degrees) : degrees);
 }
 
 static void print_wavelength(const printer *p, size_t reading, size_t channel)
@@ -170,13 +140,19 @@ static void print_channels(const printer *p)
     fputs("}},\n", p->stream);
 }
 
+static void print_angles(const printer *p)
+{
+    static const char *const names[4] = {"theta_i", "phi_i", "theta_r", "phi_r"};
+    printer one = *p;
+    for (one.angle = 0; one.angle < 4; one.angle++) {
+        print_column(&one, names[one.angle], "unit", "deg", print_angle);
+    }
+}
+
 static void print_data(const printer *p)
 {
     fputs("  \"data\": {\n", p->stream);
-    print_column(p, "theta_i", "unit", "deg", print_theta_i);
-    print_column(p, "phi_i", "unit", "deg", print_phi_i);
-    print_column(p, "theta_r", "unit", "deg", print_theta_r);
-    print_column(p, "phi_r", "unit", "deg", print_phi_r);
+    print_angles(p);
     print_channels(p);
     print_column(p, "polarization_i", "notation", "sp", print_polarisation);
     if (p->readings->deviation != NULL) {
@@ -208,7 +184,7 @@ gonio_status gonio_i_brdf_json_print(gonio_context *context, const gonio_reading
     if (held == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    const printer p = {stream, readings, held};
+    const printer p = {.stream = stream, .readings = readings, .held = held};
     fputs("{\n", stream);
     const bool done = gonio_i_brdf_json_print_metadata(readings, command, stream);
     print_data(&p);

@@ -47,16 +47,6 @@ static void print_number(printer *p, double number, int digits)
     print_cell(p, text);
 }
 
-/* In degrees: as it was given, or of the pair. */
-static double angle_of(const gonio_readings *readings, size_t reading, size_t which)
-{
-    const gonio_pair *pair = &readings->pair[reading];
-    const double radians[4] = {pair->incident.theta, pair->incident.phi, pair->outgoing.theta,
-                               pair->outgoing.phi};
-    return readings->given != NULL ? readings->given[reading][which]
-                                   : radians[which] * 180.0 / M_PI;
-}
-
 static void print_column(printer *p, const printed_column *column, size_t reading,
                          char *const *cell)
 {
@@ -68,7 +58,7 @@ static void print_column(printer *p, const printed_column *column, size_t readin
         print_cell(p, cell != NULL ? cell[column->index] : "");
         break;
     case GONIO_I_ANGLE:
-        print_number(p, angle_of(r, reading, column->index), 12);
+        print_number(p, gonio_i_readings_degrees(r, reading, column->index), 12);
         break;
     case GONIO_I_PLANNED:
         gonio_i_csv_name_channel(r, r->planned[reading], name);

@@ -42,12 +42,6 @@ static void from_cosines(double theta_i, double beta, double azimuth, double *th
     *phi = sine > 1e-9 ? 180.0 + to_degrees(atan2(y, x)) : 0.0;
 }
 
-/* Rounded as directions of radians are, so that the same direction is the same number. */
-static double rounded(double degrees)
-{
-    return nearbyint(degrees * 1e7) / 1e7;
-}
-
 static gonio_status add_row(gonio_i_long_table *table, const double *number, size_t line)
 {
     gonio_i_long_row row = {
@@ -57,8 +51,8 @@ static gonio_status add_row(gonio_i_long_table *table, const double *number, siz
     from_cosines(number[INCIDENCE], number[BETA], number[BETA_AZIMUTH], &theta, &phi);
     row.degrees[0] = number[INCIDENCE];
     row.degrees[1] = number[INCIDENT_AZIMUTH];
-    row.degrees[2] = rounded(theta);
-    row.degrees[3] = rounded(number[INCIDENT_AZIMUTH] + phi);
+    row.degrees[2] = gonio_i_import_rounded(theta);
+    row.degrees[3] = gonio_i_import_rounded(number[INCIDENT_AZIMUTH] + phi);
     return gonio_i_long_table_add(table, &row);
 }
 
