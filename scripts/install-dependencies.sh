@@ -9,7 +9,7 @@ libxxhash-dev libcsv-dev libjansson-dev libpopt-dev zlib1g-dev libexpat1-dev lib
 libpng-dev libcairo2-dev"
 if [ "$2" = check ]; then
     packages="$packages libcmocka-dev clang-format clang-tidy libomp-dev mandoc gnuplot-nox
-libopenmpi-dev openmpi-bin"
+libopenmpi-dev openmpi-bin jq locales openssl python3-numpy"
 fi
 
 if ! command -v dpkg-query >/dev/null 2>&1; then
