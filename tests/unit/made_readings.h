@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include <gonio/gonio.h>
 
@@ -73,6 +74,32 @@ static inline gonio_status made_readings(gonio_context *context, const char *fol
     assert_int_equal(fclose(file), 0);
     *readings = NULL;
     return gonio_readings_read(context, path, options, readings);
+}
+
+/* A text that is refused: with which status, and what the message holds. */
+typedef struct made_bad_file {
+    const char *text;
+    gonio_status status;
+    const char *message;
+} made_bad_file;
+
+/* Each file is refused as it should be, and leaves no readings. */
+static inline void assert_bad_files(const char *name, const made_bad_file *file, size_t count)
+{
+    char *folder = support_folder();
+    gonio_context *context = support_context();
+    for (size_t k = 0; k < count; k++) {
+        gonio_readings *readings = NULL;
+        const gonio_status status =
+            made_readings(context, folder, name, file[k].text, NULL, &readings);
+        if (status != file[k].status || strstr(support_message(), file[k].message) == NULL) {
+            fail_msg("case %zu: status %d, '%s'; expected %d, '%s'", k, (int)status,
+                     support_message(), (int)file[k].status, file[k].message);
+        }
+        assert_null(readings);
+    }
+    gonio_context_free(&context);
+    support_remove(folder);
 }
 
 #endif

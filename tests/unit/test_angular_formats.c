@@ -334,11 +334,7 @@ static void test_in_plane_spectra(void **state)
 static void test_bad_files(void **state)
 {
     (void)state;
-    static const struct {
-        const char *text;
-        gonio_status status;
-        const char *message;
-    } cases[] = {
+    static const made_bad_file cases[] = {
         {"#DIM 3 1\n#PARAM_IN BARYCENTRIC_ALPHA_SIGMA\n1 2 3 4\n", GONIO_ERROR_FORMAT,
          "#PARAM_IN BARYCENTRIC_ALPHA_SIGMA: gonio knows"},
         {"#DIM 4 1\n#PARAM_IN RUSIN_TH_TD_PD\n1 2 3 4\n", GONIO_ERROR_FORMAT, "does not fit"},
@@ -388,20 +384,7 @@ static void test_bad_files(void **state)
          "390 nm occurs twice"},
         {"type bsdf_data\nformat scale=0\n", GONIO_ERROR_FORMAT, "the scale is not a number"},
     };
-    char *folder = support_folder();
-    gonio_context *context = support_context();
-    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        gonio_readings *readings = NULL;
-        const gonio_status status =
-            made_readings(context, folder, "bad.txt", cases[k].text, NULL, &readings);
-        if (status != cases[k].status || strstr(support_message(), cases[k].message) == NULL) {
-            fail_msg("case %zu: status %d, '%s'; expected %d, '%s'", k, (int)status,
-                     support_message(), (int)cases[k].status, cases[k].message);
-        }
-        assert_null(readings);
-    }
-    gonio_context_free(&context);
-    support_remove(folder);
+    assert_bad_files("bad.txt", cases, sizeof cases / sizeof *cases);
 }
 
 int main(void)

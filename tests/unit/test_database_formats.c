@@ -461,11 +461,7 @@ static void test_rgl_samples(void **state)
 static void test_bad_files(void **state)
 {
     (void)state;
-    static const struct {
-        const char *text;
-        gonio_status status;
-        const char *message;
-    } cases[] = {
+    static const made_bad_file cases[] = {
         {"{\"BRDF\":", GONIO_ERROR_FORMAT, ":1: JSON: "},
         {"{\"BRDF\":{}}", GONIO_ERROR_FORMAT, "no data.theta_i with values"},
         {"{\"data\":{" ANGLES("1,1,1,1") "},\"BRDF\":[1]}", GONIO_ERROR_FORMAT,
@@ -502,20 +498,7 @@ static void test_bad_files(void **state)
          "row 1 of lookupTable has 4 elements"},
         {"{\"brdf\":{\"lookupTable\":[]}}", GONIO_ERROR_DATA, "no readings in it"},
     };
-    char *folder = support_folder();
-    gonio_context *context = support_context();
-    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        gonio_readings *readings = NULL;
-        const gonio_status status =
-            made_readings(context, folder, "bad.json", cases[k].text, NULL, &readings);
-        if (status != cases[k].status || strstr(support_message(), cases[k].message) == NULL) {
-            fail_msg("case %zu: status %d, '%s'; expected %d, '%s'", k, (int)status,
-                     support_message(), (int)cases[k].status, cases[k].message);
-        }
-        assert_null(readings);
-    }
-    gonio_context_free(&context);
-    support_remove(folder);
+    assert_bad_files("bad.json", cases, sizeof cases / sizeof *cases);
 }
 
 /* A file of 10,000 lines may not ask for the memory of 10,000 x 4,000 values. */

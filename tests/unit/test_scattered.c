@@ -56,11 +56,7 @@ static void test_a_good_file(void **state)
 static void test_bad_files(void **state)
 {
     (void)state;
-    static const struct {
-        const char *text;
-        gonio_status status;
-        const char *message;
-    } cases[] = {
+    static const made_bad_file cases[] = {
         {"2\n400 500\n0.1 0.2 0.3 0.4 1", GONIO_ERROR_FORMAT, "ends within a reading"},
         {"2\n400 500\n0.1 0.2 0.3 0.4 1 2\n0.1 0.2", GONIO_ERROR_FORMAT, "ends within a reading"},
         {"5\n400 500", GONIO_ERROR_FORMAT, "ends within a reading"},
@@ -87,20 +83,7 @@ static void test_bad_files(void **state)
          ":3: theta_i = 45 is no such angle in radians; these look like degrees"},
         {"2\n400 500\n0.1 50 0.3 0.4 1 2\n", GONIO_ERROR_DATA, ":3: phi_i = 50 is no such angle"},
     };
-    char *folder = support_folder();
-    gonio_context *context = support_context();
-    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        gonio_readings *readings = NULL;
-        const gonio_status status =
-            made_readings(context, folder, "bad.brdf", cases[k].text, NULL, &readings);
-        if (status != cases[k].status || strstr(support_message(), cases[k].message) == NULL) {
-            fail_msg("case %zu: status %d, '%s'; expected %d, '%s'", k, (int)status,
-                     support_message(), (int)cases[k].status, cases[k].message);
-        }
-        assert_null(readings);
-    }
-    gonio_context_free(&context);
-    support_remove(folder);
+    assert_bad_files("bad.brdf", cases, sizeof cases / sizeof *cases);
 }
 
 static void test_negative_values_may_be_taken_as_zero(void **state)
