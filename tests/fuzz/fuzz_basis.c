@@ -14,36 +14,11 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "contract.h"
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 size_t LLVMFuzzerMutate(uint8_t *data, size_t size, size_t most);
 size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t size, size_t most, unsigned seed);
-
-static int errors;
-
-static void check(bool holds, const char *what)
-{
-    if (!holds) {
-        fprintf(stderr, "contract: %s\n", what);
-        abort();
-    }
-}
-
-static void count_message(void *user, gonio_message_level level, const char *text)
-{
-    (void)user;
-    errors += level == GONIO_MESSAGE_ERROR;
-    check(*text != '\0', "a message says something");
-    for (const unsigned char *c = (const unsigned char *)text; *c != '\0'; c++) {
-        check(*c >= 32 && *c != 127, "a message has no control characters");
-    }
-}
-
-/* A failure tells one line, a success none. */
-static void check_status(gonio_status status)
-{
-    check(status == GONIO_OK ? errors == 0 : errors == 1, "an error is one message");
-    errors = 0;
-}
 
 static void plan(gonio_context *context, const gonio_basis *basis, const char *method)
 {
