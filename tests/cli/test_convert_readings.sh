@@ -33,6 +33,10 @@ expect_ok convert atlas:red-cotton cotton.bsdf
 expect_output 'RGL isotropic BSDF' info cotton.bsdf
 expect_output 'taken as the samples of an RGL .bsdf' info --as format=rgl cotton.bsdf
 
+# Values of CUReT without their directions: one message.
+{ printf '2'; for _ in $(seq 205); do printf ' 0.1'; done; echo; } > curet.dat
+expect_fail 1 'are expected in table.txt beside it' info curet.dat
+
 expect_fail 1 "these are readings; 'gonio reconstruct' makes a material of them" \
     convert fred.txt x.binary
 expect_fail 2 'the choices are brdf, factor' convert -q fred.txt --as values=lux x.csv

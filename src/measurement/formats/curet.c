@@ -49,16 +49,17 @@ static gonio_status parse_directions(gonio_i_numbers *n, double (*angle)[4])
     return GONIO_OK;
 }
 
+/* One message, which says what the table is for. */
 static gonio_status read_table(const gonio_i_readings_file *file, const char *path, char **text,
                                size_t *size)
 {
-    const gonio_status status = gonio_i_text_read(file->context, path, text, size);
-    return status == GONIO_OK || status == GONIO_ERROR_MEMORY
+    const gonio_status status = gonio_i_text_read(NULL, path, text, size);
+    return status == GONIO_OK
                ? status
                : gonio_i_fail(file->context, status,
                               "%s: the directions of CUReT's values are expected in table.txt "
-                              "beside it; %s cannot be read",
-                              file->path, path);
+                              "beside it; %s cannot be read (%s)",
+                              file->path, path, gonio_status_text(status));
 }
 
 static gonio_status read_directions(const gonio_i_readings_file *file, double (*angle)[4])
