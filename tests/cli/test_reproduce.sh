@@ -100,6 +100,27 @@ else
     skip 'teams: no mpirun, or built without MPI'
 fi
 
+# ---- pieces that somebody has written, with right checksums ----
+
+# forged PIECE FROM TO COMPLAINT: the run does not believe the piece, and says which.
+forged() {
+    rm -rf forged
+    cp -r out forged
+    "$FORGE_PIECE" "forged/pieces/$1.json" "$2" "$3" || failed "forging $1"
+    # shellcheck disable=SC2086
+    expect_fail 1 "forged/pieces/$1.json: $4" \
+        reproduce $materials --quick --only "${1%%-*}" -o forged
+}
+channel=$(sed 's/.*"entries":\[\(\[[0-9]*,[0-2],\).*/\1/' out/pieces/fig4-samples-80.json)
+rendering=$(cd out/pieces && echo fig6-*)
+forged fig4-samples-80 "$channel" "${channel%?,}100000000," "'entries' is not a list of [cell, channel 0 to 2, "
+forged fig5-white-linen '"errors":[[' '"errors":[null,[' "'errors' is not a list of errors"
+if full; then
+    forged fig4-samples-80 "$channel" "${channel}null,0,0,0],[0,0," "'entries' is not a list of ["
+    forged fig2a '"splits":[' '"splits":[[1.0],' "'splits' is not a list of variances for each split"
+    forged "${rendering%%.json*}" '"image":"0' '"image":"x' "'image' is not an image"
+fi
+
 # ---- input that it cannot use ----
 
 # shellcheck disable=SC2086

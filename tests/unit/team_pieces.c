@@ -48,7 +48,12 @@ static gonio_status run(gonio_context *context, const char *folder, const proces
     json_t *results[PIECES] = {0};
     gonio_i_checkpoint *checkpoint = NULL;
     json_t *identity = json_pack("{s:s}", "test", "group");
-    const gonio_i_work work = {"thirds", PIECES, t, name_of, cost_of, compute, NULL};
+    const gonio_i_work work = {.title = "thirds",
+                               .count = PIECES,
+                               .user = t,
+                               .name = name_of,
+                               .cost = cost_of,
+                               .compute = compute};
     gonio_status status = gonio_i_checkpoint_open(context, folder, identity, group, &checkpoint);
     if (status == GONIO_OK) {
         status =

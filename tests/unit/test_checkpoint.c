@@ -25,6 +25,7 @@ typedef struct squares {
     const char *(*naming)(int piece); /* NULL for "square-N" */
     bool large; /* every third is one of those of which there is one at a time */
     int large_now, most_large;
+    int refused; /* of kept results, this piece's is; 0 for none, as 0 is accepted always */
 } squares;
 
 static char *name_of(void *user, size_t piece)
@@ -80,6 +81,17 @@ static gonio_status compute(void *user, gonio_context *context, size_t piece, js
                             -1.0e-300 * (double)piece, "count", (int)piece, "text", "\xc3\xa9\"\n");
     }
     return status;
+}
+
+static bool accept(void *user, size_t piece, const json_t *result, char *complaint)
+{
+    const squares *s = user;
+    assert_true(json_is_object(result));
+    if (s->refused == 0 || piece != (size_t)s->refused) {
+        return true;
+    }
+    snprintf(complaint, GONIO_I_COMPLAINT, "it is no square");
+    return false;
 }
 
 /* ---- contexts that listen ---- */
@@ -146,7 +158,14 @@ static gonio_status run(gonio_context *context, const char *folder, squares *s,
 {
     gonio_i_checkpoint *checkpoint = NULL;
     json_t *who = identity(1);
-    const gonio_i_work work = {"squares", PIECES, s, name_of, cost_of, compute, is_large};
+    const gonio_i_work work = {.title = "squares",
+                               .count = PIECES,
+                               .user = s,
+                               .name = name_of,
+                               .cost = cost_of,
+                               .compute = compute,
+                               .accept = accept,
+                               .one_at_a_time = is_large};
     gonio_status status = gonio_i_checkpoint_open(context, folder, who, group, &checkpoint);
     json_decref(who);
     if (status == GONIO_OK) {
@@ -277,6 +296,17 @@ static void test_results_come_back_exactly(void **state)
     assert_int_equal(run(f->context, f->out, &s, NULL, NULL), GONIO_OK);
     assert_int_equal(s.total, PIECES); /* nothing is computed twice */
     assert_int_equal(f->heard.errors + f->heard.warnings + f->heard.notes, 0);
+}
+
+/* Its checksum is right, and it is not computed again: somebody wrote it. */
+static void test_what_is_not_accepted_is_an_error(void **state)
+{
+    fixture *f = *state;
+    squares s = {.failing = -1, .refused = 5};
+    assert_int_equal(run(f->context, f->whole, &s, NULL, NULL), GONIO_ERROR_FORMAT);
+    assert_int_equal(s.total, 0);
+    assert_int_equal(f->heard.errors, 1);
+    assert_non_null(strstr(f->heard.error, "/whole/pieces/square-5.json: it is no square: "));
 }
 
 static void test_large_pieces_one_at_a_time(void **state)
@@ -570,6 +600,7 @@ int main(void)
         TEST(test_results_come_back_exactly),
         TEST(test_progress_is_by_cost),
         TEST(test_large_pieces_one_at_a_time),
+        TEST(test_what_is_not_accepted_is_an_error),
         TEST(test_a_stopped_run_goes_on),
         TEST(test_a_failing_piece),
         TEST(test_damaged_pieces_are_not_believed),

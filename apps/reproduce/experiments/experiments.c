@@ -6,6 +6,7 @@
 
 #include "methods.h"
 #include "computations.h"
+#include "kept_results.h"
 #include "renderings.h"
 
 typedef struct plan_of_work {
@@ -105,6 +106,7 @@ typedef struct kind {
     char *(*name)(const gonio_i_study *study, const gonio_i_piece *p);
     double (*cost)(const gonio_i_study *study, const gonio_i_piece *p);
     gonio_i_compute *compute;
+    gonio_i_accept *accept; /* of its results that were kept */
     bool (*one_at_a_time)(const gonio_i_study *study, const gonio_i_piece *p); /* NULL for no */
 } kind;
 
@@ -203,20 +205,24 @@ static size_t quoted_count(const gonio_i_study *study)
 /* ---- the table ---- */
 
 static const kind kinds[KINDS] = {
-    {GONIO_I_SPECTRUM, false, NULL, plain_name, spectrum_cost, gonio_i_compute_spectrum, NULL},
-    {GONIO_I_CONVERGENCE, false, NULL, plain_name, shown_cost, gonio_i_compute_convergence, NULL},
-    {GONIO_I_GRID, true, grid_count, grid_name, grid_cost, gonio_i_compute_grid, NULL},
+    {GONIO_I_SPECTRUM, false, NULL, plain_name, spectrum_cost, gonio_i_compute_spectrum,
+     gonio_i_accept_spectrum, NULL},
+    {GONIO_I_CONVERGENCE, false, NULL, plain_name, shown_cost, gonio_i_compute_convergence,
+     gonio_i_accept_convergence, NULL},
+    {GONIO_I_GRID, true, grid_count, grid_name, grid_cost, gonio_i_compute_grid,
+     gonio_i_accept_grid, NULL},
     {GONIO_I_METHODS, true, gonio_i_methods, method_name, method_cost, gonio_i_compute_method,
-     is_of_full_grid},
+     gonio_i_accept_method, is_of_full_grid},
     {GONIO_I_DIRECTIONS, false, chosen_count, directions_name, shown_cost,
-     gonio_i_compute_directions, NULL},
+     gonio_i_compute_directions, gonio_i_accept_directions, NULL},
     {GONIO_I_LEFT_OUT, false, left_out_count, left_out_name, left_out_cost,
-     gonio_i_compute_left_out, NULL},
+     gonio_i_compute_left_out, gonio_i_accept_left_out, NULL},
     {GONIO_I_LEFT_OUT, false, quoted_count, quoted_name, quoted_cost, gonio_i_compute_quoted,
-     is_always},
+     gonio_i_accept_quoted, is_always},
     {GONIO_I_RENDERED, false, rendered_count, rendering_name, rendering_cost, compute_rendering,
-     is_always},
-    {GONIO_I_LIT, false, lit_count, rendering_name, rendering_cost, compute_rendering, is_always},
+     gonio_i_accept_rendering, is_always},
+    {GONIO_I_LIT, false, lit_count, rendering_name, rendering_cost, compute_rendering,
+     gonio_i_accept_rendering, is_always},
 };
 
 static size_t splits_of(const gonio_i_study *study, int k)
@@ -267,6 +273,13 @@ static double cost_of(void *user, size_t piece)
     const plan_of_work *work = user;
     const gonio_i_piece *p = &work->pieces[piece];
     return kinds[p->kind].cost(work->study, p);
+}
+
+static bool accept(void *user, size_t piece, const json_t *result, char *complaint)
+{
+    const plan_of_work *work = user;
+    const gonio_i_piece *p = &work->pieces[piece];
+    return kinds[p->kind].accept(work->study, p, result, complaint);
 }
 
 static bool is_one_at_a_time(void *user, size_t piece)
@@ -358,6 +371,7 @@ gonio_status gonio_i_run_experiments(gonio_context *context, const gonio_i_study
                                         .name = name_of,
                                         .cost = cost_of,
                                         .compute = compute,
+                                        .accept = accept,
                                         .one_at_a_time = is_one_at_a_time};
         status = gonio_i_checkpoint_run(context, checkpoint, &described, flat);
     }

@@ -9,6 +9,7 @@
 #include "../run/run_folder.h"
 #include "../figures/figure_writer.h"
 #include "held_out.h"
+#include "kept_results.h"
 
 enum {
     SIDE = 128,
@@ -248,6 +249,13 @@ gonio_status gonio_i_compute_rendering(const gonio_i_study *study, gonio_context
     }
     free(split.basis);
     return status;
+}
+
+bool gonio_i_accept_rendering(const gonio_i_study *study, const gonio_i_piece *p,
+                              const json_t *result, char *complaint)
+{
+    (void)p;
+    return gonio_i_accept_images(result, side_of(study), complaint);
 }
 
 /* ---- the picture ---- */

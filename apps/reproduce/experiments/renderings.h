@@ -5,7 +5,7 @@
 
 #include <stdio.h>
 
-#include "experiments.h"
+#include "computations.h"
 
 /* The pieces of an experiment (GONIO_I_RENDERED or GONIO_I_LIT): one for each row and column of its
  * picture but the first. */
@@ -19,6 +19,10 @@ double gonio_i_rendering_cost(const gonio_i_study *study, gonio_i_experiment exp
  * "original": image, "image": image}, images as hexadecimal digits. */
 gonio_status gonio_i_compute_rendering(const gonio_i_study *study, gonio_context *context,
                                        gonio_i_experiment experiment, size_t index, json_t *result);
+
+/* Whether a result that was kept is such a one; see kept_results.h. */
+bool gonio_i_accept_rendering(const gonio_i_study *study, const gonio_i_piece *p,
+                              const json_t *result, char *complaint);
 
 /* The picture fig6.png or fig7.png in a folder; a library without the renderer draws none. `pieces`
  * is the array of results. */

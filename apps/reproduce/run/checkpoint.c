@@ -27,6 +27,14 @@ static void put_hash(char hash[17], const char *text)
     snprintf(hash, 17, "%016" PRIx64, (uint64_t)XXH3_64bits(text, strlen(text)));
 }
 
+typedef struct job {
+    size_t piece;
+    char *name;
+    double cost;
+    bool one_at_a_time;
+    bool begun;
+} job;
+
 /* ---- a piece's file ---- */
 
 static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.";
@@ -104,38 +112,59 @@ static json_t *believe(const gonio_i_checkpoint *checkpoint, const char *name, c
     return result;
 }
 
-/* A finished piece's result; NULL, with a warning if need be, where there is none to be believed.
- */
-static json_t *read_piece(gonio_context *context, const gonio_i_checkpoint *checkpoint,
-                          const char *name)
+/* The result in a piece's file; NULL, with a warning, if it is not to be believed. */
+static json_t *read_result(gonio_context *context, const gonio_i_checkpoint *checkpoint,
+                           const char *name, const char *path, FILE *file)
 {
-    char *path = path_of(checkpoint, name);
-    FILE *file = path != NULL ? fopen(path, "rbe") : NULL;
-    json_t *result = NULL;
-    if (file != NULL) {
-        char *text = NULL;
-        size_t room = 0;
-        const ssize_t length = getdelim(&text, &room, '\0', file); /* all of it */
-        result = length > 0 ? believe(checkpoint, name, text, (size_t)length) : NULL;
-        free(text);
-        fclose(file);
-        if (result == NULL) {
-            gonio_i_warn(context, "%s: damaged, or of another run; it is computed again", path);
-        }
+    char *text = NULL;
+    size_t room = 0;
+    const ssize_t length = getdelim(&text, &room, '\0', file); /* all of it */
+    json_t *result = length > 0 ? believe(checkpoint, name, text, (size_t)length) : NULL;
+    free(text);
+    if (result == NULL) {
+        gonio_i_warn(context, "%s: damaged, or of another run; it is computed again", path);
     }
-    free(path);
     return result;
 }
 
-/* ---- which pieces there are to do ---- */
+/* Checks what a piece says, which anybody can write with a right checksum. Releases what is
+ * refused. */
+static gonio_status accept(gonio_context *context, const gonio_i_work *work, size_t piece,
+                           const char *path, json_t **result)
+{
+    char complaint[GONIO_I_COMPLAINT] = "";
+    if (*result == NULL || work->accept == NULL ||
+        work->accept(work->user, piece, *result, complaint)) {
+        return GONIO_OK;
+    }
+    json_decref(*result);
+    *result = NULL;
+    return gonio_i_fail(context, GONIO_ERROR_FORMAT,
+                        "%s: %s: gonio has not written this. Delete the file, and it is computed "
+                        "again",
+                        path, complaint);
+}
 
-typedef struct job {
-    size_t piece;
-    char *name;
-    double cost;
-    bool one_at_a_time;
-    bool begun;
-} job;
+/* A finished piece's result; NULL where there is none. Errors: _FORMAT, _MEMORY. */
+static gonio_status read_piece(gonio_context *context, const gonio_i_checkpoint *checkpoint,
+                               const gonio_i_work *work, const job *j, json_t **result)
+{
+    *result = NULL;
+    char *path = path_of(checkpoint, j->name);
+    if (path == NULL) {
+        return gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", j->name);
+    }
+    FILE *file = fopen(path, "rbe");
+    if (file != NULL) {
+        *result = read_result(context, checkpoint, j->name, path, file);
+        fclose(file);
+    }
+    const gonio_status status = accept(context, work, j->piece, path, result);
+    free(path);
+    return status;
+}
+
+/* ---- which pieces there are to do ---- */
 
 typedef struct run {
     gonio_context *context;
@@ -210,12 +239,17 @@ static gonio_status share_out(run *r)
     return GONIO_OK;
 }
 
-/* Leaves the unfinished ones. */
-static void drop_finished(run *r)
+/* Leaves the unfinished ones. Errors: those of read_piece. */
+static gonio_status drop_finished(run *r)
 {
     size_t left = 0;
     for (size_t k = 0; k < r->count; k++) {
-        json_t *result = read_piece(r->context, r->checkpoint, r->todo[k]->name);
+        json_t *result = NULL;
+        const gonio_status status =
+            read_piece(r->context, r->checkpoint, r->work, r->todo[k], &result);
+        if (status != GONIO_OK) {
+            return status;
+        }
         if (result == NULL) {
             r->cost += r->todo[k]->cost;
             r->todo[left++] = r->todo[k];
@@ -227,6 +261,7 @@ static void drop_finished(run *r)
                      r->work->title, r->count - left, r->count);
     }
     r->count = left;
+    return GONIO_OK;
 }
 
 /* ---- doing them ---- */
@@ -310,23 +345,29 @@ static gonio_status wait_for_all(gonio_context *context, const process_group *gr
     return GONIO_OK;
 }
 
+static gonio_status gather_piece(const run *r, const job *j, json_t **result)
+{
+    const gonio_status status = read_piece(r->context, r->checkpoint, r->work, j, result);
+    if (status != GONIO_OK || *result != NULL) {
+        return status;
+    }
+    return gonio_i_fail(r->context, GONIO_ERROR_IO,
+                        "%s: the finished computation '%s' cannot be read back",
+                        r->checkpoint->folder, j->name);
+}
+
 static gonio_status gather(const run *r, json_t **results)
 {
+    gonio_status status = GONIO_OK;
     memset(results, 0, r->work->count * sizeof *results);
-    for (size_t k = 0; k < r->work->count; k++) {
-        const job *j = &r->job[k];
-        results[j->piece] = read_piece(r->context, r->checkpoint, j->name);
-        if (results[j->piece] == NULL) {
-            for (size_t i = 0; i < r->work->count; i++) {
-                json_decref(results[i]);
-                results[i] = NULL;
-            }
-            return gonio_i_fail(r->context, GONIO_ERROR_IO,
-                                "%s: the finished computation '%s' cannot be read back",
-                                r->checkpoint->folder, j->name);
-        }
+    for (size_t k = 0; k < r->work->count && status == GONIO_OK; k++) {
+        status = gather_piece(r, &r->job[k], &results[r->job[k].piece]);
     }
-    return GONIO_OK;
+    for (size_t k = 0; k < r->work->count && status != GONIO_OK; k++) {
+        json_decref(results[k]);
+        results[k] = NULL;
+    }
+    return status;
 }
 
 static gonio_status do_all(run *r, int threads, json_t **results)
@@ -336,7 +377,9 @@ static gonio_status do_all(run *r, int threads, json_t **results)
         status = share_out(r);
     }
     if (status == GONIO_OK) {
-        drop_finished(r);
+        status = drop_finished(r);
+    }
+    if (status == GONIO_OK) {
         status = do_jobs(r, threads);
     }
     if (status == GONIO_OK) {

@@ -17,6 +17,8 @@
 
 typedef struct gonio_i_checkpoint gonio_i_checkpoint;
 
+enum { GONIO_I_COMPLAINT = 128 }; /* bytes for what is wrong with a result */
+
 typedef struct gonio_i_work {
     const char *title; /* for the progress; must last as long as the context */
     size_t count;
@@ -29,6 +31,9 @@ typedef struct gonio_i_work {
     /* Computes a piece under a context of one thread: a new JSON object or array. It must depend on
      * the run's identity and the piece's name alone. */
     gonio_status (*compute)(void *user, gonio_context *context, size_t piece, json_t **result);
+    /* Whether a result that was kept is one of this piece. If not, writes what is wrong with it to
+     * complaint [GONIO_I_COMPLAINT]. NULL accepts any. */
+    bool (*accept)(void *user, size_t piece, const json_t *result, char *complaint);
     /* Whether a process does this piece only while it does no other such piece, because they need
      * much memory. NULL if there are none. */
     bool (*one_at_a_time)(void *user, size_t piece);
@@ -47,8 +52,8 @@ void gonio_i_checkpoint_free(gonio_i_checkpoint **checkpoint);
  * missing and is warned of. After the first failure, or when cancelled, no further piece is begun;
  * those that were finished stay. Every rank of a group calls this with the same work. Then
  * `results` [count], where not NULL, is filled with all ranks' results, which the caller owns
- * (json_decref). Errors: those of the pieces; _ARGUMENT for two pieces of one name; _IO;
- * _CANCELLED. */
+ * (json_decref). Errors: those of the pieces; _ARGUMENT for two pieces of one name;
+ * _FORMAT for a kept result with a right checksum that is not accepted; _IO; _CANCELLED. */
 gonio_status gonio_i_checkpoint_run(gonio_context *context, const gonio_i_checkpoint *checkpoint,
                                     const gonio_i_work *work, json_t **results);
 
