@@ -44,6 +44,12 @@ const char *gonio_i_basis_format_of(const gonio_i_file *file);
 /* Whether a file that is not recognised may be a damaged basis. */
 bool gonio_i_basis_may_be(const gonio_i_file *file);
 
+/* Whether a file is HDF5, as bases of an older gonio are. */
+bool gonio_i_basis_is_hdf5(const gonio_i_file *file);
+
+/* Whether the beginning of a file names the format. */
+bool gonio_i_basis_is_marked(const gonio_i_file *file);
+
 /* The names of the formats that are read; NULL past the last. */
 const char *gonio_i_basis_format_name(int index);
 
