@@ -8,66 +8,7 @@
 #include "../core/core.h"
 #include "../core/vector_math.h"
 #include "../direction/grid.h"
-
-enum { MOST_NODES = 24 };
-
-/* ---- nodes ---- */
-
-/* Chebyshev points of the first kind for functions of t = ln w on [low, high]. D(e^t) is analytic
- * up to a distance of pi from the real line, so that the error of n points is (r + sqrt(1 +
- * r^2))^-n, r = pi / half the interval: n is chosen for 1e-9. */
-typedef struct nodes {
-    size_t count;
-    double t[MOST_NODES];
-    double factor[MOST_NODES]; /* of the barycentric formula */
-} nodes;
-
-static void place_nodes(double low, double high, nodes *n)
-{
-    const double half = 0.5 * (high - low);
-    n->count = half > 1e-9 ? 2 + (size_t)ceil(21.0 / asinh(M_PI / half)) : 1;
-    for (size_t j = 0; j < n->count; j++) {
-        const double angle = M_PI * (2.0 * (double)j + 1.0) / (2.0 * (double)n->count);
-        n->t[j] = low + half * (1.0 + cos(angle));
-        n->factor[j] = (j % 2 == 0 ? 1.0 : -1.0) * sin(angle);
-    }
-}
-
-/* The index of the node at t, or 0 if there is only one; the number of nodes if none is at t. */
-static size_t node_at(const nodes *n, double t)
-{
-    size_t j = 0;
-    while (j < n->count && n->count > 1 && t != n->t[j]) {
-        j++;
-    }
-    return j;
-}
-
-GONIO_I_VECTORISED static void divide_by_distance(const nodes *n, double t, double *share)
-{
-    for (size_t j = 0; j < n->count; j++) {
-        share[j] = n->factor[j] / (t - n->t[j]);
-    }
-}
-
-/* The weight of each node's value at t. */
-static void interpolate(const nodes *n, double t, double *share)
-{
-    const size_t at = node_at(n, t);
-    if (at < n->count) {
-        memset(share, 0, n->count * sizeof *share);
-        share[at] = 1.0;
-        return;
-    }
-    double sum = 0.0;
-    divide_by_distance(n, t, share);
-    for (size_t j = 0; j < n->count; j++) {
-        sum += share[j];
-    }
-    for (size_t j = 0; j < n->count; j++) {
-        share[j] /= sum;
-    }
-}
+#include "chebyshev.h"
 
 /* ---- reading a material ---- */
 
@@ -184,7 +125,7 @@ static size_t add_proportional(const slab *s, size_t row, double (*proportion)(d
 }
 
 /* The nodes of a cell: over all of its valid bins, whether they have data or not. */
-static void choose_nodes(const slab *s, size_t row, nodes *n)
+static void choose_nodes(const slab *s, size_t row, gonio_i_nodes *n)
 {
     double low = HUGE_VAL;
     double high = -HUGE_VAL;
@@ -194,19 +135,19 @@ static void choose_nodes(const slab *s, size_t row, nodes *n)
             high = fmax(high, s->log_weight[row + p]);
         }
     }
-    place_nodes(low, high, n);
+    gonio_i_place_nodes(low, high, n);
 }
 
 /* Sums over the bins of a cell, for each of its nodes. */
 typedef struct node_sums {
-    double share[MOST_NODES];
-    double moment[GONIO_CHANNELS][MOST_NODES];
+    double share[GONIO_I_MOST_NODES];
+    double moment[GONIO_CHANNELS][GONIO_I_MOST_NODES];
 } node_sums;
 
-static void add_bin(const slab *s, size_t bin, const nodes *n, node_sums *sums)
+static void add_bin(const slab *s, size_t bin, const gonio_i_nodes *n, node_sums *sums)
 {
-    double share[MOST_NODES];
-    interpolate(n, s->log_weight[bin], share);
+    double share[GONIO_I_MOST_NODES];
+    gonio_i_interpolate_nodes(n, s->log_weight[bin], share);
     for (size_t j = 0; j < n->count; j++) {
         sums->share[j] += share[j];
     }
@@ -221,7 +162,7 @@ static void add_bin(const slab *s, size_t bin, const nodes *n, node_sums *sums)
 /* The nodes of any other terms; returns how many. */
 static size_t add_interpolated(const slab *s, size_t row, size_t first, gonio_i_digest_metric *m)
 {
-    nodes n;
+    gonio_i_nodes n;
     node_sums sums = {0};
     choose_nodes(s, row, &n);
     for (size_t p = row; p < row + GONIO_PHI_D_BINS; p++) {
@@ -295,7 +236,7 @@ static bool allocate_channels(gonio_context *context, double **channel, size_t c
 static bool allocate_metric(gonio_context *context, int metric, gonio_i_digest_metric *m)
 {
     const bool one = gonio_i_metric_at(metric)->proportion != NULL;
-    const size_t most = (size_t)GONIO_CELLS * (one ? 1 : MOST_NODES);
+    const size_t most = (size_t)GONIO_CELLS * (one ? 1 : GONIO_I_MOST_NODES);
     m->first = gonio_i_allocate(context, GONIO_CELLS + 1, sizeof *m->first);
     m->node = gonio_i_allocate(context, most, sizeof *m->node);
     m->linear = gonio_i_allocate(context, most, sizeof *m->linear);
@@ -424,121 +365,4 @@ void gonio_i_digest_mean(const gonio_i_digest *digest, double *g)
             g[(size_t)digest->cell[i] * GONIO_CHANNELS + c] = digest->mean[c][i];
         }
     }
-}
-
-/* ---- comparing ---- */
-
-/* One channel's estimate. */
-typedef struct estimate {
-    double *rho;       /* [cells], 1/sr */
-    double *x;         /* [nodes] each: the estimate, */
-    double *own;       /* x_0, */
-    double *change;    /* D, */
-    double *reference; /* and what terms are relative to: unused */
-} estimate;
-
-static size_t most_nodes(const gonio_i_digest *d)
-{
-    size_t most = 0;
-    for (int metric = 0; metric < gonio_i_metric_count(); metric++) {
-        const size_t count = d->metric[metric].first[d->cells];
-        most = count > most ? count : most;
-    }
-    return most;
-}
-
-static bool make_estimate(gonio_context *context, const gonio_i_digest *d, estimate *e)
-{
-    const size_t n = most_nodes(d);
-    double *all = gonio_i_allocate(context, d->cells + 4 * n, sizeof *all);
-    *e = (estimate){.rho = all};
-    if (all != NULL) {
-        e->x = all + d->cells;
-        e->own = e->x + n;
-        e->change = e->own + n;
-        e->reference = e->change + n;
-    }
-    return all != NULL;
-}
-
-/* As the material of a reconstruction is made. */
-static void fill_estimate(const gonio_i_digest *d, const double *g, int channel, estimate *e)
-{
-    const double largest = 600.0;
-    const double scale = gonio_log_scale(channel);
-    for (size_t i = 0; i < d->cells; i++) {
-        const double value = g[(size_t)d->cell[i] * GONIO_CHANNELS + (size_t)channel];
-        const double positive = value > 0.0 ? value : 0.0;
-        e->rho[i] = positive < largest ? positive : largest;
-    }
-    gonio_i_expm1(d->cells, e->rho, e->rho);
-    for (size_t i = 0; i < d->cells; i++) {
-        e->rho[i] *= scale;
-    }
-}
-
-/* D at the nodes. */
-static void fill_changes(const gonio_i_digest *d, int metric, int channel, estimate *e)
-{
-    const gonio_i_digest_metric *m = &d->metric[metric];
-    for (size_t i = 0; i < d->cells; i++) {
-        for (size_t j = m->first[i]; j < m->first[i + 1]; j++) {
-            e->x[j] = e->rho[i];
-            e->own[j] = d->own[channel][i];
-        }
-    }
-    const gonio_i_compared values = {.count = m->first[d->cells],
-                                     .reference = e->x,
-                                     .other = e->own,
-                                     .cosines = m->node,
-                                     .scale = gonio_log_scale(channel)};
-    gonio_i_metric_at(metric)->terms(&values, e->change, e->reference);
-}
-
-/* Adds the terms with D of the sums of d_b - D(c_b) and of their squares. */
-GONIO_I_VECTORISED static void add_changes(size_t n, const gonio_i_digest_metric *m,
-                                           const double *moment, const double *change,
-                                           gonio_i_metric_sums *sums)
-{
-    const double *linear = m->linear;
-    const double *squares = m->square;
-    double difference = 0.0;
-    double square = 0.0;
-#pragma omp simd reduction(+ : difference, square)
-    for (size_t j = 0; j < n; j++) {
-        difference += linear[j] * change[j];
-        square += (squares[j] * change[j] - 2.0 * moment[j]) * change[j];
-    }
-    sums->difference -= difference;
-    sums->square += square;
-}
-
-static void add_channel(const gonio_i_digest *d, const double *g, int channel, estimate *e,
-                        gonio_i_error_sums *sums)
-{
-    fill_estimate(d, g, channel, e);
-    for (int metric = 0; metric < gonio_i_metric_count(); metric++) {
-        const gonio_i_digest_metric *m = &d->metric[metric];
-        fill_changes(d, metric, channel, e);
-        add_changes(m->first[d->cells], m, m->moment[channel], e->change, &sums->metric[metric]);
-    }
-}
-
-gonio_status gonio_i_digest_compare(gonio_context *context, const gonio_i_digest *digest,
-                                    const double *g, gonio_error *error)
-{
-    estimate e;
-    gonio_i_error_sums sums = digest->constant;
-    if (!make_estimate(context, digest, &e)) {
-        return GONIO_ERROR_MEMORY;
-    }
-    for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
-        add_channel(digest, g, channel, &e, &sums);
-    }
-    free(e.rho);
-    for (int metric = 0; metric < gonio_i_metric_count(); metric++) {
-        sums.metric[metric].square = fmax(sums.metric[metric].square, 0.0);
-    }
-    *error = gonio_i_error_of(&sums, (double)digest->bins * GONIO_CHANNELS);
-    return GONIO_OK;
 }

@@ -70,6 +70,11 @@ gonio_status gonio_i_readings_add(gonio_context *context, gonio_readings *readin
 gonio_status gonio_i_readings_finish(gonio_context *context, gonio_readings *readings,
                                      bool measured);
 
+/* Values of all readings in some number of channels, [count][channels], all NaN; NULL when out of
+ * memory. The caller frees them. */
+double *gonio_i_make_values(gonio_context *context, const gonio_readings *readings,
+                            size_t channels);
+
 /* Other channels for all readings; their values are NaN. */
 gonio_status gonio_i_readings_set_channels(gonio_context *context, gonio_readings *readings,
                                            size_t channels, const double *wavelength);

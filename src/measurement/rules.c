@@ -89,3 +89,16 @@ gonio_angles gonio_i_angles_from_degrees(double theta, double phi)
     const double turned = fmod(phi < 0.0 ? phi + 360.0 : phi, 360.0);
     return (gonio_angles){theta * M_PI / 180.0, turned * M_PI / 180.0};
 }
+
+static double to_degrees(double radians)
+{
+    return radians * 180.0 / M_PI;
+}
+
+void gonio_i_pair_to_degrees(const gonio_pair *pair, double degrees[4])
+{
+    degrees[0] = to_degrees(pair->incident.theta);
+    degrees[1] = to_degrees(pair->incident.phi);
+    degrees[2] = to_degrees(pair->outgoing.theta);
+    degrees[3] = to_degrees(pair->outgoing.phi);
+}

@@ -28,4 +28,7 @@ double gonio_i_wavelength_twice(const double *wavelength, size_t count);
 /* theta and phi, in degrees and allowed, in radians, phi in [0, 2 pi). */
 gonio_angles gonio_i_angles_from_degrees(double theta, double phi);
 
+/* theta_i, phi_i, theta_o, phi_o. */
+void gonio_i_pair_to_degrees(const gonio_pair *pair, double degrees[4]);
+
 #endif

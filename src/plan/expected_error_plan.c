@@ -2,285 +2,22 @@
 #include "expected_error_plan.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "../linalg/linalg.h"
-#include "../metric/metric.h"
+#include "expected_error_choices.h"
 #include "expected_error_search.h"
 #include "method.h"
 #include "plan.h"
 
-/* Standard deviation of a reading, log units: noise and the error of the model near the reading.
- * Chosen by errors of left-out materials: with 0.03 or 0.05 plans trust single readings too much.
- * Smaller where the covariance includes a remainder. */
-static const double NOISE = 0.08;
-static const double NOISE_BESIDE_REMAINDER = 0.05;
-
-/* alpha and peak of the remainder between candidates, log units (prior.h). */
-static const double SMOOTHNESS = 0.2;
-static const double PEAK = 8.0;
-
-/* Variance that the factor of the candidates' covariance may omit. */
-static const double LEFT = 1e-4;
-
-/* Square of the distance (prior.h) up to which directions are the same. */
-static const double SAME = 1e-6;
-
-/* Nearer to the normal a direction has no azimuth, radians. */
-static const double POLE = 1e-6;
-
-enum { MOST_CANDIDATES = 100000, MOST_RANK = 500 };
+enum { MOST_CANDIDATES = 100000 };
 
 /* Standard deviation, log units, of the error that remains whatever is read. Chosen so that the
  * expected error is that of left-out materials (docs/experiments.md). */
 static const double LEFT_OPEN = 0.05;
 
-typedef struct place_list {
-    gonio_context *context;
-    gonio_i_prior *prior;
-    size_t rows;
-    size_t components; /* of f below: K, or the rank of the candidates' covariance */
-    float *f;
-    double *mean; /* [rows] */
-    double *loss;
-    bool *allowed;
-    gonio_half_difference *at;
-    const gonio_i_known *known; /* NULL: nothing */
-    double noise;
-} place_list;
-
-static void to_float(const double *from, size_t count, float *to)
-{
-    for (size_t k = 0; k < count; k++) {
-        to[k] = (float)from[k];
-    }
-}
-
-GONIO_I_VECTORISED static double dot(const float *a, const float *b, size_t n)
-{
-    double sum = 0.0;
-#pragma omp simd reduction(+ : sum)
-    for (size_t i = 0; i < n; i++) {
-        sum += (double)a[i] * (double)b[i];
-    }
-    return sum;
-}
-
-static void free_places(place_list *p)
-{
-    gonio_i_prior_free(&p->prior);
-    free(p->f);
-    free(p->mean);
-    free(p->loss);
-    free(p->allowed);
-    free(p->at);
-}
-
-static gonio_status allocate_places(place_list *p)
-{
-    gonio_context *c = p->context;
-    p->f = gonio_i_allocate(c, p->rows * p->components, sizeof *p->f);
-    p->mean = gonio_i_allocate(c, p->rows, sizeof *p->mean);
-    p->loss = gonio_i_allocate(c, p->rows, sizeof *p->loss);
-    p->allowed = gonio_i_allocate(c, p->rows, sizeof *p->allowed);
-    p->at = gonio_i_allocate(c, p->rows, sizeof *p->at);
-    const bool done = p->f && p->mean && p->loss && p->allowed && p->at;
-    return done ? GONIO_OK : GONIO_ERROR_MEMORY;
-}
-
-/* The squared slope of a metric in g, at the mean of the prior. */
-static double metric_weight(gonio_metric metric, gonio_half_difference at, double mean, int channel)
-{
-    double incident = 0.0;
-    double outgoing = 0.0;
-    gonio_cosines(at, &incident, &outgoing);
-    const double s = gonio_log_scale(channel);
-    const double rho = s * expm1(fmax(mean, 0.0));
-    return gonio_i_metric_at((int)metric)->loss(rho, s, fmax(incident * outgoing, 0.0));
-}
-
-/* f: scratch, [components] */
-static void list_row(place_list *p, gonio_metric metric, size_t row, double *f)
-{
-    const gonio_basis_view *view = p->prior->view;
-    int channel = 0;
-    const double bins = gonio_i_row_bins(view, row);
-    p->at[row] = gonio_i_row_coordinates(view, row, &channel);
-    gonio_i_prior_row(p->prior, row, f);
-    to_float(f, p->components, p->f + row * p->components);
-    p->mean[row] = view->mean[row];
-    p->allowed[row] = bins > 0.0;
-    p->loss[row] = bins * metric_weight(metric, p->at[row], p->mean[row], channel);
-}
-
-/* All rows of the basis. */
-static gonio_status list_rows(place_list *p, gonio_metric metric)
-{
-    bool failed = false;
-    p->rows = p->prior->view->rows;
-    p->components = p->prior->components;
-    const gonio_status status = allocate_places(p);
-    if (status != GONIO_OK) {
-        return status;
-    }
-#pragma omp parallel num_threads(gonio_context_threads(p->context))
-    {
-        double *f = gonio_i_allocate(p->context, p->components, sizeof *f);
-        if (f == NULL) {
-#pragma omp atomic write
-            failed = true;
-        }
-#pragma omp for schedule(static)
-        for (size_t row = 0; row < p->rows; row++) {
-            if (f != NULL) {
-                list_row(p, metric, row, f);
-            }
-        }
-        free(f);
-    }
-    return failed ? GONIO_ERROR_MEMORY : GONIO_OK;
-}
-
-/* Given    f[rows][K] and places of candidates, whose covariance is C = f f' + alpha^2 k
- * Returned p->f[rows][p->components], p->f p->f' = C to within LEFT of every variance
- * Method   Cholesky with pivoting on the largest variance left (Higham 2002, sec. 10.3); columns of
- *          C are computed when they are needed */
-static void factorise(place_list *p, const float *f, const gonio_i_place *place, double *left)
-{
-    const size_t most = p->components;
-    const size_t k = p->prior->components;
-    for (size_t i = 0; i < p->rows; i++) {
-        left[i] = dot(f + i * k, f + i * k, k) +
-                  SMOOTHNESS * SMOOTHNESS * gonio_i_remainder(&place[i], &place[i], PEAK);
-    }
-    size_t rank = 0;
-    for (; rank < most; rank++) {
-        size_t pivot = 0;
-        for (size_t i = 1; i < p->rows; i++) {
-            pivot = left[i] > left[pivot] ? i : pivot;
-        }
-        if (left[pivot] < LEFT) {
-            break;
-        }
-        const double root = sqrt(left[pivot]);
-#pragma omp parallel for schedule(static) num_threads(gonio_context_threads(p->context))
-        for (size_t i = 0; i < p->rows; i++) {
-            const double c =
-                dot(f + i * k, f + pivot * k, k) +
-                SMOOTHNESS * SMOOTHNESS * gonio_i_remainder(&place[i], &place[pivot], PEAK);
-            const double known = dot(p->f + i * most, p->f + pivot * most, rank);
-            const float entry = (float)((c - known) / root);
-            p->f[i * most + rank] = entry;
-            left[i] -= (double)entry * (double)entry;
-        }
-        left[pivot] = 0.0;
-    }
-}
-
-static gonio_status factorise_candidates(place_list *p, const float *f)
-{
-    double *left = gonio_i_allocate(p->context, p->rows, sizeof *left);
-    gonio_i_place *place = gonio_i_allocate(p->context, p->rows, sizeof *place);
-    if (left == NULL || place == NULL) {
-        free(left);
-        free(place);
-        return GONIO_ERROR_MEMORY;
-    }
-    for (size_t i = 0; i < p->rows; i++) {
-        place[i] = gonio_i_place_of(p->at[i]);
-    }
-    factorise(p, f, place, left);
-    free(left);
-    free(place);
-    return GONIO_OK;
-}
-
-/* ---- candidates that are the same ---- */
-
-/* A candidate with azimuths that count: 0 about the normal. */
-typedef struct named_pair {
-    double angle[4]; /* theta_i, phi_i, theta_o, phi_o */
-    size_t candidate;
-} named_pair;
-
-static double azimuth_of(gonio_angles a)
-{
-    const double phi = fmod(a.phi, 2.0 * M_PI);
-    return a.theta < POLE ? 0.0 : phi < 0.0 ? phi + 2.0 * M_PI : phi + 0.0; /* no -0 */
-}
-
-static int compare_angles(const named_pair *a, const named_pair *b)
-{
-    int order = 0;
-    for (int k = 0; k < 4 && order == 0; k++) {
-        order = (a->angle[k] > b->angle[k]) - (a->angle[k] < b->angle[k]);
-    }
-    return order;
-}
-
-static int compare_named(const void *a, const void *b)
-{
-    const named_pair *x = a;
-    const named_pair *y = b;
-    const int order = compare_angles(x, y);
-    return order != 0 ? order : (x->candidate > y->candidate) - (x->candidate < y->candidate);
-}
-
-/* Allows the first of candidates that are the same directions: repeats, and any azimuths about the
- * normal. */
-static gonio_status allow_once(place_list *p, const gonio_plan_options *options)
-{
-    named_pair *named = gonio_i_allocate(p->context, p->rows, sizeof *named);
-    if (named == NULL) {
-        return GONIO_ERROR_MEMORY;
-    }
-    for (size_t k = 0; k < p->rows; k++) {
-        const gonio_pair *pair = &options->candidates[k];
-        named[k] = (named_pair){{pair->incident.theta, azimuth_of(pair->incident),
-                                 pair->outgoing.theta, azimuth_of(pair->outgoing)},
-                                k};
-    }
-    qsort(named, p->rows, sizeof *named, compare_named);
-    for (size_t k = 0; k < p->rows; k++) {
-        p->allowed[named[k].candidate] = k == 0 || compare_angles(&named[k], &named[k - 1]) != 0;
-    }
-    free(named);
-    return GONIO_OK;
-}
-
-static gonio_status list_candidates(place_list *p, const gonio_plan_options *options)
-{
-    const size_t most = p->known != NULL ? p->prior->components : MOST_RANK;
-    p->rows = options->candidate_count;
-    p->components = p->known != NULL || p->rows > most ? most : p->rows;
-    const size_t components = p->prior->components;
-    float *f = gonio_i_allocate(p->context, p->rows * components, sizeof *f);
-    double *exact = gonio_i_allocate(p->context, components, sizeof *exact);
-    gonio_status status = f == NULL || exact == NULL ? GONIO_ERROR_MEMORY : allocate_places(p);
-    for (size_t k = 0; k < p->rows && status == GONIO_OK; k++) {
-        p->at[k] = gonio_half_difference_from_pair(options->candidates[k]);
-        gonio_i_prior_at(p->prior, p->at[k], 0, &p->mean[k], exact);
-        to_float(exact, components, f + k * components);
-        p->loss[k] = metric_weight(options->metric, p->at[k], p->mean[k], 0);
-    }
-    if (status == GONIO_OK) {
-        status = allow_once(p, options);
-    }
-    if (status == GONIO_OK && p->known != NULL) {
-        memcpy(p->f, f, p->rows * p->components * sizeof *f);
-    } else if (status == GONIO_OK) {
-        p->noise = NOISE_BESIDE_REMAINDER;
-        status = factorise_candidates(p, f);
-    }
-    free(f);
-    free(exact);
-    return status;
-}
-
 /* The mean of 1/|g| over the measured columns of the database; |g| with the weights of the rows. */
-static gonio_status mean_reciprocal(const place_list *p, double *mean)
+static gonio_status mean_reciprocal(const gonio_i_choices *p, double *mean)
 {
     const gonio_i_prior *prior = p->prior;
     const size_t measured = prior->view->columns - prior->view->mixtures;
@@ -312,7 +49,7 @@ static gonio_status mean_reciprocal(const place_list *p, double *mean)
     return GONIO_OK;
 }
 
-static void fill_entry(const place_list *p, const gonio_plan_options *options, size_t row,
+static void fill_entry(const gonio_i_choices *p, const gonio_plan_options *options, size_t row,
                        gonio_plan_entry *entry)
 {
     const gonio_basis_view *view = p->prior->view;
@@ -325,21 +62,12 @@ static void fill_entry(const place_list *p, const gonio_plan_options *options, s
     *entry = gonio_i_plan_entry(view, row, options->phi_d);
 }
 
-static size_t count_allowed(const place_list *p)
-{
-    size_t allowed = 0;
-    for (size_t row = 0; row < p->rows; row++) {
-        allowed += p->allowed[row];
-    }
-    return allowed;
-}
-
 /* How many readings to choose: those asked for, or all that there are if that many were only
  * allowed. */
-static gonio_status choose_count(gonio_context *context, const place_list *p,
+static gonio_status choose_count(gonio_context *context, const gonio_i_choices *p,
                                  const gonio_plan_options *options, size_t *count)
 {
-    const size_t allowed = count_allowed(p);
+    const size_t allowed = gonio_i_choices_count(p);
     const bool usual = options->count == GONIO_USUAL_COUNT;
     const size_t asked = usual ? GONIO_I_USUAL_NEXT : options->count;
     const bool all_of_file = options->candidates != NULL && asked == p->rows;
@@ -354,14 +82,15 @@ static gonio_status choose_count(gonio_context *context, const place_list *p,
 }
 
 /* The fewest readings that reach the target, if there is one. */
-static gonio_status cut(const place_list *p, const gonio_plan_options *options, gonio_plan *plan)
+static gonio_status cut(const gonio_i_choices *p, const gonio_plan_options *options,
+                        gonio_plan *plan)
 {
     gonio_context *context = p->context;
     size_t n = 0;
     while (options->target > 0.0 && n < plan->count && plan->expected[n] > options->target) {
         n++;
     }
-    if (options->target > 0.0 && n == plan->count && plan->count == count_allowed(p)) {
+    if (options->target > 0.0 && n == plan->count && plan->count == gonio_i_choices_count(p)) {
         gonio_i_warn(context,
                      "all %zu directions leave an expected error of %.2f %%, above the target of "
                      "%.2f %%: all are planned",
@@ -379,7 +108,7 @@ static gonio_status cut(const place_list *p, const gonio_plan_options *options, 
 }
 
 /* The part of E6, per cent, that remains whatever is read; `reciprocal`: 1/|g|. */
-static double open_part(const place_list *p, double reciprocal)
+static double open_part(const gonio_i_choices *p, double reciprocal)
 {
     double all = 0.0;
     for (size_t row = 0; row < p->rows; row++) {
@@ -396,7 +125,7 @@ typedef struct error_of_loss {
 } error_of_loss;
 
 /* Before anything was read. */
-static gonio_status find_error_of_loss(const place_list *p, error_of_loss *e)
+static gonio_status find_error_of_loss(const gonio_i_choices *p, error_of_loss *e)
 {
     double reciprocal = 0.0;
     gonio_status status = GONIO_OK;
@@ -433,7 +162,7 @@ static void fill_expected(const error_of_loss *e, const double *remaining, gonio
     }
 }
 
-static gonio_status fill_plan(const place_list *p, const gonio_plan_options *options,
+static gonio_status fill_plan(const gonio_i_choices *p, const gonio_plan_options *options,
                               gonio_plan *plan)
 {
     size_t *chosen = gonio_i_allocate(p->context, plan->count, sizeof *chosen);
@@ -497,32 +226,11 @@ static gonio_status check_options(gonio_context *context, const gonio_basis *bas
     return GONIO_OK;
 }
 
-/* Excludes directions that were read. */
-static gonio_status leave_out_read(place_list *p)
-{
-    const size_t count = p->known->count;
-    gonio_i_place *read = gonio_i_allocate(p->context, count, sizeof *read);
-    if (read == NULL) {
-        return GONIO_ERROR_MEMORY;
-    }
-    for (size_t i = 0; i < count; i++) {
-        read[i] = gonio_i_place_of(p->known->read[i]);
-    }
-    for (size_t row = 0; row < p->rows; row++) {
-        const gonio_i_place here = gonio_i_place_of(p->at[row]);
-        for (size_t i = 0; i < count && p->allowed[row]; i++) {
-            p->allowed[row] = gonio_i_place_distance(&here, &read[i]) > SAME;
-        }
-    }
-    free(read);
-    return GONIO_OK;
-}
-
 static gonio_status make_plan(gonio_context *context, const gonio_basis *basis,
                               const gonio_plan_options *options, const gonio_i_known *known,
                               gonio_plan **plan)
 {
-    place_list p = {.context = context, .known = known, .noise = NOISE};
+    gonio_i_choices p = {.context = context, .known = known};
     gonio_plan *made = NULL;
     size_t count = 0;
     gonio_status status = check_options(context, basis, options);
@@ -530,11 +238,11 @@ static gonio_status make_plan(gonio_context *context, const gonio_basis *basis,
         status = gonio_i_prior_create(context, basis, &p.prior);
     }
     if (status == GONIO_OK) {
-        status = options->candidates != NULL ? list_candidates(&p, options)
-                                             : list_rows(&p, options->metric);
+        status = options->candidates != NULL ? gonio_i_choices_of_candidates(&p, options)
+                                             : gonio_i_choices_of_rows(&p, options->metric);
     }
     if (status == GONIO_OK && known != NULL) {
-        status = leave_out_read(&p);
+        status = gonio_i_choices_leave_out_read(&p);
     }
     if (status == GONIO_OK) {
         status = choose_count(context, &p, options, &count);
@@ -550,7 +258,7 @@ static gonio_status make_plan(gonio_context *context, const gonio_basis *basis,
     } else {
         gonio_plan_free(&made);
     }
-    free_places(&p);
+    gonio_i_choices_free(&p);
     return status;
 }
 

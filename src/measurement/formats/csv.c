@@ -8,7 +8,7 @@
 #include "../import.h"
 #include "../long_table.h"
 #include "../rules.h"
-#include "csv_columns.h"
+#include "csv_kept.h"
 #include "csv_notes.h"
 #include "format.h"
 

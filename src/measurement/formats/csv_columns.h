@@ -1,4 +1,4 @@
-/* Readings as CSV: which column holds what; what is kept of a file; writing. */
+/* Readings as CSV: which column holds what. */
 #ifndef GONIO_CSV_COLUMNS_H
 #define GONIO_CSV_COLUMNS_H
 
@@ -45,26 +45,5 @@ void gonio_i_csv_columns_free(gonio_i_csv_columns *columns);
 /* Reads the line of units that may follow the names, and puts units behind names: "theta_i (deg)".
  * The next row is the first of numbers then. */
 gonio_status gonio_i_csv_take_units(gonio_i_csv_reader *reader);
-
-/* A planned channel as a cell has it: all; R, G or B; 400nm; or its number from 1. */
-void gonio_i_csv_name_channel(const gonio_readings *readings, int channel,
-                              char name[GONIO_I_NAME_ROOM]);
-
-/* What is written again of a CSV file. */
-typedef struct gonio_i_csv_kept {
-    char *text;
-    size_t size;
-    gonio_i_csv_columns columns;
-    bool rewrite_angles; /* they are not gonio's in the file */
-} gonio_i_csv_kept;
-
-void gonio_i_csv_kept_free(void *kept);
-
-/* NULL if the readings are not from a CSV file. */
-const gonio_i_csv_kept *gonio_i_csv_kept_of(const gonio_readings *readings);
-
-/* Prints readings over the file that they came from, or anew. Errors: _MEMORY. */
-gonio_status gonio_i_csv_print(gonio_context *context, const gonio_readings *readings,
-                               const char *command, FILE *stream);
 
 #endif

@@ -7,6 +7,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "csv_words.h"
+
 typedef enum gonio_i_column_kind {
     GONIO_I_OTHER = 0,
     GONIO_I_ANGLE,
@@ -41,6 +43,11 @@ typedef struct gonio_i_column_name {
     int unit;            /* gonio_angle_unit or gonio_value_kind; 0: not said */
     bool relative;       /* a deviation over its value */
 } gonio_i_column_name;
+
+/* Fills in what the words of a name say of an angle (csv_angle_names.c), of values or deviations
+ * (csv_value_names.c). False, with an undefined name, if they say it of something else. */
+bool gonio_i_take_angle_name(const gonio_i_words *words, gonio_i_column_name *name);
+bool gonio_i_take_value_name(const char *text, gonio_i_words *words, gonio_i_column_name *name);
 
 /* Numbers in names have decimal points. */
 gonio_i_column_name gonio_i_column_name_of(const char *name);

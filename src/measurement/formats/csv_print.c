@@ -1,10 +1,10 @@
-/* Writing readings as CSV: see csv_columns.h. */
+/* Writing readings as CSV: see csv_kept.h. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "../rules.h"
-#include "csv_columns.h"
+#include "csv_kept.h"
 
 /* What a column of the file that is written holds: a cell of the file that was read, an angle, a
  * planned channel, or a value or deviation of one of the channels. */

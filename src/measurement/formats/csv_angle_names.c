@@ -1,0 +1,165 @@
+/* Names of columns of angles: see csv_names.h. */
+#include <string.h>
+
+#include <gonio/measurement.h>
+
+#include "csv_meaning.h"
+#include "csv_names.h"
+
+enum {
+    POLAR = 1 << 0,
+    AZIMUTH = 1 << 1,
+    INCIDENT = 1 << 2,
+    OUTGOING = 1 << 3,
+    DIFFERENCE = 1 << 4,
+    ANY_ANGLE = 1 << 5, /* of the plane: polar where nothing says azimuth */
+    DEGREES = 1 << 6,
+    RADIANS = 1 << 7,
+    FILLER = 1 << 8
+};
+
+static const gonio_i_known_word angle_words[] = {
+    {"theta", POLAR, 0},
+    {"zenith", POLAR, 0},
+    {"polar", POLAR, 0},
+    {"phi", AZIMUTH, 0},
+    {"azimuth", AZIMUTH, 0},
+    {"azimuthal", AZIMUTH, 0},
+    {"azim", AZIMUTH, 0},
+    {"az", AZIMUTH, 0},
+    {"i", INCIDENT, 0},
+    {"in", INCIDENT, 0},
+    {"inc", INCIDENT, 0},
+    {"incident", INCIDENT, 0},
+    {"incoming", INCIDENT, 0},
+    {"incidence", INCIDENT | ANY_ANGLE, 0},
+    {"aoi", INCIDENT | ANY_ANGLE, 0},
+    {"light", INCIDENT, 0},
+    {"lamp", INCIDENT, 0},
+    {"source", INCIDENT, 0},
+    {"illumination", INCIDENT, 0},
+    {"sun", INCIDENT, 0},
+    {"solar", INCIDENT, 0},
+    {"sza", INCIDENT | POLAR, 0},
+    {"saa", INCIDENT | AZIMUTH, 0},
+    {"o", OUTGOING, 0},
+    {"out", OUTGOING, 0},
+    {"outgoing", OUTGOING, 0},
+    {"exitant", OUTGOING, 0},
+    {"r", OUTGOING, 0},
+    {"refl", OUTGOING, 0},
+    {"reflected", OUTGOING, 0},
+    {"reflection", OUTGOING, 0},
+    {"s", OUTGOING, 0},
+    {"sca", OUTGOING, 0},
+    {"scat", OUTGOING, 0},
+    {"scatter", OUTGOING, 0},
+    {"scattered", OUTGOING, 0},
+    {"scattering", OUTGOING, 0},
+    {"v", OUTGOING, 0},
+    {"view", OUTGOING, 0},
+    {"viewing", OUTGOING, 0},
+    {"viewer", OUTGOING, 0},
+    {"observer", OUTGOING, 0},
+    {"observation", OUTGOING, 0},
+    {"obs", OUTGOING, 0},
+    {"det", OUTGOING, 0},
+    {"detector", OUTGOING, 0},
+    {"detection", OUTGOING, 0},
+    {"sensor", OUTGOING, 0},
+    {"receiver", OUTGOING, 0},
+    {"measure", OUTGOING, 0},
+    {"measured", OUTGOING, 0},
+    {"measurement", OUTGOING, 0},
+    {"vza", OUTGOING | POLAR, 0},
+    {"vaa", OUTGOING | AZIMUTH, 0},
+    {"difference", DIFFERENCE, 0},
+    {"diff", DIFFERENCE, 0},
+    {"delta", DIFFERENCE, 0},
+    {"relative", DIFFERENCE, 0},
+    {"rel", DIFFERENCE, 0},
+    {"raa", AZIMUTH | DIFFERENCE, 0},
+    {"dphi", AZIMUTH | DIFFERENCE, 0},
+    {"deltaphi", AZIMUTH | DIFFERENCE, 0},
+    {"phidiff", AZIMUTH | DIFFERENCE, 0},
+    {"angle", ANY_ANGLE, 0},
+    {"angles", ANY_ANGLE, 0},
+    {"direction", FILLER, 0},
+    {"of", FILLER, 0},
+    {"the", FILLER, 0},
+    {"to", FILLER, 0},
+    {"deg", DEGREES, 0},
+    {"degs", DEGREES, 0},
+    {"degree", DEGREES, 0},
+    {"degrees", DEGREES, 0},
+    {"rad", RADIANS, 0},
+    {"rads", RADIANS, 0},
+    {"radian", RADIANS, 0},
+    {"radians", RADIANS, 0},
+};
+
+/* What words say of angles; whether all of them do. */
+static bool hear_angle(const gonio_i_words *words, gonio_i_meaning *s)
+{
+    bool all = words->whole && words->count > 0;
+    *s = (gonio_i_meaning){0};
+    for (size_t k = 0; k < words->count; k++) {
+        const gonio_i_known_word *w = gonio_i_find_word(
+            angle_words, sizeof angle_words / sizeof *angle_words, words->word[k].text);
+        /* "d phi" is a difference of azimuths, phi_d is not */
+        const bool leading = k == 0 && strcmp(words->word[k].text, "d") == 0;
+        all = all && (w != NULL || leading);
+        gonio_i_meaning_add(s, w != NULL ? w->bits : leading ? DIFFERENCE : 0, 0);
+    }
+    return all;
+}
+
+static int unit_of_angle(unsigned bits)
+{
+    const bool both = (bits & DEGREES) != 0 && (bits & RADIANS) != 0;
+    return both                    ? 0
+           : (bits & DEGREES) != 0 ? GONIO_DEGREES
+           : (bits & RADIANS) != 0 ? GONIO_RADIANS
+                                   : 0;
+}
+
+/* 0 to 3, or the difference; -1 for none. */
+static int angle_of(unsigned bits)
+{
+    const bool in = (bits & INCIDENT) != 0;
+    const bool out = (bits & OUTGOING) != 0;
+    const bool azimuth = (bits & AZIMUTH) != 0;
+    const bool polar = (bits & POLAR) != 0 || ((bits & ANY_ANGLE) != 0 && !azimuth);
+    if (polar == azimuth) {
+        return -1;
+    }
+    if (azimuth && in == out) {
+        return in || (bits & DIFFERENCE) != 0 ? GONIO_I_AZIMUTH_DIFFERENCE : -1;
+    }
+    if (in == out || (bits & DIFFERENCE) != 0) {
+        return -1;
+    }
+    return (out ? 2 : 0) + (azimuth ? 1 : 0);
+}
+
+bool gonio_i_take_angle_name(const gonio_i_words *words, gonio_i_column_name *name)
+{
+    gonio_i_meaning s;
+    const int angle = hear_angle(words, &s) ? angle_of(s.bits) : -1;
+    if (angle < 0) {
+        return false;
+    }
+    name->kind = GONIO_I_ANGLE;
+    name->index = (size_t)angle;
+    name->unit = unit_of_angle(s.bits);
+    return true;
+}
+
+int gonio_i_angle_unit_in(const char *text)
+{
+    gonio_i_words words;
+    gonio_i_meaning s;
+    gonio_i_words_split(text, &words);
+    hear_angle(&words, &s);
+    return unit_of_angle(s.bits);
+}

@@ -1,0 +1,28 @@
+/* Readings as CSV: what is kept of a file, and writing it again. */
+#ifndef GONIO_CSV_KEPT_H
+#define GONIO_CSV_KEPT_H
+
+#include "csv_columns.h"
+
+/* A planned channel as a cell has it: all; R, G or B; 400nm; or its number from 1. */
+void gonio_i_csv_name_channel(const gonio_readings *readings, int channel,
+                              char name[GONIO_I_NAME_ROOM]);
+
+/* What is written again of a CSV file. */
+typedef struct gonio_i_csv_kept {
+    char *text;
+    size_t size;
+    gonio_i_csv_columns columns;
+    bool rewrite_angles; /* they are not gonio's in the file */
+} gonio_i_csv_kept;
+
+void gonio_i_csv_kept_free(void *kept);
+
+/* NULL if the readings are not from a CSV file. */
+const gonio_i_csv_kept *gonio_i_csv_kept_of(const gonio_readings *readings);
+
+/* Prints readings over the file that they came from, or anew. Errors: _MEMORY. */
+gonio_status gonio_i_csv_print(gonio_context *context, const gonio_readings *readings,
+                               const char *command, FILE *stream);
+
+#endif

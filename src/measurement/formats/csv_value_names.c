@@ -1,0 +1,257 @@
+/* Names of columns of values and deviations: see csv_names.h. */
+#include <stdlib.h>
+#include <string.h>
+
+#include <gonio/measurement.h>
+
+#include "csv_meaning.h"
+#include "csv_names.h"
+
+enum {
+    COLOUR = 1 << 0,
+    QUANTITY = 1 << 1,
+    SURE = 1 << 2, /* a quantity that can be nothing else */
+    SPREAD = 1 << 3,
+    RELATIVE = 1 << 4,
+    STERADIAN = 1 << 5,
+    PERCENT = 1 << 6,
+    FACTOR = 1 << 7,
+    COSINE = 1 << 8,
+    NANOMETRE = 1 << 9,
+    MICROMETRE = 1 << 10,
+    LAMBDA = 1 << 11,
+    NUMBER = 1 << 12,
+    FILL = 1 << 13
+};
+
+enum { NO_QUANTITY, BRDF, FACTORS, VALUE, RHO, REFLECTANCE, F };
+
+static const gonio_i_known_word value_words[] = {
+    {"r", COLOUR, 0},
+    {"g", COLOUR, 1},
+    {"b", COLOUR, 2},
+    {"red", COLOUR, 0},
+    {"green", COLOUR, 1},
+    {"blue", COLOUR, 2},
+    {"brdf", QUANTITY | SURE, BRDF},
+    {"bsdf", QUANTITY | SURE, BRDF},
+    {"fr", QUANTITY | SURE, BRDF},
+    {"ccbrdf", QUANTITY | SURE | COSINE, BRDF},
+    {"brf", QUANTITY | SURE | FACTOR, FACTORS},
+    {"value", QUANTITY, VALUE},
+    {"values", QUANTITY, VALUE},
+    {"val", QUANTITY, VALUE},
+    {"rho", QUANTITY, RHO},
+    {"f", QUANTITY, F},
+    {"reflectance", QUANTITY, REFLECTANCE},
+    {"factor", FACTOR, 0},
+    {"factors", FACTOR, 0},
+    {"cos", COSINE, 0},
+    {"cosine", COSINE, 0},
+    {"deviation", SPREAD, 0},
+    {"dev", SPREAD, 0},
+    {"stddev", SPREAD, 0},
+    {"stdev", SPREAD, 0},
+    {"std", SPREAD, 0},
+    {"sd", SPREAD, 0},
+    {"sigma", SPREAD, 0},
+    {"uncertainty", SPREAD, 0},
+    {"unc", SPREAD, 0},
+    {"u", SPREAD, 0},
+    {"relative", RELATIVE, 0},
+    {"rel", RELATIVE, 0},
+    {"sr", STERADIAN, 0},
+    {"steradian", STERADIAN, 0},
+    {"percent", PERCENT, 0},
+    {"nm", NANOMETRE, 0},
+    {"nanometre", NANOMETRE, 0},
+    {"nanometres", NANOMETRE, 0},
+    {"nanometer", NANOMETRE, 0},
+    {"nanometers", NANOMETRE, 0},
+    {"um", MICROMETRE, 0},
+    {"micron", MICROMETRE, 0},
+    {"microns", MICROMETRE, 0},
+    {"micrometre", MICROMETRE, 0},
+    {"micrometres", MICROMETRE, 0},
+    {"micrometer", MICROMETRE, 0},
+    {"micrometers", MICROMETRE, 0},
+    {"lambda", LAMBDA, 0},
+    {"wavelength", LAMBDA, 0},
+    {"wl", LAMBDA, 0},
+    {"per", FILL, 0},
+    {"of", FILL, 0},
+    {"at", FILL, 0},
+    {"the", FILL, 0},
+    {"in", FILL, 0},
+    {"with", FILL, 0},
+    {"times", FILL, 0},
+    {"cent", FILL, 0},
+    {"channel", FILL, 0},
+    {"standard", FILL, 0},
+    {"bidirectional", FILL, 0},
+    {"radiance", FILL, 0},
+    {"distribution", FILL, 0},
+    {"function", FILL, 0},
+    {"corrected", FILL, 0},
+    {"linear", FILL, 0},
+    {"measured", FILL, 0},
+};
+
+/* What words say of values; whether all of them do. *number is the one that is no exponent. */
+static bool hear_value(const gonio_i_words *words, gonio_i_meaning *s, double *number)
+{
+    bool all = words->whole && words->count > 0;
+    *s = (gonio_i_meaning){0};
+    *number = 0.0;
+    for (size_t k = 0; k < words->count; k++) {
+        const gonio_i_name_word *word = &words->word[k];
+        const bool beside = (k + 1 < words->count && strcmp(word[1].text, "sr") == 0) ||
+                            (k > 0 && strcmp(word[-1].text, "sr") == 0);
+        if (word->text[0] == '\0' && beside && word->number == 1.0) {
+            continue; /* of 1/sr or sr^-1 */
+        }
+        if (word->text[0] == '\0') {
+            gonio_i_meaning_add(s, NUMBER, 0);
+            *number = word->number;
+            continue;
+        }
+        const gonio_i_known_word *w =
+            gonio_i_find_word(value_words, sizeof value_words / sizeof *value_words, word->text);
+        all = all && w != NULL;
+        if (w != NULL) {
+            gonio_i_meaning_add(s, w->bits, w->value);
+        }
+    }
+    return all;
+}
+
+static int value_of(const gonio_i_meaning *s, unsigned bit)
+{
+    unsigned place = 0;
+    while ((bit & 1U << place) == 0) {
+        place++;
+    }
+    return (s->bits & bit) != 0 ? s->value[place] : 0;
+}
+
+static int unit_of_value(const gonio_i_meaning *s)
+{
+    const unsigned bits = s->bits;
+    const bool factor = (bits & FACTOR) != 0;
+    return (bits & COSINE) != 0            ? factor ? GONIO_VALUE_FACTOR_COSINE : GONIO_VALUE_COSINE
+           : (bits & PERCENT) != 0         ? GONIO_VALUE_PERCENT
+           : factor                        ? GONIO_VALUE_FACTOR
+           : (bits & STERADIAN) != 0       ? GONIO_VALUE_BRDF
+           : value_of(s, QUANTITY) == BRDF ? GONIO_VALUE_BRDF
+                                           : 0;
+}
+
+int gonio_i_value_kind_in(const char *text)
+{
+    gonio_i_words words;
+    gonio_i_meaning s;
+    double number = 0.0;
+    gonio_i_words_split(text, &words);
+    hear_value(&words, &s, &number);
+    return unit_of_value(&s);
+}
+
+/* "f_r" is the usual sign of a BRDF, and not the red of f. */
+static void join_f_r(const char *text, gonio_i_words *words)
+{
+    for (size_t k = 1; k < words->count; k++) {
+        if (strcmp(words->word[k - 1].text, "f") == 0 && strcmp(words->word[k].text, "r") == 0 &&
+            strchr(text, 'R') == NULL) {
+            strcpy(words->word[k - 1].text, "fr");
+            memmove(&words->word[k], &words->word[k + 1],
+                    (words->count - k - 1) * sizeof *words->word);
+            words->count--;
+        }
+    }
+}
+
+static bool has_certain_unit(const gonio_i_meaning *s)
+{
+    return (s->bits & STERADIAN) != 0;
+}
+
+static int wavelength_unit(const gonio_i_meaning *s)
+{
+    return (s->bits & NANOMETRE) != 0    ? GONIO_NANOMETRES
+           : (s->bits & MICROMETRE) != 0 ? GONIO_MICROMETRES
+                                         : 0;
+}
+
+/* A channel by colour, by wavelength or by number; false if a name says more than one. */
+static bool take_channel(const gonio_i_meaning *s, double number, gonio_i_column_name *name)
+{
+    enum { LEAST_BARE_WAVELENGTH = 100 };
+    const bool metres = (s->bits & (NANOMETRE | MICROMETRE)) != 0;
+    const bool numbered = (s->bits & NUMBER) != 0;
+    const int quantity = value_of(s, QUANTITY);
+    const bool alone = quantity == NO_QUANTITY;
+    name->quantity = quantity;
+    if ((s->bits & COLOUR) != 0) {
+        name->family = GONIO_I_COLOUR;
+        name->index = (size_t)value_of(s, COLOUR);
+        return !numbered && !metres;
+    }
+    if (metres || (s->bits & LAMBDA) != 0 ||
+        (numbered && (alone || (quantity != VALUE && number >= LEAST_BARE_WAVELENGTH)))) {
+        name->family = GONIO_I_WAVELENGTH;
+        name->wavelength = number;
+        name->wavelength_unit = wavelength_unit(s);
+        return numbered && number > 0.0;
+    }
+    name->family = GONIO_I_UNNAMED;
+    name->index = numbered && number < 1e6 ? (size_t)number : 0;
+    return !numbered || number == (double)name->index;
+}
+
+static gonio_i_strength strength_of(const gonio_i_meaning *s, const gonio_i_column_name *name)
+{
+    const bool unit = name->unit != 0 || (s->bits & SURE) != 0;
+    const bool likely = name->family == GONIO_I_WAVELENGTH
+                            ? name->wavelength_unit != 0 || name->quantity != 0 || unit
+                        : name->family == GONIO_I_COLOUR ? name->quantity != 0 || unit
+                                                         : unit;
+    return has_certain_unit(s) ? GONIO_I_CERTAIN : likely ? GONIO_I_LIKELY : GONIO_I_BARE;
+}
+
+/* "wavelength (nm)", without a number. */
+static bool take_row_wavelength(const gonio_i_meaning *s, gonio_i_column_name *name)
+{
+    const unsigned allowed = LAMBDA | NANOMETRE | MICROMETRE | FILL;
+    if ((s->bits & LAMBDA) == 0 || (s->bits & ~allowed) != 0) {
+        return false;
+    }
+    name->kind = GONIO_I_ROW_WAVELENGTH;
+    name->wavelength_unit = wavelength_unit(s);
+    return true;
+}
+
+bool gonio_i_take_value_name(const char *text, gonio_i_words *words, gonio_i_column_name *name)
+{
+    gonio_i_meaning s;
+    double number = 0.0;
+    join_f_r(text, words);
+    if (!hear_value(words, &s, &number) || (s.twice & (COLOUR | NUMBER | SPREAD)) != 0) {
+        return false;
+    }
+    if (take_row_wavelength(&s, name)) {
+        return true;
+    }
+    const bool spread = (s.bits & SPREAD) != 0;
+    const bool named = (s.bits & (COLOUR | NUMBER | QUANTITY)) != 0;
+    if (!(spread || named || (s.bits & FACTOR && s.words > 1)) || !take_channel(&s, number, name)) {
+        return false;
+    }
+    if (!spread && (s.bits & RELATIVE) != 0) {
+        return false;
+    }
+    name->kind = spread ? GONIO_I_DEVIATION : GONIO_I_VALUE;
+    name->relative = (s.bits & RELATIVE) != 0;
+    name->unit = unit_of_value(&s);
+    name->strength = strength_of(&s, name);
+    return true;
+}
