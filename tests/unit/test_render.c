@@ -1,5 +1,4 @@
-/* The parts of rendering: looking up a BRDF, images, tone mapping, differences, meshes,
- * environments. */
+/* Rendering: the BRDF looked up, tone mapping, differences, environments, spheres and meshes. */
 #include "../support.h"
 
 #include <gonio/gonio.h>
@@ -7,50 +6,11 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "core/core.h"
 #include "made_direct.h"
 #include "made_material.h"
 #include "render/environment.h"
 #include "render/surface.h"
-
-/* Keeps the last message (support_message). */
-static gonio_context *telling;
-
-static int begin(void **state)
-{
-    (void)state;
-    telling = support_context();
-    return telling == NULL;
-}
-
-static int end(void **state)
-{
-    (void)state;
-    gonio_context_free(&telling);
-    return 0;
-}
-
-static void assert_close(double a, double b, double tolerance)
-{
-    if (!(fabs(a - b) <= tolerance)) {
-        fail_msg("%.12g is not %.12g", a, b);
-    }
-}
-
-static char *path_in(const char *folder, const char *name)
-{
-    return gonio_i_format("%s/%s", folder, name);
-}
-
-static void write_file(const char *path, const void *data, size_t size)
-{
-    FILE *stream = fopen(path, "wb");
-    assert_non_null(stream);
-    assert_int_equal(fwrite(data, 1, size, stream), size);
-    fclose(stream);
-}
-
-/* ---- the BRDF ---- */
+#include "render_fixture.h"
 
 static void direction_of(gonio_angles angles, double d[3])
 {
@@ -166,8 +126,6 @@ static void holes_are_filled_from_what_is_near(void **state)
     gonio_material_free(&material);
 }
 
-/* ---- tone mapping ---- */
-
 static gonio_image *image_of(int width, int height, const float *rgba)
 {
     gonio_image *image = NULL;
@@ -206,8 +164,6 @@ static void tones_are_those_of_the_formula(void **state)
     assert_close(gonio_srgb_encode(1.0), 1.0, 1e-12);
     assert_close(gonio_srgb_encode(0.2140411), 0.5, 1e-6);
 }
-
-/* ---- differences ---- */
 
 /* BT.2100: grey has Ct = Cp = 0 and I = PQ(luminance); PQ of 203 cd/m^2 is 0.58 (BT.2408), of 100
  * 0.508 (BT.2100's table), and BT.2124 multiplies by 720. */
@@ -251,253 +207,6 @@ static void images_are_compared_where_they_show_something(void **state)
     gonio_image_free(&a);
     gonio_image_free(&b);
 }
-
-/* ---- files ---- */
-
-static void openexr_comes_back_as_it_was(void **state)
-{
-    (void)state;
-    char *folder = support_folder();
-    char *path = path_in(folder, "image.exr");
-    gonio_image *image = NULL;
-    gonio_image *back = NULL;
-    assert_int_equal(gonio_image_create(NULL, 37, 53, &image), GONIO_OK);
-    for (int k = 0; k < 37 * 53 * 4; k++) {
-        image->rgba[k] = (float)(k * 0.37 - 50.0);
-    }
-    assert_int_equal(gonio_image_write_exr(NULL, image, path), GONIO_OK);
-    assert_int_equal(gonio_image_read(NULL, path, &back), GONIO_OK);
-    assert_int_equal(back->width, 37);
-    assert_int_equal(back->height, 53);
-    assert_memory_equal(back->rgba, image->rgba, sizeof(float) * 37 * 53 * 4);
-    gonio_image_free(&image);
-    gonio_image_free(&back);
-    free(path);
-    support_remove(folder);
-}
-
-/* Shared exponent: a component is mantissa * 2^(exponent - 136). */
-static void radiance_images_are_read(void **state)
-{
-    (void)state;
-    static const char file[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n"
-                               "\x80\x40\x20\x81\x00\x00\x00\x00";
-    char *folder = support_folder();
-    char *path = path_in(folder, "image.hdr");
-    gonio_image *image = NULL;
-    write_file(path, file, sizeof file - 1);
-    assert_int_equal(gonio_image_read(NULL, path, &image), GONIO_OK);
-    assert_int_equal(image->width, 2);
-    assert_close((double)image->rgba[0], 1.0, 1e-6);
-    assert_close((double)image->rgba[1], 0.5, 1e-6);
-    assert_close((double)image->rgba[2], 0.25, 1e-6);
-    assert_close((double)image->rgba[3], 1.0, 0.0);
-    gonio_image_free(&image);
-    free(path);
-    support_remove(folder);
-}
-
-static gonio_status read_image(const void *file, size_t size, gonio_image **image)
-{
-    char *folder = support_folder();
-    char *path = path_in(folder, "image");
-    write_file(path, file, size);
-    const gonio_status status = gonio_image_read(telling, path, image);
-    free(path);
-    support_remove(folder);
-    return status;
-}
-
-/* Pixels are radiance times all that EXPOSURE and COLORCORR say. */
-static void radiance_images_are_exposed(void **state)
-{
-    (void)state;
-    static const char file[] = "#?RADIANCE\nEXPOSURE= 4\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=0.5\n"
-                               "COLORCORR=1 2 0.25\n\n-Y 1 +X 1\n\x80\x40\x20\x81";
-    static const char bad[] = "#?RADIANCE\nEXPOSURE=0\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n"
-                              "\x80\x40\x20\x81";
-    gonio_image *image = NULL;
-    assert_int_equal(read_image(file, sizeof file - 1, &image), GONIO_OK);
-    assert_close((double)image->rgba[0], 0.5, 1e-7);
-    assert_close((double)image->rgba[1], 0.125, 1e-7);
-    assert_close((double)image->rgba[2], 0.5, 1e-7);
-    gonio_image_free(&image);
-    assert_int_equal(read_image(bad, sizeof bad - 1, &image), GONIO_ERROR_FORMAT);
-    assert_non_null(strstr(support_message(), "'EXPOSURE=0'"));
-}
-
-/* Two lines of nine pixels, the components coded as a run and as bytes. */
-static void coded_radiance_images_are_read_or_refused(void **state)
-{
-    (void)state;
-    static const char file[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 9\n"
-                               "\2\2\0\11\x89\x80\x11\1\2\3\4\5\6\7\10\11"
-                               "\x89\0\x89\x81"
-                               "\2\2\0\11\x84\x80\x85\x40\x89\1\x89\0\x89\x81";
-    char fixed[sizeof file];
-    gonio_image *image = NULL;
-    memcpy(fixed, file, sizeof file);
-    *(char *)memchr(fixed, 0x11, sizeof fixed) = 9; /* a count of bytes, not of a run */
-    assert_int_equal(read_image(fixed, sizeof fixed - 1, &image), GONIO_OK);
-    assert_close((double)image->rgba[0], 1.0, 1e-7);
-    assert_close((double)image->rgba[4 * 8 + 1], 9.0 / 128.0, 1e-7);
-    assert_close((double)image->rgba[4 * (9 + 3)], 1.0, 1e-7);
-    assert_close((double)image->rgba[4 * (9 + 4)], 0.5, 1e-7);
-    gonio_image_free(&image);
-    assert_int_equal(read_image(file, sizeof file - 1, &image), GONIO_ERROR_FORMAT);
-    for (size_t size = 1; size < sizeof fixed - 1; size++) {
-        assert_int_equal(read_image(fixed, size, &image), GONIO_ERROR_FORMAT);
-    }
-}
-
-/* ---- an OpenEXR file byte by byte ---- */
-
-static void put_attribute(FILE *f, const char *name, const char *type, const void *data,
-                          uint32_t size)
-{
-    fwrite(name, 1, strlen(name) + 1, f);
-    fwrite(type, 1, strlen(type) + 1, f);
-    fwrite(&size, 1, sizeof size, f);
-    fwrite(data, 1, size, f);
-}
-
-/* Half floats B, G, R and a float Z beside them; little-endian, as the format is. */
-static void openexr_of_mixed_channels_is_read(void **state)
-{
-    (void)state;
-    enum { WIDTH = 16 };
-    static const char channels[] = "B\0\1\0\0\0\0\0\0\0\1\0\0\0\1\0\0\0"
-                                   "G\0\1\0\0\0\0\0\0\0\1\0\0\0\1\0\0\0"
-                                   "R\0\1\0\0\0\0\0\0\0\1\0\0\0\1\0\0\0"
-                                   "Z\0\2\0\0\0\0\0\0\0\1\0\0\0\1\0\0\0";
-    static const int32_t window[4] = {0, 0, WIDTH - 1, 0};
-    static const float one = 1.0F;
-    static const float centre[2] = {0.0F, 0.0F};
-    /* 0.25, 1.5, the least above 0, for B, G, R */
-    static const uint16_t half[3] = {0x3400, 0x3e00, 0x0001};
-    char *text = NULL;
-    size_t size = 0;
-    FILE *f = open_memstream(&text, &size);
-    assert_non_null(f);
-    fwrite("\x76\x2f\x31\x01\2\0\0\0", 1, 8, f);
-    put_attribute(f, "channels", "chlist", channels, sizeof channels);
-    put_attribute(f, "compression", "compression", "", 1);
-    put_attribute(f, "dataWindow", "box2i", window, sizeof window);
-    put_attribute(f, "displayWindow", "box2i", window, sizeof window);
-    put_attribute(f, "lineOrder", "lineOrder", "", 1);
-    put_attribute(f, "pixelAspectRatio", "float", &one, sizeof one);
-    put_attribute(f, "screenWindowCenter", "v2f", centre, sizeof centre);
-    put_attribute(f, "screenWindowWidth", "float", &one, sizeof one);
-    fputc(0, f);
-    fflush(f);
-    const uint64_t offset = size + sizeof offset;
-    const int32_t chunk[2] = {0, WIDTH * (3 * 2 + 4)};
-    fwrite(&offset, 1, sizeof offset, f);
-    fwrite(chunk, 1, sizeof chunk, f);
-    for (int k = 0; k < 3 * WIDTH; k++) {
-        fwrite(&half[k / WIDTH], 1, sizeof *half, f);
-    }
-    for (int k = 0; k < WIDTH; k++) {
-        fwrite(&one, 1, sizeof one, f);
-    }
-    fclose(f);
-    gonio_image *image = NULL;
-    assert_int_equal(read_image(text, size, &image), GONIO_OK);
-    for (int k = 0; k < WIDTH; k++) {
-        assert_close((double)image->rgba[4 * k], ldexp(1.0, -24), 0.0);
-        assert_close((double)image->rgba[4 * k + 1], 1.5, 0.0);
-        assert_close((double)image->rgba[4 * k + 2], 0.25, 0.0);
-        assert_close((double)image->rgba[4 * k + 3], 1.0, 0.0);
-    }
-    gonio_image_free(&image);
-    free(text);
-}
-
-static gonio_status read_mesh(const char *text, size_t size, gonio_mesh **mesh)
-{
-    char *folder = support_folder();
-    char *path = path_in(folder, "mesh");
-    write_file(path, text, size);
-    const gonio_status status = gonio_mesh_read(telling, path, mesh);
-    free(path);
-    support_remove(folder);
-    return status;
-}
-
-static const char binary_ply[] = "ply\nformat binary_little_endian 1.0\nelement vertex 3\n"
-                                 "property float x\nproperty float y\nproperty float z\n"
-                                 "element face 1\nproperty list uchar int vertex_indices\n"
-                                 "end_header\n"
-                                 "\0\0\0\0\0\0\0\0\0\0\0\0"     /* 0 0 0 */
-                                 "\0\0\x80\x3f\0\0\0\0\0\0\0\0" /* 1 0 0 */
-                                 "\0\0\0\0\0\0\x80\x3f\0\0\0\0" /* 0 1 0 */
-                                 "\3\0\0\0\0\1\0\0\0\2\0\0\0";
-
-static void meshes_are_read(void **state)
-{
-    (void)state;
-    static const char obj[] = "# a square and a flat triangle\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
-                              "f 1 2 3 4\nf 1 2 2\n";
-    static const char ply[] = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
-                              "property float y\nproperty float z\nelement face 1\n"
-                              "property list uchar int vertex_indices\nend_header\n"
-                              "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
-    gonio_mesh *mesh = NULL;
-    assert_int_equal(read_mesh(obj, sizeof obj - 1, &mesh), GONIO_OK);
-    assert_int_equal(gonio_mesh_triangles(mesh), 2);
-    gonio_mesh_free(&mesh);
-    assert_int_equal(read_mesh(ply, sizeof ply - 1, &mesh), GONIO_OK);
-    assert_int_equal(gonio_mesh_triangles(mesh), 1);
-    gonio_mesh_free(&mesh);
-    assert_int_equal(read_mesh(binary_ply, sizeof binary_ply - 1, &mesh), GONIO_OK);
-    assert_int_equal(gonio_mesh_triangles(mesh), 1);
-    assert_int_equal(gonio_mesh_corners(mesh), 3);
-    gonio_mesh_free(&mesh);
-}
-
-/* Whatever the unit, corners are joined only where they are the same. Materials are not read. */
-static void small_objs_are_read(void **state)
-{
-    (void)state;
-    static const char obj[] = "mtllib 0\nmap_Pr\n  mtllib \\\n v\nusemtl x\n"
-                              "v 0 0 0\nv 1e-6 0 0\nv 1e-6 1e-6 0\nv 0 1e-6 0\n"
-                              "f 1 2 3\nf 1 3 4\n";
-    gonio_mesh *mesh = NULL;
-    assert_int_equal(read_mesh(obj, sizeof obj - 1, &mesh), GONIO_OK);
-    assert_int_equal(gonio_mesh_triangles(mesh), 2);
-    assert_true(gonio_mesh_corners(mesh) >= 4);
-    gonio_mesh_free(&mesh);
-    assert_int_equal(read_mesh("v 0 0 0\nmtllib 0\nmap_Pr", 23, &mesh), GONIO_ERROR_FORMAT);
-}
-
-static void damaged_meshes_are_refused(void **state)
-{
-    (void)state;
-    gonio_mesh *mesh = NULL;
-    static const char *const bad[] = {
-        "v 0 0 0\nv 1 0 0\nv 0 1 0\n",                    /* no faces */
-        "v 0 0 0\nv 0 0 0\nv 0 0 0\nf 1 2 3\n",           /* no extent */
-        "v 0 0 0\nv 1 0 0\nv nan 1 0\nf 1 2 3\n",         /* not finite */
-        "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n",           /* no such corner */
-        "ply\nformat ascii 1.0\nelement vertex 9\nend\n", /* no end */
-        "solid cube\n",                                   /* STL */
-    };
-    for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
-        const gonio_status status = read_mesh(bad[k], strlen(bad[k]), &mesh);
-        if (status != GONIO_ERROR_DATA && status != GONIO_ERROR_FORMAT) {
-            fail_msg("mesh %zu: status %d", k, status);
-        }
-        assert_null(mesh);
-    }
-    /* Cut anywhere: read or refused, but nothing else. */
-    for (size_t size = 1; size < sizeof binary_ply - 1; size++) {
-        if (read_mesh(binary_ply, size, &mesh) == GONIO_OK) {
-            gonio_mesh_free(&mesh);
-        }
-    }
-}
-
-/* ---- meshes against the sphere, environments ---- */
 
 /* A sphere of triangles as PLY text: rings x 2 rings. */
 static char *sphere_text(int rings)
@@ -650,32 +359,6 @@ static void a_reference_is_a_rendering_to_compare_with(void **state)
     gonio_material_free(&material);
 }
 
-/* The signature and the size; that browsers show them is tested with the page. */
-static void pictures_are_png(void **state)
-{
-    (void)state;
-    static const unsigned char head[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0,
-                                         0,    0,   13,  'I', 'H',  'D',  'R',  0,    0,
-                                         0,    7,   0,   0,   0,    5,    8};
-    gonio_image *image = NULL;
-    char *folder = support_folder();
-    char path[256];
-    unsigned char found[sizeof head];
-    snprintf(path, sizeof path, "%s/a.png", folder);
-    assert_int_equal(gonio_image_create(NULL, 7, 5, &image), GONIO_OK);
-    const gonio_tone tone = gonio_tone_measure(image, 0.18);
-    assert_int_equal(gonio_image_write_png(NULL, image, &tone, path), GONIO_OK);
-    FILE *file = fopen(path, "rb");
-    assert_non_null(file);
-    assert_int_equal(fread(found, 1, sizeof found, file), sizeof found);
-    fclose(file);
-    assert_memory_equal(found, head, sizeof head);
-    assert_int_equal(gonio_image_write_png(NULL, image, &tone, "/nonexistent/a.png"),
-                     GONIO_ERROR_IO);
-    gonio_image_free(&image);
-    support_remove(folder);
-}
-
 /* Structs whose size nobody set. */
 static void what_was_not_initialised_is_refused(void **state)
 {
@@ -741,20 +424,11 @@ int main(void)
         cmocka_unit_test(tones_are_those_of_the_formula),
         cmocka_unit_test(delta_e_itp_is_that_of_bt2124),
         cmocka_unit_test(images_are_compared_where_they_show_something),
-        cmocka_unit_test(openexr_comes_back_as_it_was),
-        cmocka_unit_test(radiance_images_are_read),
-        cmocka_unit_test(radiance_images_are_exposed),
-        cmocka_unit_test(coded_radiance_images_are_read_or_refused),
-        cmocka_unit_test(openexr_of_mixed_channels_is_read),
-        cmocka_unit_test(meshes_are_read),
-        cmocka_unit_test(small_objs_are_read),
-        cmocka_unit_test(damaged_meshes_are_refused),
         cmocka_unit_test(a_mesh_of_a_sphere_looks_like_the_sphere),
         cmocka_unit_test(environments_without_light_are_refused),
         cmocka_unit_test(environments_are_the_right_way_round),
         cmocka_unit_test(what_cannot_be_rendered_is_said),
         cmocka_unit_test(a_reference_is_a_rendering_to_compare_with),
-        cmocka_unit_test(pictures_are_png),
         cmocka_unit_test(what_was_not_initialised_is_refused),
     };
     return cmocka_run_group_tests(tests, begin, end);
