@@ -10,7 +10,7 @@ JOBS ?= $(shell nproc)
 # What the tests of a build left, by which their times are shown.
 RESULTS = build/release/tests.xml build/sanitize/tests.xml
 
-.PHONY: all demo check test sanitize style times bench coverage install clean
+.PHONY: all demo check test sanitize style times fuzz bench coverage install clean
 
 all:
 	scripts/install-dependencies.sh $(INSTALL) build
@@ -52,6 +52,14 @@ times:
 .PHONY: check-tools
 check-tools:
 	scripts/install-dependencies.sh $(INSTALL) check
+
+# TIME: seconds for each target; TARGETS: some of them, all by default.
+TIME ?= 60
+fuzz:
+	scripts/install-dependencies.sh $(INSTALL) fuzz
+	cmake --preset fuzz >/dev/null
+	cmake --build --preset fuzz --target fuzz-targets -j $(JOBS)
+	scripts/fuzz.sh build/fuzz $(TIME) $(TARGETS)
 
 # MATERIALS: a folder of at least 81 materials, the built-in ones by default.
 MATERIALS ?= atlas:

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Installs the Debian or Ubuntu packages that are missing: install-dependencies.sh yes|no build|check
+# Installs the Debian or Ubuntu packages that are missing: install-dependencies.sh yes|no build|check|fuzz
 # "no" only looks. sudo is asked for only if needed and not root. Node.js, with which the page of gonio
 # report is built, may also come from elsewhere than Debian; without it all else is built.
 set -eu
@@ -10,6 +10,10 @@ libpng-dev libcairo2-dev"
 if [ "$2" = check ]; then
     packages="$packages libcmocka-dev clang-format clang-tidy libomp-dev mandoc gnuplot-nox
 libopenmpi-dev openmpi-bin jq locales openssl python3-numpy"
+fi
+
+if [ "$2" = fuzz ]; then
+    packages="$packages clang libclang-rt-14-dev libomp-dev"
 fi
 
 if ! command -v dpkg-query >/dev/null 2>&1; then

@@ -1,24 +1,7 @@
 /* libFuzzer on basis files: whatever the bytes are, a basis is refused with one message or is one
  * that plans and reconstructs. Hashes may be wrong in this build, as a liar could have right ones.
- *
- *     cmake --preset fuzz && cmake --build --preset fuzz --target fuzz-basis
- *     build/fuzz/tests/fuzz/fuzz-basis FOLDER         a folder that begins with some small bases */
-#include <gonio/gonio.h>
-
-#include <fcntl.h>
-#include <math.h>
-#include <stdbool.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
-
-#include "contract.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-size_t LLVMFuzzerMutate(uint8_t *data, size_t size, size_t most);
-size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t size, size_t most, unsigned seed);
+ */
+#include "fuzz.h"
 
 static void plan(gonio_context *context, const gonio_basis *basis, const char *method)
 {
@@ -51,7 +34,7 @@ static void reconstruct(gonio_context *context, const gonio_basis *basis)
     status = gonio_reconstruction_material(context, basis, made, "made", &material);
     check_status(status);
     if (status == GONIO_OK) {
-        check_status(gonio_material_read_slab(material, context, 7, rho));
+        check_status(gonio_material_read_slab(context, material, 7, rho));
         for (size_t k = 0; k < GONIO_SLAB_VALUES; k++) {
             check(isfinite(rho[k]) && (rho[k] >= 0.0 || rho[k] == -1.0), "a BRDF is not negative");
         }
@@ -70,19 +53,11 @@ static void use(gonio_context *context, const gonio_basis *basis, unsigned which
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    static gonio_context *context;
-    static char path[64];
-    const gonio_context_options options = {
-        .size = sizeof options, .message = count_message, .threads = 1};
-    if (context == NULL) {
-        check(gonio_context_create(&context, &options) == GONIO_OK, "a context is made");
-        snprintf(path, sizeof path, "/dev/shm/fuzz-basis-%ld", (long)getpid());
-    }
-    const int descriptor = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    check(descriptor >= 0 && write(descriptor, data, size) == (ssize_t)size, "a file is written");
-    close(descriptor);
+    gonio_context *context = fuzz_context();
+    char path[128];
     gonio_basis *basis = NULL;
-    errors = 0;
+    fuzz_path(path, "basis");
+    fuzz_write(path, data, size);
     const gonio_status status = gonio_basis_read(context, path, &basis);
     check_status(status);
     if (status == GONIO_OK) {

@@ -1,25 +1,8 @@
 /* libFuzzer on readings of any format: whatever the bytes are, a file is refused with one message
  * or is readings with angles and values in their ranges, which are the same when they are written
  * and read again.
- *
- *     cmake --preset fuzz && cmake --build --preset fuzz --target fuzz-readings
- *     build/fuzz/tests/fuzz/fuzz-readings FOLDER      a folder that begins with some small files
- *
  * The size of a file says how it is read: among others as which format. */
-#include <gonio/gonio.h>
-
-#include <fcntl.h>
-#include <math.h>
-#include <stdbool.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
-
-#include "contract.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+#include "fuzz.h"
 
 static void check_direction(gonio_angles a)
 {
@@ -112,26 +95,18 @@ static const char *format_of(size_t size)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    static gonio_context *context;
-    static char path[64];
-    static char written[80];
-    const gonio_context_options options = {
-        .size = sizeof options, .message = count_message, .threads = 1};
-    if (context == NULL) {
-        check(gonio_context_create(&context, &options) == GONIO_OK, "a context is made");
-        snprintf(path, sizeof path, "/dev/shm/fuzz-readings-%ld", (long)getpid());
-        snprintf(written, sizeof written, "%s.csv", path);
-    }
-    const int descriptor = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    check(descriptor >= 0 && write(descriptor, data, size) == (ssize_t)size, "a file is written");
-    close(descriptor);
+    gonio_context *context = fuzz_context();
+    char path[128];
+    char written[128];
     const gonio_readings_options how = {.size = sizeof how,
                                         .values_needed = size % 2 == 0,
                                         .average_repeats = size % 4 < 2,
                                         .negative_to_zero = size % 8 < 4,
                                         .as = {.format = format_of(size)}};
     gonio_readings *readings = NULL;
-    errors = 0;
+    fuzz_path(path, "readings");
+    fuzz_path(written, "written.csv");
+    fuzz_write(path, data, size);
     const gonio_status status = gonio_readings_read(context, path, &how, &readings);
     check_status(status);
     if (status == GONIO_OK) {
