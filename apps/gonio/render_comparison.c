@@ -10,10 +10,10 @@
 
 typedef struct picture {
     size_t rows, columns;
-    gonio_image **image;     /* [rows][columns] */
-    gonio_sheet_cell *cells; /* the same */
-    char **row_name;         /* [rows] */
-    char **column_name;      /* [columns] */
+    gonio_image **image;       /* [rows][columns] */
+    gonio_picture_cell *cells; /* the same */
+    char **row_name;           /* [rows] */
+    char **column_name;        /* [columns] */
 } picture;
 
 static void free_picture(picture *p)
@@ -61,7 +61,7 @@ static gonio_status compare_cell(const tool *t, const gonio_reference *reference
         status = gonio_compare(t->context, original, material, &comparison);
     }
     if (status == GONIO_OK) {
-        p->cells[at] = (gonio_sheet_cell){p->image[at], comparison.all.value[GONIO_E6]};
+        p->cells[at] = (gonio_picture_cell){p->image[at], comparison.all.value[GONIO_E6]};
         if (p->column_name[at % p->columns] == NULL) {
             p->column_name[at % p->columns] = strdup(gonio_material_name(material));
         }
@@ -96,7 +96,7 @@ static gonio_status compare_row(const tool *t, const render_scene *s, const char
         status = copy_image(t, gonio_reference_image(reference), &p->image[first]);
     }
     if (status == GONIO_OK) {
-        p->cells[first] = (gonio_sheet_cell){p->image[first], NAN};
+        p->cells[first] = (gonio_picture_cell){p->image[first], NAN};
     }
     for (size_t k = 1; k < p->columns && status == GONIO_OK; k++) {
         status = compare_cell(t, reference, original, paths[k], p, first + k);
@@ -133,15 +133,15 @@ static gonio_status write_picture(const tool *t, const render_request *o, pictur
             return GONIO_ERROR_MEMORY;
         }
     }
-    const gonio_sheet sheet = {.size = sizeof sheet,
-                               .rows = p->rows,
-                               .columns = p->columns,
-                               .row_names = (const char *const *)p->row_name,
-                               .column_names = (const char *const *)p->column_name,
-                               .cells = p->cells,
-                               .key = o->key,
-                               .differences = o->differences != 0};
-    return gonio_sheet_write_png(t->context, &sheet, o->output);
+    const gonio_comparison_picture drawn = {.size = sizeof drawn,
+                                            .rows = p->rows,
+                                            .columns = p->columns,
+                                            .row_names = (const char *const *)p->row_name,
+                                            .column_names = (const char *const *)p->column_name,
+                                            .cells = p->cells,
+                                            .key = o->key,
+                                            .differences = o->differences != 0};
+    return gonio_comparison_picture_write_png(t->context, &drawn, o->output);
 }
 
 /* The rows of renderings: of each material the E6 from the first of its row. */

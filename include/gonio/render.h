@@ -201,29 +201,30 @@ GONIO_API gonio_status gonio_reference_compare(gonio_context *context,
                                                gonio_image_error *error);
 
 /* One rendering of a comparison picture. */
-typedef struct gonio_sheet_cell {
+typedef struct gonio_picture_cell {
     const gonio_image *image; /* NULL for an empty place */
     double e6;                /* per cent; NaN for none */
-} gonio_sheet_cell;
+} gonio_picture_cell;
 
-/* A picture of renderings in rows (materials) and columns (methods), all of one size; the first
+/* Renderings in rows (materials) and columns (methods), all of one size; the first
  * column is the reference, by which the others are tone-mapped and with which they are compared.
  * Below each of the others stand E6, PSNR and Delta E_ITP. */
-typedef struct gonio_sheet {
-    size_t size; /* sizeof(gonio_sheet) */
+typedef struct gonio_comparison_picture {
+    size_t size; /* sizeof(gonio_comparison_picture) */
     size_t rows, columns;
     const char *const *row_names;    /* [rows]; UTF-8 */
     const char *const *column_names; /* [columns] */
-    const gonio_sheet_cell *cells;   /* [rows][columns] */
+    const gonio_picture_cell *cells; /* [rows][columns] */
     double key;                      /* of the tone mapping */
     bool differences;                /* below each row Delta E_ITP as a picture */
     double largest_difference;       /* Delta E_ITP of the brightest colour in it; 20 if 0 */
-} gonio_sheet;
+} gonio_comparison_picture;
 
-/* Draws it as PNG. The file appears whole or not at all. Errors: _ARGUMENT for a sheet without
+/* Draws it as PNG. The file appears whole or not at all. Errors: _ARGUMENT for a picture without
  * cells, or too large; _MISMATCH for images of other sizes; those of gonio_image_compare; _IO. */
-GONIO_API gonio_status gonio_sheet_write_png(gonio_context *context, const gonio_sheet *sheet,
-                                             const char *path);
+GONIO_API gonio_status gonio_comparison_picture_write_png(gonio_context *context,
+                                                          const gonio_comparison_picture *picture,
+                                                          const char *path);
 
 #ifdef __cplusplus
 }

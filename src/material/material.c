@@ -196,7 +196,7 @@ static gonio_status open_atlas(gonio_context *context, const char *name, gonio_m
 static const gonio_i_format_reader *find_reader(const gonio_i_file *file)
 {
     for (int k = 0; k < READERS; k++) {
-        if (readers[k]->probe(file)) {
+        if (readers[k]->recognises(file)) {
             return readers[k];
         }
     }

@@ -50,7 +50,7 @@ void gonio_i_tensor_byte_order(void *values, size_t count, size_t size)
 #endif
 }
 
-bool gonio_i_tensor_probe(const unsigned char *head, size_t size)
+bool gonio_i_tensor_recognises(const unsigned char *head, size_t size)
 {
     return size >= sizeof magic && memcmp(head, magic, sizeof magic) == 0;
 }
@@ -188,7 +188,8 @@ static gonio_status read_header(gonio_context *context, gonio_i_tensor_file *fil
     uint32_t fields = 0;
     memcpy(&fields, header + HEADER - sizeof fields, sizeof fields);
     fields = le32toh(fields);
-    if (!gonio_i_tensor_probe(header, sizeof header) || header[GONIO_I_TENSOR_MAGIC] != MAJOR) {
+    if (!gonio_i_tensor_recognises(header, sizeof header) ||
+        header[GONIO_I_TENSOR_MAGIC] != MAJOR) {
         return damaged(&r, "another kind or version");
     }
     if (fields == 0 || fields > MOST_FIELDS) {

@@ -56,7 +56,7 @@ size_t gonio_i_tensor_size(gonio_i_tensor_type type);
 void gonio_i_tensor_byte_order(void *values, size_t count, size_t size);
 
 /* Whether a file's first bytes are those of a tensor file. */
-bool gonio_i_tensor_probe(const unsigned char *head, size_t size);
+bool gonio_i_tensor_recognises(const unsigned char *head, size_t size);
 
 /* Opens a file and reads the table of its fields. To be closed after success.
  * Errors: _IO; _FORMAT (another version, a field that ends beyond the file, too many fields,

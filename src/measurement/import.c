@@ -239,7 +239,7 @@ gonio_status gonio_i_import_add(gonio_i_import *import, const gonio_i_row *row)
         gonio_i_import_leave_out(import, GONIO_I_NOT_MEASURED);
         return GONIO_OK;
     }
-    import->turned += row->degrees[0] < 0.0 || row->degrees[2] < 0.0;
+    import->negative_theta += row->degrees[0] < 0.0 || row->degrees[2] < 0.0;
     return gonio_i_readings_add(import->context, import->readings, &reading);
 }
 
@@ -337,14 +337,14 @@ static void print_left_out(const gonio_i_import *in, FILE *stream)
         fprintf(stream, "; %zu value%s below zero taken as 0", in->negative,
                 in->negative > 1 ? "s" : "");
     }
-    if (in->turned > 0) {
-        fprintf(stream, "; %zu with theta below zero (phi turned by 180)", in->turned);
+    if (in->negative_theta > 0) {
+        fprintf(stream, "; %zu with theta below zero (phi turned by 180)", in->negative_theta);
     }
 }
 
 static bool anything_changed(const gonio_i_import *in)
 {
-    size_t changed = in->negative + in->turned;
+    size_t changed = in->negative + in->negative_theta;
     for (int k = 0; k < GONIO_I_REASONS; k++) {
         changed += in->left_out[k];
     }

@@ -30,8 +30,8 @@ typedef struct gonio_i_import {
     double *value;        /* [channels] of a row */
     double *deviation;    /* [channels] */
     size_t left_out[GONIO_I_REASONS];
-    size_t negative; /* values taken as 0 */
-    size_t turned;   /* rows with a theta below zero, of readings */
+    size_t negative;       /* values taken as 0 */
+    size_t negative_theta; /* rows with a theta below zero, of readings */
 } gonio_i_import;
 
 /* One row. Angles in degrees (gonio_i_import_degrees), values as the file has them. */

@@ -8,7 +8,7 @@
 static const double SAME = 1e-4; /* radians */
 
 /* How a known reading is one of the directions that are looked for, the better the smaller. */
-typedef enum likeness { EXACT, TURNED, RECIPROCAL, NONE } likeness;
+typedef enum likeness { EXACT, ROTATED, RECIPROCAL, NONE } likeness;
 
 /* ---- how far apart two pairs of directions are ---- */
 
@@ -31,7 +31,7 @@ static double distance(gonio_pair a, gonio_pair b)
 
 /* Of an isotropic material, turned about the normal as suits best: so that the direction which is
  * nearer to the normal is off in azimuth. */
-static double distance_turned(gonio_pair a, gonio_pair b)
+static double distance_rotated(gonio_pair a, gonio_pair b)
 {
     const double theta =
         fmax(fabs(a.incident.theta - b.incident.theta), fabs(a.outgoing.theta - b.outgoing.theta));
@@ -46,11 +46,11 @@ static likeness compare(gonio_pair a, gonio_pair b, double *apart)
     if (*apart <= SAME) {
         return EXACT;
     }
-    *apart = distance_turned(a, b);
+    *apart = distance_rotated(a, b);
     if (*apart <= SAME) {
-        return TURNED;
+        return ROTATED;
     }
-    *apart = distance_turned((gonio_pair){a.outgoing, a.incident}, b);
+    *apart = distance_rotated((gonio_pair){a.outgoing, a.incident}, b);
     return *apart <= SAME ? RECIPROCAL : NONE;
 }
 

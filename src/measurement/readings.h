@@ -112,8 +112,8 @@ gonio_status gonio_i_readings_group(gonio_context *context, gonio_readings *read
 
 /* How many readings with values are the same directions as another one but for an azimuth where
  * theta is 0. */
-gonio_status gonio_i_readings_count_turned(gonio_context *context, const gonio_readings *readings,
-                                           size_t *turned);
+gonio_status gonio_i_readings_count_pole_repeats(gonio_context *context,
+                                                 const gonio_readings *readings, size_t *repeats);
 
 /* _DATA if a direction is listed more than once for a channel. */
 gonio_status gonio_i_readings_refuse_repeats(gonio_context *context, const gonio_readings *readings,

@@ -101,14 +101,14 @@ gonio_status gonio_i_readings_note(gonio_context *context, gonio_readings *readi
 
 static gonio_status note_poles(gonio_context *context, gonio_readings *readings)
 {
-    size_t turned = 0;
-    const gonio_status status = gonio_i_readings_count_turned(context, readings, &turned);
-    if (status != GONIO_OK || turned == 0) {
+    size_t repeats = 0;
+    const gonio_status status = gonio_i_readings_count_pole_repeats(context, readings, &repeats);
+    if (status != GONIO_OK || repeats == 0) {
         return status;
     }
     return gonio_i_readings_note(context, readings,
                                  "theta = 0 is one direction at any azimuth: %zu reading%s another",
-                                 turned, turned > 1 ? "s repeat" : " repeats");
+                                 repeats, repeats > 1 ? "s repeat" : " repeats");
 }
 
 gonio_status gonio_i_readings_finish(gonio_context *context, gonio_readings *readings,

@@ -27,7 +27,7 @@ const char *gonio_i_readings_format_of(const gonio_i_file *file)
     char head[GONIO_I_HEAD + 1];
     const size_t size = gonio_i_text_plain_head(file->head, file->head_size, head, sizeof head);
     for (int k = 0; k < FORMATS && file->size > 0; k++) {
-        if (formats[k]->probe(head, size)) {
+        if (formats[k]->recognises(head, size)) {
             return formats[k]->name;
         }
     }
@@ -48,8 +48,8 @@ const char *gonio_readings_format_word(int index)
 static const gonio_i_readings_format *find_format(const char *word, const char *text, size_t size)
 {
     size_t k = 0;
-    while (k + 1 < FORMATS &&
-           !(word != NULL ? strcmp(word, formats[k]->word) == 0 : formats[k]->probe(text, size))) {
+    while (k + 1 < FORMATS && !(word != NULL ? strcmp(word, formats[k]->word) == 0
+                                             : formats[k]->recognises(text, size))) {
         k++;
     }
     return formats[k];

@@ -76,14 +76,15 @@ static bool has_value(const gonio_readings *readings, size_t reading)
 
 /* Of the readings in `sorted`, whose azimuths are 0 about the normal: how many have the directions
  * of the one before but other azimuths in the file. */
-static size_t count_turned(const gonio_readings *readings, const indexed_pair *sorted, size_t count)
+static size_t count_repeats(const gonio_readings *readings, const indexed_pair *sorted,
+                            size_t count)
 {
-    size_t turned = 0;
+    size_t repeats = 0;
     for (size_t k = 1; k < count; k++) {
         const bool same = compare_pairs(sorted[k - 1].pair, sorted[k].pair) == 0;
-        turned += same && readings->first_same[sorted[k].index] == sorted[k].index;
+        repeats += same && readings->first_same[sorted[k].index] == sorted[k].index;
     }
-    return turned;
+    return repeats;
 }
 
 /* The readings at the normal, as pair[] has them with azimuths of 0 there. Returns how many. */
@@ -104,8 +105,8 @@ static size_t find_poles(const gonio_readings *readings, gonio_pair *pair, index
     return count;
 }
 
-gonio_status gonio_i_readings_count_turned(gonio_context *context, const gonio_readings *readings,
-                                           size_t *turned)
+gonio_status gonio_i_readings_count_pole_repeats(gonio_context *context,
+                                                 const gonio_readings *readings, size_t *repeats)
 {
     gonio_pair *pair = gonio_i_allocate(context, readings->count, sizeof *pair);
     indexed_pair *sorted = gonio_i_allocate(context, readings->count, sizeof *sorted);
@@ -113,7 +114,7 @@ gonio_status gonio_i_readings_count_turned(gonio_context *context, const gonio_r
     if (done) {
         const size_t count = find_poles(readings, pair, sorted);
         qsort(sorted, count, sizeof *sorted, compare_indexed);
-        *turned = count_turned(readings, sorted, count);
+        *repeats = count_repeats(readings, sorted, count);
     }
     free(pair);
     free(sorted);

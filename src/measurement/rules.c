@@ -86,8 +86,8 @@ double gonio_i_wavelength_twice(const double *wavelength, size_t count)
 
 gonio_angles gonio_i_angles_from_degrees(double theta, double phi)
 {
-    const double turned = fmod(phi < 0.0 ? phi + 360.0 : phi, 360.0);
-    return (gonio_angles){theta * M_PI / 180.0, turned * M_PI / 180.0};
+    const double azimuth = fmod(phi < 0.0 ? phi + 360.0 : phi, 360.0);
+    return (gonio_angles){theta * M_PI / 180.0, azimuth * M_PI / 180.0};
 }
 
 static double to_degrees(double radians)

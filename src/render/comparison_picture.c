@@ -26,32 +26,34 @@ typedef struct layout {
 
 typedef struct drawing {
     gonio_context *context;
-    const gonio_sheet *sheet;
+    const gonio_comparison_picture *picture;
     layout at;
     double largest; /* Delta E_ITP of the brightest colour */
     cairo_surface_t *surface;
     cairo_t *cairo;
 } drawing;
 
-static const gonio_sheet_cell *cell_at(const gonio_sheet *sheet, size_t row, size_t column)
+static const gonio_picture_cell *cell_at(const gonio_comparison_picture *picture, size_t row,
+                                         size_t column)
 {
-    return &sheet->cells[row * sheet->columns + column];
+    return &picture->cells[row * picture->columns + column];
 }
 
 /* ---- layout ---- */
 
-static gonio_status check(gonio_context *context, const gonio_sheet *sheet)
+static gonio_status check(gonio_context *context, const gonio_comparison_picture *picture)
 {
-    const gonio_image *first = sheet->rows > 0 && sheet->columns > 0 ? sheet->cells[0].image : NULL;
+    const gonio_image *first =
+        picture->rows > 0 && picture->columns > 0 ? picture->cells[0].image : NULL;
     if (first == NULL) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "a comparison picture needs images");
     }
-    for (size_t k = 0; k < sheet->rows * sheet->columns; k++) {
-        const gonio_image *image = sheet->cells[k].image;
-        if (image == NULL && k % sheet->columns == 0) {
+    for (size_t k = 0; k < picture->rows * picture->columns; k++) {
+        const gonio_image *image = picture->cells[k].image;
+        if (image == NULL && k % picture->columns == 0) {
             return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
                                 "row %zu of a comparison picture has no reference",
-                                k / sheet->columns + 1);
+                                k / picture->columns + 1);
         }
         if (image != NULL && (image->width != first->width || image->height != first->height)) {
             return gonio_i_fail(
@@ -64,30 +66,32 @@ static gonio_status check(gonio_context *context, const gonio_sheet *sheet)
 }
 
 /* What the longest takes, roughly, within reason: text that is wider becomes smaller. */
-static int width_of_names(const gonio_sheet *sheet, int font)
+static int width_of_names(const gonio_comparison_picture *picture, int font)
 {
     size_t longest = 6;
-    for (size_t row = 0; row < sheet->rows; row++) {
-        const size_t length = strlen(sheet->row_names[row]);
+    for (size_t row = 0; row < picture->rows; row++) {
+        const size_t length = strlen(picture->row_names[row]);
         longest = length > longest ? length : longest;
     }
     return (int)(0.7 * font * (double)(longest < 28 ? longest : 28)) + GAP;
 }
 
-static gonio_status lay_out(gonio_context *context, const gonio_sheet *sheet, layout *at)
+static gonio_status lay_out(gonio_context *context, const gonio_comparison_picture *picture,
+                            layout *at)
 {
-    const gonio_image *first = sheet->cells[0].image;
+    const gonio_image *first = picture->cells[0].image;
     const int shorter = first->width < first->height ? first->width : first->height;
     const int font = shorter / 14 < 10 ? 10 : shorter / 14 > 20 ? 20 : shorter / 14;
     *at = (layout){.cell_width = first->width, .cell_height = first->height, .font = font};
-    at->names = width_of_names(sheet, font);
+    at->names = width_of_names(picture, font);
     at->head = MARGIN + 2 * font;
     at->text = 3 * font + GAP;
-    at->row = at->cell_height * (sheet->differences ? 2 : 1) + at->text + GAP +
-              (sheet->differences ? GAP / 2 : 0);
-    at->foot = MARGIN + (sheet->differences ? 3 * font : 0);
-    const double width = 2.0 * MARGIN + at->names + (double)sheet->columns * (at->cell_width + GAP);
-    const double height = at->head + (double)sheet->rows * at->row + at->foot;
+    at->row = at->cell_height * (picture->differences ? 2 : 1) + at->text + GAP +
+              (picture->differences ? GAP / 2 : 0);
+    at->foot = MARGIN + (picture->differences ? 3 * font : 0);
+    const double width =
+        2.0 * MARGIN + at->names + (double)picture->columns * (at->cell_width + GAP);
+    const double height = at->head + (double)picture->rows * at->row + at->foot;
     if (width > MOST_SIDE || height > MOST_SIDE) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
                             "a comparison picture of %.0f x %.0f pixels: at most %d either way; "
@@ -203,7 +207,7 @@ static void put_map(const drawing *d, const float *map, int left, int top)
     }
 }
 
-static void put_errors(const drawing *d, const gonio_sheet_cell *cell,
+static void put_errors(const drawing *d, const gonio_picture_cell *cell,
                        const gonio_image_error *error, int left, int top)
 {
     char e6[48] = "";
@@ -227,7 +231,7 @@ static void put_errors(const drawing *d, const gonio_sheet_cell *cell,
 static gonio_status put_cell(const drawing *d, size_t row, size_t column, const gonio_tone *tone,
                              float *map)
 {
-    const gonio_sheet_cell *cell = cell_at(d->sheet, row, column);
+    const gonio_picture_cell *cell = cell_at(d->picture, row, column);
     const int left = left_of(&d->at, column);
     const int top = top_of(&d->at, row);
     const int below = top + d->at.cell_height;
@@ -239,33 +243,33 @@ static gonio_status put_cell(const drawing *d, size_t row, size_t column, const 
         return GONIO_OK;
     }
     gonio_image_error error;
-    const gonio_status status = gonio_image_compare(d->context, cell_at(d->sheet, row, 0)->image,
+    const gonio_status status = gonio_image_compare(d->context, cell_at(d->picture, row, 0)->image,
                                                     cell->image, tone, &error, map);
-    if (status == GONIO_OK && d->sheet->differences) {
+    if (status == GONIO_OK && d->picture->differences) {
         put_map(d, map, left, below + GAP / 2);
     }
     if (status == GONIO_OK) {
         cairo_surface_mark_dirty(d->surface);
         put_errors(d, cell, &error, left,
-                   below + (d->sheet->differences ? d->at.cell_height + GAP / 2 : 0));
+                   below + (d->picture->differences ? d->at.cell_height + GAP / 2 : 0));
     }
     return status;
 }
 
 static gonio_status put_row(const drawing *d, size_t row, float *map)
 {
-    const gonio_tone tone = gonio_tone_measure(cell_at(d->sheet, row, 0)->image, d->sheet->key);
+    const gonio_tone tone = gonio_tone_measure(cell_at(d->picture, row, 0)->image, d->picture->key);
     const double middle = top_of(&d->at, row) + 0.5 * d->at.cell_height;
     gonio_status status = GONIO_OK;
     cairo_surface_flush(d->surface);
-    for (size_t column = 0; column < d->sheet->columns && status == GONIO_OK; column++) {
+    for (size_t column = 0; column < d->picture->columns && status == GONIO_OK; column++) {
         status = put_cell(d, row, column, &tone, map);
         cairo_surface_flush(d->surface);
     }
     cairo_surface_mark_dirty(d->surface);
-    put_text(d, d->sheet->row_names[row], MARGIN + 0.5 * d->at.names - GAP / 2.0, middle,
+    put_text(d, d->picture->row_names[row], MARGIN + 0.5 * d->at.names - GAP / 2.0, middle,
              d->at.names - GAP, true);
-    if (d->sheet->differences) {
+    if (d->picture->differences) {
         put_text(d,
                  "\xce\x94"
                  "E_ITP",
@@ -309,15 +313,15 @@ static gonio_status draw(const drawing *d)
     cairo_set_source_rgb(d->cairo, 1.0, 1.0, 1.0);
     cairo_paint(d->cairo);
     cairo_set_source_rgb(d->cairo, 0.1, 0.1, 0.1);
-    for (size_t column = 0; column < d->sheet->columns; column++) {
-        put_text(d, d->sheet->column_names[column],
+    for (size_t column = 0; column < d->picture->columns; column++) {
+        put_text(d, d->picture->column_names[column],
                  left_of(&d->at, column) + 0.5 * d->at.cell_width, MARGIN + 1.2 * d->at.font,
                  d->at.cell_width, true);
     }
-    for (size_t row = 0; row < d->sheet->rows && status == GONIO_OK; row++) {
+    for (size_t row = 0; row < d->picture->rows && status == GONIO_OK; row++) {
         status = put_row(d, row, map);
     }
-    if (status == GONIO_OK && d->sheet->differences) {
+    if (status == GONIO_OK && d->picture->differences) {
         put_scale(d);
     }
     free(map);
@@ -355,12 +359,13 @@ static gonio_status write_surface(const drawing *d, const char *path)
     return status;
 }
 
-gonio_status gonio_sheet_write_png(gonio_context *context, const gonio_sheet *sheet,
-                                   const char *path)
+gonio_status gonio_comparison_picture_write_png(gonio_context *context,
+                                                const gonio_comparison_picture *picture,
+                                                const char *path)
 {
-    gonio_sheet taken;
-    drawing d = {.context = context, .sheet = &taken};
-    gonio_status status = GONIO_I_TAKE_PLAIN(context, gonio_sheet, sheet, &taken);
+    gonio_comparison_picture taken;
+    drawing d = {.context = context, .picture = &taken};
+    gonio_status status = GONIO_I_TAKE_PLAIN(context, gonio_comparison_picture, picture, &taken);
     if (status == GONIO_OK) {
         status = check(context, &taken);
     }

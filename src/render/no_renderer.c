@@ -110,10 +110,11 @@ gonio_status gonio_reference_compare(gonio_context *context, const gonio_referen
     return not_built(context);
 }
 
-gonio_status gonio_sheet_write_png(gonio_context *context, const gonio_sheet *sheet,
-                                   const char *path)
+gonio_status gonio_comparison_picture_write_png(gonio_context *context,
+                                                const gonio_comparison_picture *picture,
+                                                const char *path)
 {
-    (void)sheet;
+    (void)picture;
     (void)path;
     return not_built(context);
 }

@@ -1,5 +1,5 @@
 #!/bin/bash
-# gonio reproduce: what it leaves, that a stopped run or a team of processes leaves the same, and
+# gonio reproduce: what it leaves, that a stopped run or a group of processes leaves the same, and
 # input that it cannot use.
 . "$(dirname "$0")/lib.sh"
 
@@ -91,13 +91,13 @@ if command -v mpirun >/dev/null && mpirun -n 1 "$GONIO" reproduce atlas:oak-sawn
         checks=$((checks + 1))
         # shellcheck disable=SC2086
         timeout 300 mpirun --oversubscribe -n $size "$GONIO" reproduce $materials $few --threads 1 \
-            -o team-$size >"$root/work/stdout" 2>&1 ||
+            -o group-$size >"$root/work/stdout" 2>&1 ||
             failed "mpirun -n $size" "$(cat "$root/work/stdout")"
         expect_true "one of $size processes speaks" test "$(grep -c 'see report.md' "$root/work/stdout")" -eq 1
-        same_few "a team of $size" team-$size
+        same_few "a group of $size" group-$size
     done
 else
-    skip 'teams: no mpirun, or built without MPI'
+    skip 'groups: no mpirun, or built without MPI'
 fi
 
 # ---- pieces that somebody has written, with right checksums ----

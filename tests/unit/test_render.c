@@ -368,16 +368,16 @@ static void what_was_not_initialised_is_refused(void **state)
     gonio_material *material = made_material((made_constant){{0.3, 0.2, 0.1}, NULL});
     for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++) {
         const gonio_render_options options = {.size = sizes[k]};
-        const gonio_sheet sheet = {.size = sizes[k]};
+        const gonio_comparison_picture picture = {.size = sizes[k]};
         gonio_image *image = NULL;
         gonio_reference *reference = NULL;
         assert_int_equal(gonio_render(context, material, &options, &image), GONIO_ERROR_ARGUMENT);
         assert_non_null(strstr(support_message(), "call gonio_render_options_default first"));
         assert_int_equal(gonio_reference_create(context, material, &options, &reference),
                          GONIO_ERROR_ARGUMENT);
-        assert_int_equal(gonio_sheet_write_png(context, &sheet, "/nonexistent"),
+        assert_int_equal(gonio_comparison_picture_write_png(context, &picture, "/nonexistent"),
                          GONIO_ERROR_ARGUMENT);
-        assert_non_null(strstr(support_message(), "set .size = sizeof(gonio_sheet)"));
+        assert_non_null(strstr(support_message(), "set .size = sizeof(gonio_comparison_picture)"));
         assert_true(image == NULL && reference == NULL);
     }
     gonio_material_free(&material);

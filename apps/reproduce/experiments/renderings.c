@@ -261,7 +261,7 @@ bool gonio_i_accept_rendering(const gonio_i_study *study, const gonio_i_piece *p
 /* ---- the picture ---- */
 
 typedef struct picture {
-    gonio_sheet_cell cell[MOST_ROWS * (MOST_COLUMNS + 1)];
+    gonio_picture_cell cell[MOST_ROWS * (MOST_COLUMNS + 1)];
     gonio_image *image[MOST_ROWS * (MOST_COLUMNS + 1)];
     char *row[MOST_ROWS];
     char *column[MOST_COLUMNS + 1];
@@ -277,12 +277,12 @@ static gonio_status fill(gonio_context *context, const gonio_i_study *study, con
         if (k % l->columns == 0) {
             status = image_from(context, json_object_get(piece, "original"), side_of(study),
                                 &p->image[at - 1]);
-            p->cell[at - 1] = (gonio_sheet_cell){p->image[at - 1], NAN};
+            p->cell[at - 1] = (gonio_picture_cell){p->image[at - 1], NAN};
         }
         if (status == GONIO_OK) {
             status =
                 image_from(context, json_object_get(piece, "image"), side_of(study), &p->image[at]);
-            p->cell[at] = (gonio_sheet_cell){
+            p->cell[at] = (gonio_picture_cell){
                 p->image[at], gonio_i_json_number(json_object_get(piece, "e6_percent"))};
         }
     }
@@ -340,14 +340,14 @@ gonio_status gonio_i_draw_renderings(gonio_context *context, const gonio_i_study
         status = gonio_i_make_folder(context, folder);
     }
     if (status == GONIO_OK) {
-        const gonio_sheet sheet = {.size = sizeof sheet,
-                                   .rows = l.rows,
-                                   .columns = l.columns + 1,
-                                   .row_names = (const char *const *)p.row,
-                                   .column_names = (const char *const *)p.column,
-                                   .cells = p.cell,
-                                   .key = 0.18};
-        status = gonio_sheet_write_png(context, &sheet, path);
+        const gonio_comparison_picture drawn = {.size = sizeof drawn,
+                                                .rows = l.rows,
+                                                .columns = l.columns + 1,
+                                                .row_names = (const char *const *)p.row,
+                                                .column_names = (const char *const *)p.column,
+                                                .cells = p.cell,
+                                                .key = 0.18};
+        status = gonio_comparison_picture_write_png(context, &drawn, path);
     }
     free(path);
     free_picture(&p);

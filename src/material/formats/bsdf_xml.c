@@ -379,10 +379,10 @@ static gonio_status open_xml(gonio_context *context, const gonio_i_file *file,
     return GONIO_OK;
 }
 
-static bool probe(const gonio_i_file *file)
+static bool recognises(const gonio_i_file *file)
 {
     return memmem(file->head, file->head_size, "<WindowElement", 14) != NULL ||
            memmem(file->head, file->head_size, ":WindowElement", 14) != NULL;
 }
 
-const gonio_i_format_reader gonio_i_bsdf_xml_reader = {"BSDF-XML", probe, open_xml};
+const gonio_i_format_reader gonio_i_bsdf_xml_reader = {"BSDF-XML", recognises, open_xml};

@@ -10,7 +10,7 @@
 typedef struct gonio_i_format_reader {
     const char *name; /* for "this file is not one of: ..." */
     /* Whether the content (never the name) looks like this format. */
-    bool (*probe)(const gonio_i_file *file);
+    bool (*recognises)(const gonio_i_file *file);
     /* Opens the file. Gives a source and a text that describes it, to be released with free().
      * The text is NULL if out of memory; the caller reports this. */
     gonio_status (*open)(gonio_context *context, const gonio_i_file *file,

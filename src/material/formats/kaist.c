@@ -196,11 +196,11 @@ static gonio_status open_kaist(gonio_context *context, const gonio_i_file *file,
     return GONIO_OK;
 }
 
-static bool probe(const gonio_i_file *file)
+static bool recognises(const gonio_i_file *file)
 {
-    return gonio_i_tensor_probe((const unsigned char *)file->head, file->head_size) &&
+    return gonio_i_tensor_recognises((const unsigned char *)file->head, file->head_size) &&
            memmem(file->head, file->head_size, "wvls", 4) != NULL &&
            memmem(file->head, file->head_size, "vndf", 4) == NULL;
 }
 
-const gonio_i_format_reader gonio_i_kaist_reader = {"KAIST .pbsdf", probe, open_kaist};
+const gonio_i_format_reader gonio_i_kaist_reader = {"KAIST .pbsdf", recognises, open_kaist};

@@ -52,7 +52,7 @@ static uint64_t table_size(const gonio_i_file *file)
     return __builtin_mul_overflow(bins, UINT64_C(24), &size) ? 0 : size + HEADER;
 }
 
-static bool probe(const gonio_i_file *file)
+static bool recognises(const gonio_i_file *file)
 {
     if (file->head_size < HEADER) {
         return false;
@@ -286,7 +286,7 @@ static gonio_status open_table(gonio_context *context, const gonio_i_file *file,
     return GONIO_OK;
 }
 
-const gonio_i_format_reader gonio_i_merl_reader = {"MERL .binary table", probe, open_table};
+const gonio_i_format_reader gonio_i_merl_reader = {"MERL .binary table", recognises, open_table};
 
 GONIO_I_VECTORISED static void to_stored(double *values, int channel)
 {

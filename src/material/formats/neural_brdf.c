@@ -20,7 +20,7 @@ typedef struct network {
     double bias[LAYERS][HIDDEN];
 } network;
 
-static bool probe(const gonio_i_file *file)
+static bool recognises(const gonio_i_file *file)
 {
     static const unsigned char signature[8] = {0x89, 'H', 'D', 'F', '\r', '\n', 0x1a, '\n'};
     return file->head_size >= sizeof signature &&
@@ -261,4 +261,4 @@ static gonio_status open_network(gonio_context *context, const gonio_i_file *fil
     return GONIO_OK;
 }
 
-const gonio_i_format_reader gonio_i_neural_reader = {"neural BRDF .h5", probe, open_network};
+const gonio_i_format_reader gonio_i_neural_reader = {"neural BRDF .h5", recognises, open_network};

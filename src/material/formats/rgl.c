@@ -404,10 +404,10 @@ static gonio_status open_rgl(gonio_context *context, const gonio_i_file *file,
 }
 
 /* Tensor files of two kinds begin alike; the names of the fields stand near the start. */
-static bool probe(const gonio_i_file *file)
+static bool recognises(const gonio_i_file *file)
 {
-    return gonio_i_tensor_probe((const unsigned char *)file->head, file->head_size) &&
+    return gonio_i_tensor_recognises((const unsigned char *)file->head, file->head_size) &&
            memmem(file->head, file->head_size, "vndf", 4) != NULL;
 }
 
-const gonio_i_format_reader gonio_i_rgl_reader = {"RGL .bsdf", probe, open_rgl};
+const gonio_i_format_reader gonio_i_rgl_reader = {"RGL .bsdf", recognises, open_rgl};

@@ -17,7 +17,7 @@ static bool flag_of(const gonio_i_rgl *rgl, size_t k)
            (rgl->valid[k / 8] & (0x80U >> (k % 8))) != 0;
 }
 
-static double turned(double phi)
+static double from_zero(double phi)
 {
     return phi - 2.0 * M_PI * floor(phi / (2.0 * M_PI));
 }
@@ -62,8 +62,8 @@ gonio_i_rgl_sample gonio_i_rgl_sample_of(const gonio_i_rgl *rgl, size_t k, doubl
         value[c] = held >= 0.0 && to.cosine_o > 0.0 && isfinite(held) ? held : NAN;
     }
     return (gonio_i_rgl_sample){
-        .pair = {{incident.theta, turned(incident.phi)},
-                 {to.outgoing.theta, turned(to.outgoing.phi + incident.phi)}},
+        .pair = {{incident.theta, from_zero(incident.phi)},
+                 {to.outgoing.theta, from_zero(to.outgoing.phi + incident.phi)}},
         .flag = flag_of(rgl, k)};
 }
 

@@ -211,11 +211,11 @@ static gonio_status open_table(gonio_context *context, const gonio_i_file *file,
 }
 
 /* HDF5 with the format's name, which stands near the start. */
-static bool probe(const gonio_i_file *file)
+static bool recognises(const gonio_i_file *file)
 {
     static const char name[] = GONIO_I_TABLE_FORMAT;
     return gonio_i_file_begins(file, "\x89HDF\r\n\x1a\n", 8) &&
            memmem(file->head, file->head_size, name, sizeof name - 1) != NULL;
 }
 
-const gonio_i_format_reader gonio_i_table_reader = {"gonio BRDF table .h5", probe, open_table};
+const gonio_i_format_reader gonio_i_table_reader = {"gonio BRDF table .h5", recognises, open_table};

@@ -193,7 +193,7 @@ static gonio_status open_utia(gonio_context *context, const gonio_i_file *file,
 }
 
 /* By the size, and numbers at the beginning that can be values. */
-static bool probe(const gonio_i_file *file)
+static bool recognises(const gonio_i_file *file)
 {
     if (file->size != BYTES) {
         return false;
@@ -209,4 +209,4 @@ static bool probe(const gonio_i_file *file)
     return true;
 }
 
-const gonio_i_format_reader gonio_i_utia_reader = {"UTIA .bin", probe, open_utia};
+const gonio_i_format_reader gonio_i_utia_reader = {"UTIA .bin", recognises, open_utia};

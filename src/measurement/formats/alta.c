@@ -199,11 +199,11 @@ static gonio_status read(gonio_i_readings_file *file, gonio_readings *readings)
     return gonio_i_import_end(&in, read_rows(&n, &in, &h));
 }
 
-static bool probe(const char *text, size_t size)
+static bool recognises(const char *text, size_t size)
 {
     return text[0] == '#' && memmem(text, size, "#DIM ", 5) != NULL &&
            memmem(text, size, "#PARAM_IN", 9) != NULL;
 }
 
 const gonio_i_readings_format gonio_i_readings_alta = {
-    .word = "alta", .name = "ALTA data", .probe = probe, .read = read};
+    .word = "alta", .name = "ALTA data", .recognises = recognises, .read = read};

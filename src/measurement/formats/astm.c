@@ -192,11 +192,11 @@ static gonio_status read(gonio_i_readings_file *file, gonio_readings *readings)
     return gonio_i_import_end(&in, read_table(file, vars, &in));
 }
 
-static bool probe(const char *text, size_t size)
+static bool recognises(const char *text, size_t size)
 {
     const char *vars = find_key(text, size, "VARS");
     return vars != NULL && is_name(vars + 4 + strspn(vars + 4, " \t"), "theta_i");
 }
 
 const gonio_i_readings_format gonio_i_readings_astm = {
-    .word = "astm", .name = "ASTM E1392 table", .probe = probe, .read = read};
+    .word = "astm", .name = "ASTM E1392 table", .recognises = recognises, .read = read};

@@ -413,7 +413,7 @@ static gonio_status read(gonio_i_readings_file *file, gonio_readings *readings)
     return status;
 }
 
-static bool probe(const char *text, size_t size)
+static bool recognises(const char *text, size_t size)
 {
     return gonio_i_json_has(text, size, "\"BRDF\"");
 }
@@ -421,6 +421,6 @@ static bool probe(const char *text, size_t size)
 const gonio_i_readings_format gonio_i_readings_brdf_json = {.word = "json",
                                                             .name = "BRDF JSON",
                                                             .extensions = {".json", ".brdf"},
-                                                            .probe = probe,
+                                                            .recognises = recognises,
                                                             .read = read,
                                                             .print = gonio_i_brdf_json_print};

@@ -34,7 +34,7 @@ static void print_number(FILE *stream, double number)
 /* ---- the columns ---- */
 
 /* From 0 to below 360, also when it is printed. */
-static double turned(double degrees)
+static double from_zero(double degrees)
 {
     const double rest = fmod(degrees, 360.0);
     const double turn = rest < 0.0 ? rest + 360.0 : rest;
@@ -46,7 +46,7 @@ static void print_angle(const printer *p, size_t reading, size_t channel)
 {
     const double degrees = gonio_i_readings_degrees(p->readings, reading, p->angle);
     (void)channel;
-    fprintf(p->stream, "%.12g", p->angle % 2 == 1 ? turned(degrees) : degrees);
+    fprintf(p->stream, "%.12g", p->angle % 2 == 1 ? from_zero(degrees) : degrees);
 }
 
 static void print_wavelength(const printer *p, size_t reading, size_t channel)

@@ -14,7 +14,7 @@
 
 /* Column names between commas, semicolons or tabs, or none yet. What is wrong with them is for the
  * reader to say. */
-static bool probe(const char *text, size_t size)
+static bool recognises(const char *text, size_t size)
 {
     gonio_i_csv_lines lines;
     const char *line = NULL;
@@ -389,5 +389,8 @@ static gonio_status read(gonio_i_readings_file *file, gonio_readings *readings)
     return status;
 }
 
-const gonio_i_readings_format gonio_i_readings_csv = {
-    .word = "csv", .name = "CSV", .probe = probe, .read = read, .print = gonio_i_csv_print};
+const gonio_i_readings_format gonio_i_readings_csv = {.word = "csv",
+                                                      .name = "CSV",
+                                                      .recognises = recognises,
+                                                      .read = read,
+                                                      .print = gonio_i_csv_print};

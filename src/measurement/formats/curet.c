@@ -173,7 +173,7 @@ static gonio_status read(gonio_i_readings_file *file, gonio_readings *readings)
 }
 
 /* A whole number and 205 numbers in the first line. */
-static bool probe(const char *text, size_t size)
+static bool recognises(const char *text, size_t size)
 {
     gonio_i_numbers n = gonio_i_numbers_of(NULL, "", text, size, '#');
     double row[ROW];
@@ -181,4 +181,4 @@ static bool probe(const char *text, size_t size)
 }
 
 const gonio_i_readings_format gonio_i_readings_curet = {
-    .word = "curet", .name = "CUReT", .probe = probe, .read = read};
+    .word = "curet", .name = "CUReT", .recognises = recognises, .read = read};

@@ -1,10 +1,11 @@
 /* File formats of readings: one file and one name in the list below each.
  *
- * A file is read whole, once; its first format whose probe accepts it reads it. The reader says
- * what its numbers stand for and its channels, and adds one row after another (../import.h, which
- * turns angles and values into gonio's, leaves out what is no reading, and says in a note what the
- * file was taken for). It puts comments into readings->comment, and what else it wants to write
- * again into readings->attachment. Numbers are read and printed with decimal points in any locale.
+ * A file is read whole, once; the first format that recognises it reads it. The reader
+ * says what its numbers stand for and its channels, and adds one row after another (../import.h,
+ * which turns angles and values into gonio's, leaves out what is no reading, and says in a note
+ * what the file was taken for). It puts comments into readings->comment, and what else it wants to
+ * write again into readings->attachment. Numbers are read and printed with decimal points in any
+ * locale.
  */
 #ifndef GONIO_READINGS_FORMAT_H
 #define GONIO_READINGS_FORMAT_H
@@ -28,7 +29,7 @@ typedef struct gonio_i_readings_format {
     const char *extensions[2]; /* of files that are written so; CSV is written by any other name */
 
     /* Whether a text is of this format, by its content; text[size] is 0. */
-    bool (*probe)(const char *text, size_t size);
+    bool (*recognises)(const char *text, size_t size);
 
     /* Fills in readings that have path and options. */
     gonio_status (*read)(gonio_i_readings_file *file, gonio_readings *readings);

@@ -125,10 +125,10 @@ static gonio_status read(gonio_i_readings_file *file, gonio_readings *readings)
     return gonio_i_import_end(&in, read_lines(&n, &in));
 }
 
-static bool probe(const char *text, size_t size)
+static bool recognises(const char *text, size_t size)
 {
     return memmem(text, size, "bsdf_data", 9) != NULL;
 }
 
 const gonio_i_readings_format gonio_i_readings_fred = {
-    .word = "fred", .name = "FRED text", .probe = probe, .read = read};
+    .word = "fred", .name = "FRED text", .recognises = recognises, .read = read};

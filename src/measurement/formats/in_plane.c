@@ -173,7 +173,7 @@ static const char *find_names(const char *text, const char *end, const char **st
 
 /* Names in a comment are no CSV; of names with commas between them only the table of two angles is
  * meant here. */
-static bool probe(const char *text, size_t size)
+static bool recognises(const char *text, size_t size)
 {
     const char *stop = NULL;
     columns c = {0};
@@ -331,4 +331,4 @@ static gonio_status read(gonio_i_readings_file *file, gonio_readings *readings)
 }
 
 const gonio_i_readings_format gonio_i_readings_in_plane = {
-    .word = "in-plane", .name = "columns of text", .probe = probe, .read = read};
+    .word = "in-plane", .name = "columns of text", .recognises = recognises, .read = read};

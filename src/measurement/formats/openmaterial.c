@@ -76,7 +76,7 @@ static gonio_status read(gonio_i_readings_file *file, gonio_readings *readings)
     return gonio_i_import_end(&in, status);
 }
 
-static bool probe(const char *text, size_t size)
+static bool recognises(const char *text, size_t size)
 {
     return gonio_i_json_has(text, size, "material_brdf_schema") ||
            gonio_i_json_has(text, size, "\"lookupTable\"") ||
@@ -84,4 +84,4 @@ static bool probe(const char *text, size_t size)
 }
 
 const gonio_i_readings_format gonio_i_readings_openmaterial = {
-    .word = "openmaterial", .name = "OpenMATERIAL", .probe = probe, .read = read};
+    .word = "openmaterial", .name = "OpenMATERIAL", .recognises = recognises, .read = read};

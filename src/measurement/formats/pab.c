@@ -164,7 +164,7 @@ static gonio_status read(gonio_i_readings_file *file, gonio_readings *readings)
     return gonio_i_import_end(&in, read_rows(&n, &in, &h));
 }
 
-static bool probe(const char *text, size_t size)
+static bool recognises(const char *text, size_t size)
 {
     return text[0] == '#' && memmem(text, size, "#format", 7) != NULL &&
            (memmem(text, size, "#intheta", 8) != NULL ||
@@ -172,4 +172,4 @@ static bool probe(const char *text, size_t size)
 }
 
 const gonio_i_readings_format gonio_i_readings_pab = {
-    .word = "pab", .name = "pab-opto text", .probe = probe, .read = read};
+    .word = "pab", .name = "pab-opto text", .recognises = recognises, .read = read};

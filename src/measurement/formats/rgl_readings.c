@@ -66,10 +66,10 @@ static gonio_status read(gonio_i_readings_file *file, gonio_readings *readings)
     return gonio_i_import_end(&in, status);
 }
 
-static bool probe(const char *text, size_t size)
+static bool recognises(const char *text, size_t size)
 {
-    return gonio_i_tensor_probe((const unsigned char *)text, size);
+    return gonio_i_tensor_recognises((const unsigned char *)text, size);
 }
 
 const gonio_i_readings_format gonio_i_readings_rgl = {
-    .word = "rgl", .name = "samples of RGL files", .probe = probe, .read = read};
+    .word = "rgl", .name = "samples of RGL files", .recognises = recognises, .read = read};

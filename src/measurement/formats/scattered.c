@@ -32,7 +32,7 @@ static bool begins_with_wavelengths(gonio_i_numbers *n, size_t most)
 
 /* A text that begins with a whole number and as many wavelengths: in a CSV file there are names.
  * What is wrong with their values is for the reader to say. */
-static bool probe(const char *text, size_t size)
+static bool recognises(const char *text, size_t size)
 {
     gonio_i_numbers n = gonio_i_numbers_of(NULL, "", text, size, '#');
     char word[GONIO_I_WORD] = "";
@@ -108,5 +108,7 @@ static gonio_status read(gonio_i_readings_file *file, gonio_readings *readings)
     return gonio_i_import_end(&in, read_rows(&n, &in));
 }
 
-const gonio_i_readings_format gonio_i_readings_scattered = {
-    .word = "scattered", .name = "scattered readings as text", .probe = probe, .read = read};
+const gonio_i_readings_format gonio_i_readings_scattered = {.word = "scattered",
+                                                            .name = "scattered readings as text",
+                                                            .recognises = recognises,
+                                                            .read = read};

@@ -109,10 +109,10 @@ static gonio_status read(gonio_i_readings_file *file, gonio_readings *readings)
     return gonio_i_import_end(&in, status);
 }
 
-static bool probe(const char *text, size_t size)
+static bool recognises(const char *text, size_t size)
 {
     return memmem(text, size, heading, strlen(heading)) != NULL;
 }
 
 const gonio_i_readings_format gonio_i_readings_tracepro = {
-    .word = "tracepro", .name = "TracePro table", .probe = probe, .read = read};
+    .word = "tracepro", .name = "TracePro table", .recognises = recognises, .read = read};

@@ -248,11 +248,11 @@ static gonio_status read(gonio_i_readings_file *file, gonio_readings *readings)
 }
 
 /* The comments before the first word may be longer than what is looked at. */
-static bool probe(const char *text, size_t size)
+static bool recognises(const char *text, size_t size)
 {
     return memmem(text, size, "AngleOfIncidence", 16) != NULL &&
            memmem(text, size, "ScatterAzimuth", 14) != NULL;
 }
 
 const gonio_i_readings_format gonio_i_readings_zemax = {
-    .word = "zemax", .name = "Zemax BSDF", .probe = probe, .read = read};
+    .word = "zemax", .name = "Zemax BSDF", .recognises = recognises, .read = read};

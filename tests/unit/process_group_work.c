@@ -1,5 +1,5 @@
-/* Work in pieces by a group: team-pieces FOLDER [FAILING_RANK]. Started by mpirun or alone. Rank 0
- * prints the sum of all results. */
+/* Work in pieces by a group: process-group-work FOLDER [FAILING_RANK]. Started by mpirun or alone.
+ * Rank 0 prints the sum of all results. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -79,7 +79,7 @@ int main(int argc, char **argv)
     gonio_context *context = NULL;
     const gonio_context_options options = {
         .size = sizeof options, .message = on_message, .threads = 1};
-    if (argc > 1 && process_group_join(&group, "team-pieces") &&
+    if (argc > 1 && process_group_join(&group, "process-group-work") &&
         gonio_context_create(&context, &options) == GONIO_OK) {
         task t = {group.rank, argc > 2 ? atoi(argv[2]) : -1};
         code = run(context, argv[1], &group, &t) == GONIO_OK ? 0 : 1;

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# A team of 1, 2 and 3 processes leaves the same bytes as one alone, and one that fails ends all:
-# test_team.sh TEAM_PIECES WITH_MPI
+# A group of 1, 2 and 3 processes leaves the same bytes as one alone, and one that fails ends all:
+# test_process_group.sh PROGRAM WITH_MPI
 set -euo pipefail
-team_pieces=$1
+program=$1
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
@@ -11,14 +11,14 @@ fail() {
     exit 1
 }
 
-[ "$("$team_pieces" "$scratch/alone")" = "sum 145.000 by 1" ] || fail "alone: another sum"
+[ "$("$program" "$scratch/alone")" = "sum 145.000 by 1" ] || fail "alone: another sum"
 
 if [ "$2" != TRUE ]; then
-    if OMPI_COMM_WORLD_SIZE=2 "$team_pieces" "$scratch/no" 2>"$scratch/message"; then
+    if OMPI_COMM_WORLD_SIZE=2 "$program" "$scratch/no" 2>"$scratch/message"; then
         fail "a program without MPI must not run under mpirun"
     fi
     grep -q "built without MPI" "$scratch/message" || fail "no word about MPI: $(cat "$scratch/message")"
-    echo "SKIPPED: teams by mpirun, as gonio is built without MPI"
+    echo "SKIPPED: groups by mpirun, as gonio is built without MPI"
     exit 0
 fi
 command -v mpirun >/dev/null || { echo "SKIPPED: there is no mpirun"; exit 0; }
@@ -28,12 +28,12 @@ export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 ASAN_OPTIONS=de
 run() {
     local size=$1
     shift
-    timeout 60 mpirun --oversubscribe -n "$size" "$team_pieces" "$@"
+    timeout 60 mpirun --oversubscribe -n "$size" "$program" "$@"
 }
 
 for size in 1 2 3; do
-    [ "$(run $size "$scratch/team-$size")" = "sum 145.000 by $size" ] || fail "$size: another sum"
-    diff -r "$scratch/alone" "$scratch/team-$size" || fail "$size processes leave other files than one"
+    [ "$(run $size "$scratch/group-$size")" = "sum 145.000 by $size" ] || fail "$size: another sum"
+    diff -r "$scratch/alone" "$scratch/group-$size" || fail "$size processes leave other files than one"
 done
 
 # The others wait at the barrier, and must not do so forever.
