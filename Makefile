@@ -10,7 +10,7 @@ JOBS ?= $(shell nproc)
 # What the tests of a build left, by which their times are shown.
 RESULTS = build/release/tests.xml build/sanitize/tests.xml
 
-.PHONY: all demo check test sanitize style times fuzz bench coverage install clean
+.PHONY: all demo check test sanitize style times fuzz bench coverage install python clean
 
 all:
 	scripts/install-dependencies.sh $(INSTALL) build
@@ -76,5 +76,10 @@ coverage: check-tools
 install: all
 	cmake --install build/release
 
+# The Python package: a wheel with all that it needs but Python and NumPy.
+python: all
+	scripts/install-dependencies.sh $(INSTALL) python
+	scripts/make-wheel.sh build/release build/wheel
+
 clean:
-	rm -rf build
+	rm -rf build python/build

@@ -1,9 +1,9 @@
 #!/bin/sh
 # Formatting, lint and man pages: check-style.sh BUILD, with BUILD's compile_commands.json.
 set -eu
-build=$1
+build=$(cd "$1" && pwd)
 cd "$(dirname "$0")/.."
-sources=$(find include src apps tests bench examples -name '*.[ch]' 2>/dev/null | sort)
+sources=$(find include src apps tests bench examples python -name '*.[ch]' 2>/dev/null | sort)
 
 # Other versions format differently, so only the one that the code was formatted with judges.
 if clang-format --version | grep -q 'version 14\.'; then
@@ -26,6 +26,13 @@ if [ -d viewer/node_modules/typescript ]; then
     echo "viewer: fine"
 else
     echo "viewer: skipped, its packages are not there (make with Node.js fetches them)"
+fi
+
+if command -v mypy >/dev/null; then
+    (cd python && mypy --no-error-summary --cache-dir="$build/mypy")
+    echo "mypy: fine"
+else
+    echo "mypy: skipped, it is not there"
 fi
 
 mandoc -Tlint -Wwarning docs/man/*.1

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Installs the Debian or Ubuntu packages that are missing: install-dependencies.sh yes|no build|check|fuzz
+# Installs the Debian or Ubuntu packages that are missing: install-dependencies.sh yes|no build|python|check|fuzz
 # "no" only looks. sudo is asked for only if needed and not root. Node.js, with which the page of gonio
 # report is built, may also come from elsewhere than Debian; without it all else is built.
 set -eu
@@ -7,9 +7,13 @@ set -eu
 packages="gcc libc6-dev make cmake ninja-build pkg-config libopenblas-dev liblapacke-dev libhdf5-dev
 libxxhash-dev libcsv-dev libjansson-dev libpopt-dev zlib1g-dev libexpat1-dev libembree-dev libopenexr-dev libassimp-dev
 libpng-dev libcairo2-dev"
+if [ "$2" = python ] || [ "$2" = check ]; then
+    packages="$packages python3-dev python3-numpy python3-cffi python3-setuptools python3-wheel python3-pip patchelf"
+fi
 if [ "$2" = check ]; then
     packages="$packages libcmocka-dev clang-format clang-tidy libomp-dev mandoc gnuplot-nox
-libopenmpi-dev openmpi-bin jq locales openssl python3-numpy"
+libopenmpi-dev openmpi-bin jq locales openssl python3-venv python3-pytest python3-hypothesis mypy python3-sklearn
+python3-pandas python3-xarray python3-matplotlib python3-tqdm"
 fi
 
 if [ "$2" = fuzz ]; then

@@ -1,0 +1,78 @@
+"""Reports: the interactive page of a material and its reconstruction, in a notebook or a file."""
+from __future__ import annotations
+
+import html
+import pathlib
+import tempfile
+from typing import Any, Optional
+
+from . import _calls
+from ._backend import ffi, lib
+from ._materials import Material, as_material
+from ._readings import Path, Readings
+from ._reconstruction import Reconstruction
+
+
+class Report:
+    """A page for a browser, one file that needs no network. It shows itself in a notebook.
+
+    Attributes
+    ----------
+    html : str
+        The page.
+    """
+
+    def __init__(self, page: str) -> None:
+        self.html = page
+
+    def save(self, path: Path) -> None:
+        """Writes the page."""
+        pathlib.Path(path).write_text(self.html, encoding="utf-8")
+
+    def __repr__(self) -> str:
+        return f"<gonio.Report of {len(self.html) / 1e6:.1f} MB: show it in a notebook, or save(path)>"
+
+    def _repr_html_(self) -> str:
+        page = html.escape(self.html, quote=True)
+        return f'<iframe srcdoc="{page}" style="width:100%;height:900px;border:0" title="gonio report"></iframe>'
+
+
+def report(material: Any, reconstruction: Any = None, *, readings: Optional[Readings] = None,
+           deviation: Optional[Material] = None) -> Report:
+    """An interactive page of a material.
+
+    Parameters
+    ----------
+    material : Material, Reconstruction, or what a material is made of
+        What is shown; with `reconstruction` the reference.
+    reconstruction : alike, optional
+        Shown beside it, with the difference. A `Reconstruction` brings its readings and standard deviations with it.
+    readings : Readings, optional
+        The directions that were measured.
+    deviation : Material, optional
+        `Reconstruction.deviation_material`.
+
+    Returns
+    -------
+    Report
+
+    Source: ``gonio/page.h`` (gonio_page_write). The library has it only if it was built with Node.js.
+    """
+    shown = reconstruction if reconstruction is not None else material
+    if isinstance(shown, Reconstruction):
+        readings = shown.readings if readings is None else readings
+        if deviation is None and reconstruction is not None and shown.field is not None:
+            deviation = shown.deviation_material()
+    keep = [as_material(material), None if reconstruction is None else as_material(reconstruction)]
+    content = ffi.new("gonio_page_content *", {"size": ffi.sizeof("gonio_page_content")})
+    content.reference = keep[0]._handle  # type: ignore[union-attr]
+    if keep[1] is not None:
+        content.reconstruction = keep[1]._handle
+    if deviation is not None:
+        content.deviation = deviation._handle
+    if readings is not None:
+        content.readings = readings._handle
+    with tempfile.TemporaryDirectory() as folder:
+        path = pathlib.Path(folder) / "page.html"
+        _calls.run(lib.gonio_page_write, content, _calls.encoded(path))
+        return Report(path.read_text(encoding="utf-8"))
