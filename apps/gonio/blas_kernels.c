@@ -9,7 +9,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-/* OpenBLAS's names of its kernels, and the vectors that they need. */
+/* OpenBLAS's names of kernels, by the vector instructions that they need. */
 static const char *const wide[] = {"SkylakeX", "Cooperlake", "SapphireRapids", NULL}; /* AVX-512 */
 static const char *const narrow[] = {"Haswell", "Zen", "Excavator", NULL};            /* AVX2 */
 
@@ -21,7 +21,7 @@ static bool is_among(const char *name, const char *const *names)
     return *names != NULL;
 }
 
-/* Kernels that are better than those in use; NULL if there are none. */
+/* Better kernels than those in use; NULL if there are none. */
 static const char *better_kernels(const char *used)
 {
 #ifdef __x86_64__
@@ -41,14 +41,14 @@ static const char *better_kernels(const char *used)
     return NULL;
 }
 
-/* Sets a variable that neither the user nor an earlier start has set. */
+/* Sets a variable unless the user or an earlier start has set it. Returns whether it was set. */
 static bool set_once(const char *variable, const char *value)
 {
     return value != NULL && getenv(variable) == NULL && setenv(variable, value, 1) == 0;
 }
 
-/* "1" where the address space is limited: OpenBLAS' own threads, which gonio does not use, try for
- * ever to map their buffers where there is no room. */
+/* "1" if the address space is limited, otherwise NULL. OpenBLAS's own threads, which gonio does not
+ * use, try for ever to map their buffers if there is no room. */
 static const char *fewer_threads(void)
 {
     struct rlimit limit;
@@ -65,6 +65,6 @@ void blas_kernels_choose(char **argv)
         kernels || threads ? readlink("/proc/self/exe", path, sizeof path - 1) : -1;
     if (length > 0) {
         path[length] = '\0';
-        execv(path, argv); /* if it fails, slower kernels do */
+        execv(path, argv); /* if it fails, the slower kernels are used */
     }
 }

@@ -1,12 +1,12 @@
-/* The kernels of the linear algebra, chosen before anything else. */
+/* The choice of OpenBLAS's kernels, before anything else. */
 #ifndef GONIO_BLAS_KERNELS_H
 #define GONIO_BLAS_KERNELS_H
 
 /* OpenBLAS chooses its kernels by the processor's model when it is loaded. A processor newer than
  * the library gets the oldest kernels, which are several times as slow. If the processor's features
- * allow better ones, this starts the program again with OPENBLAS_CORETYPE set to them, and does not
- * return. Where the address space is limited, OPENBLAS_NUM_THREADS becomes 1 the same way.
- * Variables that the user has set stay as they are. argv: main's. */
+ * allow better kernels, this function starts the program again with OPENBLAS_CORETYPE set to them,
+ * and does not return. If the address space is limited, it sets OPENBLAS_NUM_THREADS to 1 in the
+ * same way. Variables that the user has set stay. argv: main's. */
 void blas_kernels_choose(char **argv);
 
 #endif

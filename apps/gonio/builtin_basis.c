@@ -85,8 +85,8 @@ static gonio_status make_builtin(tool *t, const char *path, bool paper)
     return status;
 }
 
-/* To be incremented when gonio learn makes another basis of the same materials. Bases that earlier
- * builds left in the cache are then not used. */
+/* Increment it when gonio learn makes another basis of the same materials. Bases of earlier builds
+ * in the cache are then not used. */
 enum { RECIPE = 4 };
 
 gonio_status tool_builtin_basis(tool *t, bool paper, char **path)

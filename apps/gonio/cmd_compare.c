@@ -1,4 +1,4 @@
-/* gonio compare: how far materials or readings are from a reference, which is either. */
+/* gonio compare: the errors of materials or readings relative to a reference, which is either. */
 #include "command_line.h"
 #include "inputs.h"
 #include "json_output.h"
@@ -12,7 +12,7 @@ typedef struct options {
     int render;
 } options;
 
-/* `rendered` is NULL where there is none. */
+/* Prints a row of errors. `rendered`: NULL without --render. */
 static void print_row(const char *name, const gonio_error *error, const gonio_image_error *rendered)
 {
     const gonio_metric_view *metric = NULL;
@@ -70,7 +70,7 @@ static void print_comparison(const char *path, const gonio_comparison *c,
 
 /* ---- two materials ---- */
 
-/* What is compared with. */
+/* What the others are compared with. */
 typedef struct comparing {
     const options *o;
     tool_input reference;
@@ -98,7 +98,7 @@ static gonio_status compare_materials(tool *t, comparing *c, const tool_input *o
     return status;
 }
 
-/* ---- where readings are among the two ---- */
+/* ---- readings with readings or materials ---- */
 
 /* Values of the reference and of the other at the same directions, in the same channels. */
 typedef struct paired {
@@ -122,7 +122,8 @@ static gonio_status take_values(tool *t, const tool_input *from, gonio_readings 
                                   : gonio_measure_material(t->context, at, from->material, NULL);
 }
 
-/* At the directions of the reference if it is readings, of the other if not. */
+/* Pairs the values: at the directions of the reference if it is readings, otherwise of the other.
+ */
 static gonio_status pair_values(tool *t, const comparing *c, const tool_input *other, paired *p)
 {
     const bool known = c->reference.readings != NULL;
@@ -139,7 +140,7 @@ static gonio_status pair_values(tool *t, const comparing *c, const tool_input *o
                               : status;
 }
 
-/* How many of the used directions are among the readings; says so unless all of them are. */
+/* Counts the used directions that are among the readings. Reports it unless all of them are. */
 static gonio_status check_used(tool *t, comparing *c, const gonio_readings *readings)
 {
     const gonio_readings_view *used = gonio_readings_describe(c->used.readings);
@@ -163,7 +164,7 @@ static gonio_status check_used(tool *t, comparing *c, const gonio_readings *read
     return status;
 }
 
-/* Which of the readings do not count, for they were used to make the others. */
+/* Finds the readings that are left out, because they were used to make the others. */
 static gonio_status find_left_out(tool *t, comparing *c, paired *p)
 {
     const size_t count = gonio_readings_describe(p->reference)->count;
@@ -225,7 +226,7 @@ static gonio_status compare_readings(tool *t, comparing *c, const tool_input *ot
 
 /* ---- any two ---- */
 
-/* Repeats have one value, so that readings do not differ from themselves. */
+/* Opens an input. Repeats get one value, so that readings do not differ from themselves. */
 static gonio_status open_input(tool *t, const char *path, tool_input *input)
 {
     const gonio_status status = tool_open_input(t, path, input);
@@ -256,7 +257,7 @@ static gonio_status compare_one(tool *t, comparing *c, const char *path)
     return status;
 }
 
-/* What is needed of the reference and of --leave-out before anything is compared. */
+/* Opens the reference and the readings of --leave-out before anything is compared. */
 static gonio_status prepare(tool *t, comparing *c, const char *path)
 {
     const gonio_readings_options directions = {
@@ -310,7 +311,7 @@ static int run(tool *t, void *given)
     return code;
 }
 
-/* What the errors are; to be released with free(). */
+/* The help text on the errors, which the caller frees. */
 static char *help_text(void)
 {
     char *text = NULL;

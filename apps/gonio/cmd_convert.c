@@ -1,5 +1,5 @@
-/* gonio convert: any material to any format that materials are written in, readings to CSV or BRDF
- * JSON, an older basis to one of today. */
+/* gonio convert: materials to any format that gonio writes, readings to CSV or BRDF JSON, bases of
+ * an older gonio to the present format. */
 #include <string.h>
 #include <strings.h>
 
@@ -8,7 +8,7 @@
 #include "json_output.h"
 #include "write_options.h"
 
-/* Silent but for --json. */
+/* Prints the result with --json, otherwise nothing. */
 static int report(const tool *t, const gonio_material *material, const char *output)
 {
     return tool_json ? tool_print_json(t, json_pack("{s:o, s:o, s:s}", "output",
@@ -43,7 +43,7 @@ static int convert_basis(tool *t, const char *input, const char *format, const c
                : tool_exit_code(status);
 }
 
-/* Whether a name is one that readings are written by. */
+/* Whether a file name is that of a format of readings. */
 static bool names_readings(const char *output)
 {
     static const char *const extensions[] = {".csv", ".json", ".brdf"};

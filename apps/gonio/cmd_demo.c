@@ -1,4 +1,4 @@
-/* gonio demo: the whole chain on a built-in material that the basis has not seen. */
+/* gonio demo: all steps on a built-in material that the basis was not learned from. */
 #include "command_line.h"
 #include "json_output.h"
 
@@ -86,7 +86,7 @@ static int run_step(const step *s)
     return s->run(count, words);
 }
 
-/* A step with the words of its command and what that printed as JSON, in place of printing. */
+/* Runs a step and appends its command and its result as JSON, in place of printing. */
 static int run_step_as_json(const step *s, json_t *done)
 {
     json_t *result = NULL;
@@ -112,8 +112,7 @@ static void say_where_the_page_is(const char *folder)
     }
 }
 
-/* Creates the folder if necessary and changes to it, because the commands run in it. Returns an
- * exit code.
+/* Creates the folder if necessary and changes to it: the commands run there. Returns an exit code.
  */
 static int enter(const char *folder)
 {

@@ -1,4 +1,4 @@
-/* gonio info: what a file is, judged by its content. */
+/* gonio info: what a file is and what it contains. */
 #include "albedos.h"
 #include "command_line.h"
 #include "info_readings.h"
@@ -22,11 +22,11 @@ typedef struct material_facts {
     double peak;      /* largest value of any channel, 1/sr */
     double asymmetry; /* relative RMS of rho(phi_d) - rho(180 - phi_d), per cent */
     double albedo[TOOL_INCIDENCES][GONIO_CHANNELS];
-    double share[TOOL_INCIDENCES]; /* of the hemisphere, that has data */
+    double share[TOOL_INCIDENCES]; /* share of the hemisphere that has data */
     double largest_albedo;
     tool_seam seam;
     uint64_t fingerprint;
-    bool evaluated;     /* at any directions; the table is made of it */
+    bool evaluated;     /* at any directions; the table is sampled from it */
     double reciprocity; /* E6 of rho(o, i) against rho(i, o), per cent; of a table it is exact */
 } material_facts;
 
@@ -81,7 +81,7 @@ static gonio_status find_facts(const gonio_table *table, material_facts *facts)
     return fingerprint_of(table, &facts->fingerprint);
 }
 
-/* Beyond rounding. */
+/* Whether part of the hemisphere has no data, beyond rounding. */
 static bool has_hole(const material_facts *facts, int incidence)
 {
     return facts->share[incidence] < 0.9995;
@@ -96,7 +96,7 @@ static bool has_holes(const material_facts *facts)
     return any;
 }
 
-/* Adds what a pair and its reverse differ by, in log space. */
+/* Adds the difference of a pair and its reverse in log space. */
 static void add_reverse(const double *forth, const double *back, size_t channels, double sums[2])
 {
     for (size_t c = 0; c < channels; c++) {
@@ -110,7 +110,7 @@ static void add_reverse(const double *forth, const double *back, size_t channels
     }
 }
 
-/* Of a material that is evaluated, at some thousands of the grid's directions. */
+/* Finds the reciprocity error of a material that is evaluated, at thousands of directions. */
 static gonio_status find_reciprocity(gonio_context *context, const gonio_material *material,
                                      material_facts *facts)
 {
@@ -146,7 +146,7 @@ static json_t *wavelengths_json(const gonio_material_view *view)
     return list;
 }
 
-/* What the material is beyond its table. */
+/* Adds what a material has beyond its table. */
 static void add_view(json_t *object, const gonio_material_view *view, const material_facts *facts)
 {
     json_object_set_new(object, "channels", json_integer((json_int_t)view->channels));
@@ -158,7 +158,8 @@ static void add_view(json_t *object, const gonio_material_view *view, const mate
     json_object_set_new(object, "reciprocity_e6_percent", tool_json_number(facts->reciprocity));
 }
 
-/* null: not known, as directions without data reflect too. */
+/* Whether energy is conserved; null if it is unknown, because directions without data reflect too.
+ */
 static json_t *conserves_energy(const material_facts *facts)
 {
     if (facts->largest_albedo > 1.0) {
@@ -399,7 +400,7 @@ static int info_basis(const tool *t, const char *path, json_t *results)
 
 /* ---- meshes and images ---- */
 
-/* What is known of a file whose inside is not looked at. */
+/* Prints the kind of a file that is not read. */
 static int info_other(const tool *t, const char *path, json_t *results)
 {
     gonio_kind kind = GONIO_KIND_UNKNOWN;
@@ -417,7 +418,7 @@ static int info_other(const tool *t, const char *path, json_t *results)
     return 0;
 }
 
-/* ---- which of them a file is ---- */
+/* ---- the kinds of files ---- */
 
 typedef struct kind_info {
     gonio_kind kind;

@@ -18,11 +18,12 @@ typedef struct options {
     const char *without;
     int no_mean;
     int components;
-    int mixtures; /* UNSET: as the rest suggests */
+    int mixtures; /* UNSET: the default of the recipe */
     long seed;
 } options;
 
-/* A path's material name: what follows "atlas:", or the base name without its extension. */
+/* The material's name in a path: the text after "atlas:", or the base name without its extension.
+ */
 static size_t name_in(const char *path, const char **name)
 {
     const char *slash = strrchr(path, '/');
@@ -31,7 +32,7 @@ static size_t name_in(const char *path, const char **name)
     return dot != NULL && dot != *name ? (size_t)(dot - *name) : strlen(*name);
 }
 
-/* Takes the materials of a comma-separated list of names out of the paths. */
+/* Removes the materials of a comma-separated list of names from the paths. */
 static bool leave_out(const tool *t, material_list *list, const char *without)
 {
     for (const char *next = without; next != NULL && *next != '\0';) {
@@ -88,14 +89,14 @@ static int learn(tool *t, const options *o, const material_list *list, const gon
     return code;
 }
 
-/* Whether a word is in a list that ends with NULL; the choice stays as it is without a word. */
+/* Finds a word in a list that ends with NULL. Without a word the choice stays. */
 static bool choose(const tool *t, const char *option, const char *word, const char *const *words,
                    int *choice)
 {
     return word == NULL || tool_check_word(t, option, word, words, choice);
 }
 
-/* Options that are not given have the defaults of the grid. */
+/* Makes the recipe. Missing options have the defaults of the grid. */
 static bool choose_recipe(const tool *t, const options *o, gonio_recipe *recipe)
 {
     const char *const representations[] = {gonio_representation_name(GONIO_BIVARIATE),

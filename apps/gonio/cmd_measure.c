@@ -13,7 +13,7 @@ typedef struct options {
     long seed;
 } options;
 
-/* What was read of what. */
+/* Reports what was read. */
 static int report(const tool *t, const options *o, const gonio_readings *readings,
                   const char *material)
 {

@@ -15,7 +15,7 @@ typedef struct options {
     posterior_options posterior;
 } options;
 
-/* What gonio_plan_next says; plan: NULL if the target is met. */
+/* The result of gonio_plan_next. plan: NULL if the target is met. */
 typedef struct answer {
     double now;
     const char *suspicion;

@@ -1,4 +1,4 @@
-/* gonio reconstruct: the whole BRDF from a few readings. */
+/* gonio reconstruct: BRDFs from a few readings. */
 #include "albedos.h"
 #include "builtin_basis.h"
 #include "command_line.h"
@@ -26,7 +26,7 @@ typedef struct options {
     int average_repeats;
     int negative_to_zero;
     write_options write;
-    gonio_write_options how; /* from write */
+    gonio_write_options how; /* of write */
 } options;
 
 /* The largest albedo of the result. */
@@ -36,8 +36,8 @@ typedef struct energy {
     double theta_i; /* degrees */
 } energy;
 
-/* Unknown only if there is no memory for it. Without a context, so that it is known of what was
- * made before an interrupt too. */
+/* Finds the largest albedo. It is unknown only if memory runs out. No context is used, so that it
+ * is also known of results made before an interrupt. */
 static energy find_energy(const gonio_basis *basis, const gonio_reconstruction *r)
 {
     gonio_material *material = NULL;
@@ -81,7 +81,7 @@ static void warn(const gonio_reconstruction *r, const char *output, const energy
     }
 }
 
-/* Of each channel, or null. */
+/* The dark level of each channel, or null. */
 static json_t *dark_levels(const gonio_reconstruction *r)
 {
     json_t *levels = r->dark != NULL ? json_array() : json_null();
@@ -136,8 +136,8 @@ static void print(const gonio_reconstruction *r, const char *output, const energ
     fputc('\n', tool_results());
 }
 
-/* Says what was made, in a line or an object appended to `results`, and what is wrong with it.
- * `table`: whether the output is one. */
+/* Reports a result and its warnings, as a line or as an object appended to `results`. `table`:
+ * whether the output is a table. */
 static void report(const gonio_basis *basis, const gonio_reconstruction *r, const char *output,
                    bool table, json_t *results)
 {
@@ -166,7 +166,7 @@ static gonio_reconstruct_options settings(const options *o)
     return how;
 }
 
-/* The deviations as a table, or the values at the directions of a file. */
+/* Writes the deviations as a table, or the values at the directions of a file. */
 static gonio_status write_more(tool *t, const options *o, const gonio_basis *basis,
                                const gonio_reconstruction *made)
 {
@@ -198,14 +198,14 @@ static gonio_status write_more(tool *t, const options *o, const gonio_basis *bas
     return status;
 }
 
-/* Whether the output is a MERL table, of colours under equal energy. */
+/* Whether the output is a MERL table of colours under light of equal energy. */
 static bool is_merl(const options *o, const char *output)
 {
     const int writer = gonio_material_writer_find(output, o->how.format);
     return strcmp(gonio_material_writer_name(writer), "merl") == 0 && o->write.illuminant == NULL;
 }
 
-/* What was made, in the channels that the output holds: MERL tables have R, G, B. */
+/* Opens the result as a material, in the channels of the output: MERL tables have R, G, B. */
 static gonio_status open_made(tool *t, const options *o, const gonio_basis *basis,
                               const gonio_reconstruction *made, const char *output,
                               gonio_material **material)
@@ -221,7 +221,7 @@ static gonio_status open_made(tool *t, const options *o, const gonio_basis *basi
     return status;
 }
 
-/* One readings file, where something else than the table alone is wanted. */
+/* Reconstructs one file of readings when more than the table is wanted. */
 static gonio_status reconstruct_one(tool *t, const options *o, const gonio_basis *basis,
                                     const gonio_readings *readings, const char *output,
                                     json_t *results)
@@ -283,7 +283,7 @@ static gonio_status reconstruct(tool *t, const options *o, const gonio_basis *ba
     return status;
 }
 
-/* FOLDER/NAME.binary, or with the extension of another format, for readings FILE of that name. */
+/* FOLDER/NAME.binary for readings NAME.csv, or the extension of another format. */
 static char *path_in_folder(const options *o, const char *folder, const char *file)
 {
     const char *extension =
@@ -296,7 +296,7 @@ static char *path_in_folder(const options *o, const char *folder, const char *fi
     return asprintf(&path, "%s/%.*s%s", folder, length, name, extension) < 0 ? NULL : path;
 }
 
-/* Reads readings before the basis, which takes longer: so that their errors come at once. */
+/* Reads readings before the basis, which takes longer, so that their errors appear at once. */
 static int reconstruct_all(tool *t, const options *o, const char *basis_path,
                            const char *const *paths, char *const *outputs, size_t count,
                            json_t *results)
@@ -335,7 +335,7 @@ static bool is_folder(const char *path)
     return path != NULL && stat(path, &status) == 0 && S_ISDIR(status.st_mode);
 }
 
-/* Whether two of the outputs are the same file, after a complaint. */
+/* Checks that no two outputs are the same file. */
 static bool check_different(const tool *t, const char *const *paths, char *const *outputs,
                             size_t count)
 {
@@ -350,8 +350,8 @@ static bool check_different(const tool *t, const char *const *paths, char *const
     return true;
 }
 
-/* Where each result goes: into a folder if there are several, or if OUT is one. Returns an exit
- * code. */
+/* Chooses the outputs: in a folder if there are several results or if OUT is a folder. Returns an
+ * exit code. */
 static int choose_outputs(const options *o, const char *const *paths, size_t count, char **outputs)
 {
     const bool folder = is_folder(o->output);
@@ -364,7 +364,7 @@ static int choose_outputs(const options *o, const char *const *paths, size_t cou
     return 0;
 }
 
-/* What is written besides. */
+/* Checks the outputs besides OUT. */
 static bool check_more(const tool *t, const options *o, const char *const *inputs, size_t count)
 {
     if (o->predict_at != NULL && !tool_check_output(t, o->output, &o->predict_at, 1)) {
@@ -406,7 +406,7 @@ static bool check_outputs(const tool *t, const char *const *inputs, size_t count
     return check_different(t, paths, outputs, outputs_count);
 }
 
-/* One object, or an array of as many as there are READINGS. */
+/* Prints one object, or an array with an object for each file of readings. */
 static int print_results(const tool *t, json_t *results)
 {
     return tool_print_json(t, json_array_size(results) > 1

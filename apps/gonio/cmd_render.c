@@ -55,7 +55,7 @@ static gonio_status write_image(const tool *t, const render_request *o, const go
     return gonio_image_write_png(t->context, image, &tone, o->output);
 }
 
-/* What was drawn of what. */
+/* Reports the picture. */
 static int report_one(const tool *t, const render_request *o, const render_scene *s,
                       const char *material, const gonio_image *image)
 {

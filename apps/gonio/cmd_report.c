@@ -1,4 +1,4 @@
-/* gonio report: a page for a browser. */
+/* gonio report: a page for a browser that shows a material and its reconstruction. */
 #include "command_line.h"
 #include "inputs.h"
 #include "json_output.h"
@@ -33,7 +33,7 @@ static gonio_status read_readings(const tool *t, const char *path, gonio_reading
     return path == NULL ? GONIO_OK : tool_read_readings(t, path, &how, readings);
 }
 
-/* What is on the page; NULL for what there is not. */
+/* The content of the page; NULL for missing parts. */
 typedef struct shown {
     const char *folder;
     const char *reference;
@@ -87,7 +87,7 @@ static bool check(const tool *t, const options *o, const char **arguments, size_
            tool_check_output(t, o->output, inputs, 2);
 }
 
-/* What is shown on which page. */
+/* Prints the page's path and its content. */
 static int print_result(const tool *t, const options *o, const shown *s)
 {
     if (tool_json) {

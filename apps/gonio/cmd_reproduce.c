@@ -1,4 +1,4 @@
-/* gonio reproduce: the paper's experiments on a database of one's own. */
+/* gonio reproduce: the paper's experiments on the user's database. */
 #include "command_line.h"
 #include "json_output.h"
 #include "material_list.h"
@@ -16,7 +16,7 @@ typedef struct options {
     int skip_bad;
 } options;
 
-/* What was made. */
+/* Reports the results. */
 static int report(const tool *t, const options *o, size_t materials)
 {
     if (tool_json) {
@@ -55,7 +55,7 @@ static bool check(const tool *t, const options *o)
     return (o->output != NULL && *o->output != '\0') || tool_refuse(t, "no output: give -o FOLDER");
 }
 
-/* Of what was asked for, the built-in materials by default. */
+/* Runs the experiments on the given materials, by default the built-in ones. */
 static int run(const tool *t, const options *o, const process_group *group)
 {
     static const char *const built_in[] = {"atlas:"};
@@ -74,7 +74,7 @@ static int run(const tool *t, const options *o, const process_group *group)
     return code;
 }
 
-/* All ranks do the same; rank 0 alone says what is not an error. */
+/* All ranks run the same code. Only rank 0 prints what is not an error. */
 static int run_in_group(tool *t, void *given)
 {
     const options *o = given;

@@ -11,7 +11,7 @@ typedef struct tool_command {
     int (*run)(int argc, const char **argv); /* argv[0] is the command's name; an exit code */
 } tool_command;
 
-/* The commands, each in its file, as help lists them. */
+/* The commands, in the order of the help. */
 #define TOOL_COMMANDS(COMMAND)                                                                     \
     COMMAND(info, "what a file is: materials, bases, plans, readings, meshes, images")             \
     COMMAND(convert, "materials and readings to other formats")                                    \

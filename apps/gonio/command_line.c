@@ -1,5 +1,4 @@
-/* The command line of a command: its options, help, arguments and the checks of values: see
- * command_line.h. */
+/* The command line of a command: see command_line.h. */
 #include "command_line.h"
 
 #include <stdarg.h>
@@ -87,7 +86,7 @@ static void list_options(const struct poptOption *table)
     }
 }
 
-/* Returns an exit code, or -1 to go on. */
+/* Reads the options. Returns an exit code, or -1 to go on. */
 static int parse(tool *t, const tool_command_line *line)
 {
     int code = 0;
@@ -110,8 +109,7 @@ static int parse(tool *t, const tool_command_line *line)
     return tool_check_not_negative(t, "--threads", tool_threads) ? -1 : EXIT_USAGE;
 }
 
-/* Whether an option's value is a string, which popt gives as a copy that is the caller's to free.
- */
+/* Whether an option's value is a string. popt gives a copy, which the caller frees. */
 static bool holds_string(const struct poptOption *option)
 {
     return (option->argInfo & POPT_ARG_MASK) == POPT_ARG_STRING && option->arg != NULL;
@@ -137,7 +135,7 @@ static void free_strings(tool *t)
     }
 }
 
-/* Returns an exit code, or -1 to go on. */
+/* Prepares a command. Returns an exit code, or -1 to go on. */
 static int begin(tool *t, int argc, const char **argv, const tool_command_line *line)
 {
     *t = (tool){.table = line->table,
@@ -149,7 +147,7 @@ static int begin(tool *t, int argc, const char **argv, const tool_command_line *
         t->title = NULL;
         return EXIT_DATA;
     }
-    argv[0] = t->title; /* what the help calls the program */
+    argv[0] = t->title; /* the program's name in the help */
     t->options = poptGetContext(t->title, argc, argv, t->table, 0);
     poptSetOtherOptionHelp(t->options, line->usage);
     const int code = parse(t, line);
@@ -202,7 +200,7 @@ int tool_exit_code(gonio_status status)
     return status == GONIO_OK ? 0 : status == GONIO_ERROR_ARGUMENT ? EXIT_USAGE : EXIT_DATA;
 }
 
-/* Whether a file is where standard output goes; not a device that keeps nothing. */
+/* Whether a file is the target of standard output. A device such as /dev/null does not count. */
 static bool is_standard_output(const char *path)
 {
     struct stat file;

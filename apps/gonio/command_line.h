@@ -10,7 +10,7 @@
 
 enum { TOOL_MOST_OPTIONS = 32 };
 
-/* What every command has. */
+/* The state that every command has. */
 typedef struct tool {
     gonio_context *context;
     poptContext options;
@@ -44,34 +44,34 @@ typedef struct tool_command_line {
     void *options; /* where the table puts the values */
 } tool_command_line;
 
-/* Runs a command: reads its options, does its work unless help is asked for, tidies up. Returns the
- * exit code. --list-options, which the help does not show, prints a line an option: its names and,
- * if it takes a value, what the help calls that. */
+/* Runs a command: reads its options, does its work unless help is asked for, and frees everything.
+ * Returns the exit code. --list-options, which the help does not show, prints a line for each
+ * option: its names and, if it takes a value, the value's name in the help. */
 int tool_run(int argc, const char **argv, const tool_command_line *line);
 
 /* The arguments that are not options. */
 const char **tool_arguments(const tool *t, size_t *count);
 
-/* Complains about the command line; returns false, so that checks can end with
+/* Prints an error in the command line. Returns false, so that checks can end with
  * `return tool_refuse(...)`. The exit code is then EXIT_USAGE. */
 bool tool_refuse(const tool *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* The exit code of a status: 0, 1 or 2. */
 int tool_exit_code(gonio_status status);
 
-/* Checks of the command line. Each returns whether all is well, after a complaint if it is not. */
+/* Checks of the command line. Each returns true, or false after an error message. */
 
-/* An output is named and is none of the inputs (NULL: there is none). If it is standard output,
- * results are printed to standard error from now on (tool_results). */
+/* Checks that an output is given and differs from the inputs (NULL: none). If it is standard
+ * output, results are printed to standard error from now on (tool_results). */
 bool tool_check_output(const tool *t, const char *output, const char *const *inputs, size_t count);
 
-/* An integer from `least` on. */
+/* Checks that an integer is at least `least`. */
 bool tool_check_count(const tool *t, const char *option, long value, long least);
 
-/* A number that is not negative. */
+/* Checks that a number is not negative. */
 bool tool_check_not_negative(const tool *t, const char *option, double value);
 
-/* One of the words of a list that ends with NULL, whose place goes to *choice. */
+/* Finds a word in a list that ends with NULL. *choice: its place. */
 bool tool_check_word(const tool *t, const char *option, const char *text, const char *const *words,
                      int *choice);
 

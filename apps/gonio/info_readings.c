@@ -1,4 +1,4 @@
-/* What gonio info says of plans and readings: see info_readings.h. */
+/* gonio info on plans and readings: see info_readings.h. */
 #include "info_readings.h"
 #include "inputs.h"
 
@@ -10,19 +10,20 @@
 
 enum { NAME_ROOM = 32, MOST_LISTED = 8 };
 
-static const double ENOUGH = 0.5;  /* of a hemisphere, for an albedo */
-static const double NARROW = 0.25; /* share of one reading, of a peak that is too narrow */
+static const double ENOUGH = 0.5; /* share of a hemisphere that an albedo needs */
+static const double NARROW =
+    0.25; /* share of one reading in an albedo, if its peak is too narrow */
 
 typedef struct description {
     const char *path;
-    const char *format; /* NULL: not known, of a pipe */
+    const char *format; /* NULL: unknown, for a pipe */
     const gonio_readings *readings;
     const gonio_readings_view *view;
     const gonio_survey *survey;
     char basis[20];
 } description;
 
-/* To 1e-6: what is less is rounding. */
+/* Degrees, rounded to 1e-6. */
 static double degrees(double radians)
 {
     return round(radians * 180e6 / M_PI) * 1e-6;
@@ -59,7 +60,8 @@ static bool has_albedo(const gonio_incidence *incidence)
     return incidence->albedo != NULL && incidence->covered >= ENOUGH;
 }
 
-/* The largest of those that are not made by single readings, or of all; NaN if there is none. */
+/* The largest albedo, of all or only of those that no single reading dominates; NaN if there is
+ * none. */
 static double largest_albedo(const description *d, bool all)
 {
     double largest = NAN;
@@ -83,7 +85,7 @@ static const char *energy_of(const description *d)
 
 /* ---- in words ---- */
 
-/* The channels that are shown of many: the first, the one in the middle, the last. */
+/* Chooses the channels to show of many: the first, the middle and the last. */
 static size_t choose_channels(const description *d, size_t channel[3])
 {
     const size_t count = d->view->channels;
@@ -125,7 +127,7 @@ static void print_channels(const description *d)
     }
 }
 
-/* "10 to 80 deg", or "10 deg" if that is all. */
+/* Prints "10 to 80 deg", or "10 deg" for a single angle. */
 static void print_range(const char *name, const double radians[2])
 {
     const double least = degrees(radians[0]);
@@ -191,7 +193,7 @@ static void print_albedo_headings(const description *d)
     putchar('\n');
 }
 
-/* Of the incidences with an albedo some are shown. */
+/* Prints the albedos at some of the incidences that have one. */
 static void print_albedos(const description *d)
 {
     const gonio_survey *s = d->survey;
@@ -234,7 +236,7 @@ static void print_agreement(const gonio_survey *s)
     }
 }
 
-/* A line may have several readings. */
+/* Prints the lines of outliers. A line may have several readings. */
 static void print_outliers(const description *d)
 {
     const gonio_survey *s = d->survey;
@@ -257,7 +259,7 @@ static void print_outliers(const description *d)
     }
 }
 
-/* What may be wrong. */
+/* Prints what may be wrong. */
 static void print_suspicions(const description *d)
 {
     const size_t values = d->view->count * d->view->channels;
@@ -372,13 +374,13 @@ static json_t *notes_json(const gonio_readings_view *view)
     return list;
 }
 
-/* null where nothing is known. */
+/* A number in per cent; null if it is unknown. */
 static json_t *percent_json(size_t count, double percent)
 {
     return count > 0 ? tool_json_number(percent) : json_null();
 }
 
-/* true, false, or null where it is not known. */
+/* Whether energy is conserved: true, false, or null if it is unknown. */
 static json_t *energy_json(const description *d)
 {
     return largest_albedo(d, true) <= 1.0   ? json_true()
@@ -386,7 +388,7 @@ static json_t *energy_json(const description *d)
                                             : json_null();
 }
 
-/* What is wrong or may be, and what the readings say against each other. */
+/* The checks: what is or may be wrong, and how far readings contradict each other. */
 static json_t *checks_json(const description *d)
 {
     const gonio_survey *s = d->survey;

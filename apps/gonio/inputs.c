@@ -1,4 +1,4 @@
-/* The files that a command is given: see inputs.h. */
+/* The input files of a command: see inputs.h. */
 #include "inputs.h"
 
 const char *tool_as;
@@ -46,7 +46,8 @@ gonio_status tool_keep_read_channels(const tool *t, const gonio_basis *basis,
                : GONIO_OK;
 }
 
-/* A file of a format that the user names is readings, unless it is a material. */
+/* Finds what a file is. If the user names a format of readings, it is readings unless it is a
+ * material. */
 static gonio_status find_kind(const tool *t, const char *path, gonio_kind *kind)
 {
     gonio_readings_options how = tool_any_values;

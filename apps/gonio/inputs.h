@@ -1,10 +1,10 @@
-/* The files that a command is given, opened once they are known to be what it needs. */
+/* The input files of a command. They are opened after a check of their kind. */
 #ifndef GONIO_INPUTS_H
 #define GONIO_INPUTS_H
 
 #include "command_line.h"
 
-/* The options of commands that read readings, to be put into their tables. */
+/* The options of all commands that read readings, for their tables. */
 extern const char *tool_as;
 #define TOOL_READINGS_OPTIONS                                                                      \
     {                                                                                              \
@@ -20,18 +20,18 @@ extern const char *tool_as;
 /* As gonio_material_open, after gonio_file_expect. */
 gonio_status tool_open_material(const tool *t, const char *path, gonio_material **material);
 
-/* Whether --as names a format of readings, which is what the files are then. */
+/* Whether --as names a format of readings. Files are then readings. */
 bool tool_names_format(const tool *t);
 
 /* As gonio_readings_read, after gonio_file_expect. */
 gonio_status tool_read_readings(const tool *t, const char *path,
                                 const gonio_readings_options *options, gonio_readings **readings);
 
-/* Of readings for a basis of separate channels, those channels stay in which something was read. */
+/* Removes channels in which nothing was read, if the basis has separate channels. */
 gonio_status tool_keep_read_channels(const tool *t, const gonio_basis *basis,
                                      gonio_readings *readings);
 
-/* Any values: repeats and negative ones are accepted. */
+/* Options that accept any values, repeats and negative ones included. */
 extern const gonio_readings_options tool_any_values;
 
 /* A material or readings: the other is NULL. */
@@ -41,7 +41,8 @@ typedef struct tool_input {
     gonio_readings *readings;
 } tool_input;
 
-/* Opens what a file is; it is read once, so that it may be a pipe. To be closed in any case. */
+/* Opens a file as what it is. It is read once, so that it may be a pipe. To be closed in any case.
+ */
 gonio_status tool_open_input(const tool *t, const char *path, tool_input *input);
 void tool_close_input(tool_input *input);
 

@@ -9,13 +9,13 @@
 /* A JSON number; null if it is infinite or NaN, which JSON lacks. */
 json_t *tool_json_number(double value);
 
-/* A name that may not be UTF-8. Bytes that are not become U+FFFD. NULL: null. */
+/* A JSON string. Bytes that are not UTF-8 become U+FFFD. NULL: null. */
 json_t *tool_json_text(const char *text);
 
 /* An error by every metric: {"e6_percent": ..., ...} (gonio_metric_view.key). */
 json_t *tool_error_json(const gonio_error *error);
 
-/* Prints JSON (tool_results) and releases it; NULL, from a json_pack that failed, is an error.
+/* Prints JSON (tool_results) and releases it. NULL, from a json_pack that failed, is an error.
  * Returns an exit code. */
 int tool_print_json(const tool *t, json_t *json);
 

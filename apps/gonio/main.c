@@ -1,4 +1,4 @@
-/* gonio: a table of commands. */
+/* The program gonio: a table of commands. */
 #include "blas_kernels.h"
 #include "command.h"
 
@@ -34,7 +34,7 @@ static int finish_output(const char *name, int code)
     if (flushed && ferror(stdout) == 0) {
         return code;
     }
-    if (flushed || errno != EPIPE) { /* a reader that has seen enough needs no message */
+    if (flushed || errno != EPIPE) { /* a closed pipe needs no message */
         fprintf(stderr, "gonio %s: cannot write to standard output: %s\n", name,
                 flushed ? "some of it was lost" : strerror(errno));
     }

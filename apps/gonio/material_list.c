@@ -46,7 +46,7 @@ static int only_materials(const struct dirent *entry)
     return is_material_name(entry->d_name);
 }
 
-/* The materials of a folder, by name. */
+/* Adds the materials of a folder, sorted by name. Returns an exit code. */
 static int add_folder(const tool *t, material_list *list, const char *folder)
 {
     struct dirent **entries = NULL;
@@ -72,7 +72,7 @@ static int add_folder(const tool *t, material_list *list, const char *folder)
     return done ? 0 : EXIT_DATA;
 }
 
-/* Returns an exit code. */
+/* Adds the materials of an argument. Returns an exit code. */
 static int add(const tool *t, material_list *list, const char *argument)
 {
     struct stat status;

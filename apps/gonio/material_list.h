@@ -10,8 +10,8 @@ typedef struct material_list {
     char **path;
 } material_list;
 
-/* Adds the materials of each argument: those of a folder by name, all built-in ones for 'atlas:',
- * or the file itself. Returns an exit code, 0 if fine. */
+/* Adds the materials of each argument: those of a folder sorted by name, all built-in ones for
+ * 'atlas:', or the file itself. Returns an exit code. */
 int material_list_add_all(const tool *t, material_list *list, const char *const *arguments,
                           size_t count);
 

@@ -20,7 +20,7 @@ void tool_keep_results_off_standard_output(bool kept)
     standard_output_is_taken = kept;
 }
 
-/* Set by the first interrupt; the work then ends at its next progress report and tidies up. */
+/* Set by the first interrupt. The work then ends at its next progress report and cleans up. */
 static volatile sig_atomic_t interrupted = 0;
 
 static void on_interrupt(int signal_number)
@@ -97,7 +97,7 @@ static void draw_progress(const char *task, double fraction, double elapsed)
     fflush(stderr);
 }
 
-/* A bar on a terminal once the work has taken a second, ten times a second. */
+/* Draws a bar on a terminal, ten times a second, once the work has taken a second. */
 int tool_on_progress(void *user, const char *task, double fraction)
 {
     tool_messages *m = user;

@@ -11,15 +11,15 @@
  * writing. */
 void tool_catch_signals(void);
 
-/* Whether only errors are wanted. */
+/* Whether only errors are printed. */
 extern int tool_quiet;
 
-/* Where a command prints its result: standard output, or standard error once an output file is
- * standard output, so that the result does not get into the file. */
+/* The stream of a command's results: standard output, or standard error if an output file is
+ * standard output, so that results do not get into the file. */
 FILE *tool_results(void);
 void tool_keep_results_off_standard_output(bool kept);
 
-/* What is written to standard error for a command. */
+/* The state of a command's messages on standard error. */
 typedef struct tool_messages {
     const char *command;   /* its name */
     double progress_start; /* seconds */
@@ -37,11 +37,11 @@ int tool_on_progress(void *user, const char *task, double fraction);
 /* Removes the progress bar from the terminal. */
 void tool_clear_progress(tool_messages *m);
 
-/* Says on standard error what would explain readings better (gonio_reconstruction.suspicion), and
- * nothing for NULL. path: what is concerned. */
+/* Prints the usual mistake that would explain readings better (gonio_reconstruction.suspicion);
+ * NULL: nothing. path: the readings. */
 void tool_note_suspicion(const char *command, const char *path, const char *suspicion);
 
-/* The ending of a noun for `count`: "s", or nothing for one. */
+/* The plural ending for `count`: "s", or "" for 1. */
 const char *tool_plural(size_t count);
 
 #endif

@@ -6,7 +6,7 @@
 
 #include "inputs.h"
 
-/* Whether a metric is one that plans can be made for; complains if it is not. */
+/* Checks that plans can be made for a metric. */
 static bool check_metric(const tool *t, const char *name)
 {
     const char *names[GONIO_MOST_METRICS + 1] = {NULL};
@@ -20,7 +20,7 @@ static bool check_metric(const tool *t, const char *name)
     return tool_check_word(t, "--metric", name, names, &choice);
 }
 
-/* "3" or "3%"; -1 if it is neither, or not above 0. */
+/* The number of "3" or "3%"; -1 for other text, or if it is not above 0. */
 static double percent(const char *text)
 {
     char *end = NULL;
@@ -39,7 +39,7 @@ bool planning_options_check(const tool *t, const planning_options *o, const char
            (o->candidates == NULL || tool_check_output(t, output, &o->candidates, 1));
 }
 
-/* The directions of a readings file, with or without values. */
+/* Reads the directions of a readings file, with or without values. */
 static gonio_status read_directions(const tool *t, const char *path, gonio_pair **pairs,
                                     size_t *count)
 {

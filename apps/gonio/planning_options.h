@@ -16,7 +16,7 @@ typedef struct planning_options {
     const char *metric;     /* NULL: the library's default */
 } planning_options;
 
-/* Rows of an option table. `number` and `target_error`: what the help says of the first two. */
+/* Rows of an option table. `number` and `target_error`: the help of the first two. */
 #define PLANNING_OPTIONS(o, number, target_error)                                                  \
     {"number", 'n', POPT_ARG_INT, &(o)->count, 0, number, "N"},                                    \
         {"target-error", '\0', POPT_ARG_STRING, &(o)->target, 0, target_error, "PERCENT"},         \
@@ -32,7 +32,7 @@ typedef struct planning_options {
             "The error that is to be small: e6 (default), cube-root or log-relative", "METRIC"     \
     }
 
-/* Whether all is well, after a complaint if it is not. `output`: the plan's file. */
+/* Checks the options. Returns false after an error message. `output`: the plan's file. */
 bool planning_options_check(const tool *t, const planning_options *o, const char *output);
 
 /* Sets the options of the library. `candidates` is read from its file. The caller releases it with

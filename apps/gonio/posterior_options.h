@@ -42,7 +42,7 @@ posterior_options posterior_options_default(void);
             "Do not look for usual mistakes nor for a dark level (posterior)", NULL                \
     }
 
-/* Whether all is well, after a complaint if it is not. */
+/* Checks the options. Returns false after an error message. */
 bool posterior_options_check(const tool *t, const posterior_options *o);
 
 /* Sets the options of the library. */

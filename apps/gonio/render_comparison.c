@@ -106,7 +106,7 @@ static gonio_status compare_row(const tool *t, const render_scene *s, const char
     return status;
 }
 
-/* Names between commas, one a column; false if they are not as many. */
+/* Reads the columns' names, separated by commas. False if their number is wrong. */
 static bool read_labels(const char *text, picture *p)
 {
     for (size_t k = 0; k < p->columns; k++) {
@@ -144,7 +144,7 @@ static gonio_status write_picture(const tool *t, const render_request *o, pictur
     return gonio_comparison_picture_write_png(t->context, &drawn, o->output);
 }
 
-/* The rows of renderings: of each material the E6 from the first of its row. */
+/* The rows as JSON, with the E6 of each material relative to the first of its row. */
 static json_t *picture_json(const render_request *o, const picture *p, const char *const *paths)
 {
     json_t *rows = json_array();

@@ -10,7 +10,7 @@ enum { MOST_SAMPLES = 1000000 };
 
 static const double degree = M_PI / 180.0;
 
-/* Numbers between commas: how many there are, at most `most`; 0 for anything else. */
+/* Reads numbers separated by commas. Returns their number, at most `most`; 0 for other text. */
 static int read_numbers(const char *text, double *number, int most)
 {
     int count = 0;
@@ -31,7 +31,7 @@ static int read_numbers(const char *text, double *number, int most)
     return 0;
 }
 
-/* "512" or "640x480"; a number too large for any image is left for the library to refuse. */
+/* Reads "512" or "640x480". The library refuses numbers that are too large for an image. */
 static bool read_size(const char *text, int *width, int *height)
 {
     char *end = NULL;

@@ -1,10 +1,10 @@
-/* What gonio render is asked for, and what it renders with. */
+/* The options of gonio render, and the scene that it renders. */
 #ifndef GONIO_RENDER_OPTIONS_H
 #define GONIO_RENDER_OPTIONS_H
 
 #include "command_line.h"
 
-/* The values of its options. */
+/* The values of the options. */
 typedef struct render_request {
     const char *output;
     const char *mesh;
@@ -26,15 +26,15 @@ typedef struct render_request {
     int differences;
 } render_request;
 
-/* What is rendered with. */
+/* What every rendering uses. */
 typedef struct render_scene {
     gonio_render_options how;
     gonio_mesh *mesh;
     gonio_environment *environment;
 } render_scene;
 
-/* Checks the options that say how to render, and turns them into *how. Returns false after a
- * complaint. */
+/* Checks the options that say how to render, and turns them into *how. Returns false after
+ * an error message. */
 bool render_set_options(const tool *t, const render_request *o, gonio_render_options *how);
 
 /* Renders references and others side by side into one picture. Returns an exit code. */

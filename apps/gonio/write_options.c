@@ -1,4 +1,4 @@
-/* How a material is written: see write_options.h. */
+/* The options of writing materials: see write_options.h. */
 #include "write_options.h"
 
 #include <math.h>
@@ -8,7 +8,7 @@
 
 enum { ILLUMINANTS = 3 };
 
-/* Three positive numbers with commas between them. */
+/* Reads three positive numbers separated by commas. */
 static bool read_steps(const char *text, double step[3])
 {
     for (int k = 0; k < 3; k++) {
@@ -22,7 +22,7 @@ static bool read_steps(const char *text, double step[3])
     return true;
 }
 
-/* The place of a name in the list; as many as there are for another one. */
+/* The index of an illuminant's name; the number of illuminants if there is none. */
 static size_t find_illuminant(const char *name)
 {
     static const char *const names[] = {
@@ -36,7 +36,7 @@ static size_t find_illuminant(const char *name)
 
 enum { MOST_WRITERS = 32 };
 
-/* Whether gonio writes a format, after a complaint if it does not. */
+/* Checks that gonio writes a format. */
 static bool check_format(const tool *t, const char *format)
 {
     const char *names[MOST_WRITERS + 1] = {NULL};

@@ -33,7 +33,7 @@ typedef struct write_options {
             "T,T,P"                                                                                \
     }
 
-/* Whether they can be, after a complaint; fills in what the library wants. */
+/* Checks the options and turns them into *how. Returns false after an error message. */
 bool write_options_check(const tool *t, const write_options *options, gonio_write_options *how);
 
 /* Sets the illuminant of a material that is about to be written. */

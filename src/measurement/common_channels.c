@@ -1,5 +1,5 @@
-/* Readings in other channels: those that were read, or those that two can be compared in. See
- * measurement.h. */
+/* Readings in other channels: only the channels that were read, or channels that two readings have
+ * in common. See measurement.h. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,7 +10,7 @@
 
 /* ---- as colours ---- */
 
-/* The same value in R, G and B. */
+/* Fills R, G and B with the one value. */
 static gonio_status fill_grey(const gonio_readings *readings, double *rgb)
 {
     for (size_t k = 0; k < readings->count; k++) {
@@ -21,7 +21,7 @@ static gonio_status fill_grey(const gonio_readings *readings, double *rgb)
     return GONIO_OK;
 }
 
-/* Wavelengths that add nothing may be missing. */
+/* The sum of the weighted values. A value of weight 0 may be missing. */
 static double weighted_sum(const double *weight, const double *value, size_t count)
 {
     double sum = 0.0;
@@ -80,7 +80,8 @@ static between find_wavelength(const gonio_readings *readings, double at)
     return b;
 }
 
-/* Values at the wavelengths of others. Returns how many of these lie among one's own. */
+/* Interpolates the readings at the wavelengths of others. Returns how many of these wavelengths lie
+ * within the range of the readings. */
 static size_t interpolate(const gonio_readings *readings, const gonio_readings *others,
                           double *value)
 {
@@ -121,7 +122,7 @@ static bool is_empty(const gonio_readings *readings, size_t channel)
     return empty;
 }
 
-/* kept[channels]: those with values, in order. Returns how many there are. */
+/* Lists the channels with values, in order: kept[channels]. Returns their number. */
 static size_t find_kept(const gonio_readings *readings, size_t *kept)
 {
     size_t count = 0;
@@ -133,7 +134,8 @@ static size_t find_kept(const gonio_readings *readings, size_t *kept)
     return count;
 }
 
-/* "nothing was read in R_per_sr, B_per_sr: left out". kept[count] is in order. */
+/* Notes the dropped channels: "nothing was read in R_per_sr, B_per_sr: left out". kept[count] is in
+ * order. */
 static gonio_status note_dropped(gonio_context *context, gonio_readings *readings,
                                  const size_t *kept, size_t count)
 {
@@ -163,7 +165,7 @@ static gonio_status note_dropped(gonio_context *context, gonio_readings *reading
     return GONIO_OK;
 }
 
-/* One array of [count][channels] with fewer channels; in place. */
+/* Removes channels from an array [count][channels], in place. */
 static void narrow(double *value, size_t count, size_t channels, const size_t *kept, size_t fewer)
 {
     for (size_t k = 0; k < count && value != NULL; k++) {
@@ -173,7 +175,7 @@ static void narrow(double *value, size_t count, size_t channels, const size_t *k
     }
 }
 
-/* The new number of a planned channel; a dropped one is not known any more. */
+/* The new number of a planned channel. A dropped channel has none. */
 static int renumbered(int planned, const size_t *kept, size_t count)
 {
     for (size_t j = 0; j < count; j++) {
@@ -214,7 +216,7 @@ gonio_status gonio_readings_drop_empty_channels(gonio_context *context, gonio_re
     return status;
 }
 
-/* ---- what both can have ---- */
+/* ---- common channels ---- */
 
 static bool same_channels(const gonio_readings *a, const gonio_readings *b)
 {
@@ -231,7 +233,7 @@ static bool can_be_colours(const gonio_readings *readings)
            gonio_readings_are_colours(readings);
 }
 
-/* Replaces channels and values; deviations are dropped. */
+/* Replaces channels and values. Deviations are dropped. */
 static gonio_status replace(gonio_context *context, gonio_readings *readings, size_t channels,
                             const double *wavelength, const double *value)
 {

@@ -1,4 +1,4 @@
-/* What the numbers of a file stand for: conventions as words and sentences. */
+/* The conventions of a file's numbers (units, angles, kinds of values), as words and sentences. */
 #ifndef GONIO_CONVENTION_H
 #define GONIO_CONVENTION_H
 
@@ -25,11 +25,12 @@ extern const gonio_i_convention_key gonio_i_convention_keys[GONIO_I_CONVENTION_K
 
 int *gonio_i_convention_field(gonio_convention *convention, const gonio_i_convention_key *key);
 
-/* What is stated, where `given` does not say otherwise. */
+/* The convention in force: the stated one, where `given` says nothing else. */
 gonio_convention gonio_i_convention_of(const gonio_convention *stated,
                                        const gonio_convention *given);
 
-/* "angles in degrees, phi_o = phi_i on the mirror's side, reflectance factors": what is known. */
+/* Prints what is known: "angles in degrees, phi_o = phi_i on the mirror's side, reflectance
+ * factors". */
 void gonio_i_convention_print(const gonio_convention *convention, FILE *stream);
 
 #endif

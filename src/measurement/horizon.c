@@ -9,7 +9,7 @@ static const double TOO_MUCH = 20.0; /* times less or more than the median */
 static const double LESS = 3.0;      /* than the median, and */
 static const double FALL = 10.0;     /* than the reading before */
 
-enum { LEAST = 10 }; /* readings of an incidence, of which a median says something */
+enum { LEAST = 10 }; /* readings of an incidence for a median to be useful */
 
 typedef struct place {
     gonio_pair pair;
@@ -70,7 +70,8 @@ static bool is_on_lights_side(const gonio_pair *p)
     return cos(p->outgoing.phi - p->incident.phi) > 0.0;
 }
 
-/* before: the reading before it in the same half-plane; NULL if it is the first. */
+/* Whether a reading cannot be the material's. before: the reading before it in the same half-plane;
+ * NULL if it is the first. */
 static bool is_lost(const place *p, const place *before, double median)
 {
     if (p->pair.outgoing.theta < NEAR) {

@@ -1,4 +1,4 @@
-/* Readings near the horizon that the instrument cut off, or filled with stray light. */
+/* Readings near the horizon that the instrument cut off or that are stray light. */
 #ifndef GONIO_HORIZON_H
 #define GONIO_HORIZON_H
 

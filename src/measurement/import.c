@@ -32,7 +32,7 @@ void gonio_i_import_leniently(gonio_i_import *import)
     import->readings->options.average_repeats = true;
 }
 
-/* The unit of a wavelength that would be light. */
+/* The unit in which a wavelength would be light; NULL if there is none. */
 static const char *unit_of_light(double wavelength)
 {
     return wavelength > gonio_i_least_wavelength * 1e-9 &&
@@ -135,7 +135,7 @@ static gonio_status refuse_angle(const gonio_i_import *in, const gonio_i_row *ro
                         names[which], number, radians ? "radians" : "degrees", advice);
 }
 
-/* The other side has the azimuth of the other side; turns beyond the first say nothing. */
+/* Makes theta positive, which turns phi by 180 degrees. Limits phi to one turn. */
 static void fold(double *theta, double *phi)
 {
     if (*theta < 0.0) {
@@ -147,13 +147,13 @@ static void fold(double *theta, double *phi)
     }
 }
 
-/* At the pole azimuths say nothing. */
+/* Sets phi to 0 at the normal, where it has no meaning. */
 static void settle_pole(double theta, double *phi)
 {
     *phi = theta == 0.0 ? 0.0 : *phi;
 }
 
-/* Angles of a row in gonio's convention; false at or below the horizon. */
+/* Converts the angles of a row to gonio's convention. False at or below the horizon. */
 static bool take_angles(const gonio_i_import *in, const double from[4], double to[4])
 {
     memcpy(to, from, 4 * sizeof *to);
@@ -169,7 +169,8 @@ static bool take_angles(const gonio_i_import *in, const double from[4], double t
     return to[0] < 90.0 && to[2] < 90.0;
 }
 
-/* Azimuths in degrees may be any: encoders count turns. Of radians, that many are degrees. */
+/* Refuses angles that are impossible. Azimuths in degrees may have any size, because encoders count
+ * turns. Azimuths of many radians are degrees by mistake. */
 static gonio_status check_angles(const gonio_i_import *in, const gonio_i_row *row)
 {
     const double most_azimuth = in->how.angles == GONIO_RADIANS ? MOST_AZIMUTH : HUGE_VAL;
@@ -184,7 +185,7 @@ static gonio_status check_angles(const gonio_i_import *in, const gonio_i_row *ro
 
 /* ---- values ---- */
 
-/* What a value of the file is divided by. */
+/* The number by which a value of the file is divided. */
 static double divisor(const gonio_i_import *in, const double degrees[4])
 {
     const double cosine = cos(degrees[2] * M_PI / 180.0);
@@ -202,7 +203,7 @@ static double divisor(const gonio_i_import *in, const double degrees[4])
     }
 }
 
-/* Values of a row as a BRDF; whether there is one. */
+/* Converts the values of a row to a BRDF. Returns whether there is a value. */
 static bool take_values(gonio_i_import *in, const gonio_i_row *row, const double degrees[4])
 {
     const double by = divisor(in, degrees);
@@ -272,7 +273,7 @@ static void move(gonio_readings *r, size_t from, size_t to)
     memmove(r->given[to], r->given[from], sizeof *r->given);
 }
 
-/* Takes out the readings that are marked, and counts them. */
+/* Removes the marked readings and counts them. */
 static void take_out(gonio_i_import *in, const bool *marked, gonio_i_reason reason)
 {
     gonio_readings *r = in->readings;
@@ -286,7 +287,7 @@ static void take_out(gonio_i_import *in, const bool *marked, gonio_i_reason reas
     r->count = kept;
 }
 
-/* Marks readings that say again what the first of their directions says. */
+/* Marks readings that have the same values as the first reading of the same directions. */
 static gonio_status find_repeats(gonio_context *context, gonio_readings *r, bool *repeated)
 {
     const gonio_status status = gonio_i_readings_group(context, r);
@@ -351,7 +352,8 @@ static bool anything_changed(const gonio_i_import *in)
     return changed > 0;
 }
 
-/* "taken as Zemax BSDF: angles in degrees, values in 1/sr; 812 readings; left out: ...". */
+/* Writes the note: "taken as Zemax BSDF: angles in degrees, values in 1/sr; 812 readings; left out:
+ * ...". */
 static gonio_status write_note(gonio_i_import *in)
 {
     char *text = NULL;

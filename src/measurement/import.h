@@ -1,29 +1,29 @@
-/* From the rows of a file, in its own convention, to readings.
+/* Turns the rows of a file, in its own convention, into readings.
  *
- * Between gonio_i_import_begin and _end a reader adds rows. Azimuths may be any numbers. A negative
- * theta is the other side: phi is turned by 180 degrees. Rows at or below the horizon and, where
- * values are needed, rows without any are left out and counted. The end says in a note what the
- * file was taken for, what was left out and why. */
+ * A reader adds rows between gonio_i_import_begin and _end. Azimuths may be any numbers. A negative
+ * theta means the other side of the normal: phi is turned by 180 degrees. Rows at or below the
+ * horizon are left out and counted. So are rows without values, where values are needed. The end
+ * writes a note: what the file was taken for, what was left out and why. */
 #ifndef GONIO_IMPORT_H
 #define GONIO_IMPORT_H
 
 #include "readings.h"
 
-/* Why a row is no reading. */
+/* Why a row is left out. */
 typedef enum gonio_i_reason {
     GONIO_I_BELOW_HORIZON,
     GONIO_I_NOT_MEASURED, /* no value, or 0 where 0 means that */
     GONIO_I_REPEATED,     /* the same directions and values */
-    GONIO_I_LOST,         /* cut off near the horizon, or stray light there (horizon.h) */
-    GONIO_I_EXTRAPOLATED, /* the file says that the value was made up */
+    GONIO_I_LOST,         /* cut off near the horizon, or stray light (horizon.h) */
+    GONIO_I_EXTRAPOLATED, /* the file states that the value was not measured */
     GONIO_I_REASONS
 } gonio_i_reason;
 
 typedef struct gonio_i_import {
     gonio_context *context;
     gonio_readings *readings;
-    gonio_convention how; /* in force: what is stated and what the user says */
-    const char *taken_as; /* the format, for the note; with an article */
+    gonio_convention how; /* in force: the user's, otherwise the stated one */
+    const char *taken_as; /* the format with its article, for the note */
     bool quiet;           /* no note if nothing was left out or changed */
     bool lenient;         /* see gonio_i_import_leniently */
     bool keep_unmeasured; /* rows without values stay: they are planned */
@@ -47,28 +47,26 @@ typedef struct gonio_i_row {
 void gonio_i_import_begin(gonio_i_import *import, gonio_context *context, gonio_readings *readings,
                           const char *taken_as, const gonio_convention *stated);
 
-/* For the files of instruments and their programs, which are no plans: rows without a value are
- * left out, as are rows that repeat the values of the same directions (theta_o = 0 for each
- * azimuth); other repeats are accepted, and values below zero, which are noise about a dark level,
- * are taken as 0. Where 0 means not measured, readings lost near the horizon are left out too. All
- * are counted. */
+/* For files of instruments and their programs, which are not plans. Rows without a value are left
+ * out. Rows that repeat the values of the same directions are left out (theta_o = 0 for each
+ * azimuth); other repeats are accepted. Values below zero, which are noise about a dark level, are
+ * taken as 0. Where 0 means not measured, readings lost near the horizon are left out. All are
+ * counted. */
 void gonio_i_import_leniently(gonio_i_import *import);
 
-/* The channels, before the first row. wavelength[channels], in the convention's unit, or NULL.
- * Errors: _FORMAT for what is no wavelength of light or there twice, _MEMORY. */
+/* Sets the channels, before the first row. wavelength[channels], in the convention's unit, or NULL.
+ * Errors: _FORMAT for a number that is no wavelength of light or occurs twice, _MEMORY. */
 gonio_status gonio_i_import_channels(gonio_i_import *import, size_t channels,
                                      const double *wavelength);
 
-/* An angle as the file has it in degrees; from radians rounded. */
+/* An angle of the file in degrees. Angles in radians are rounded. */
 double gonio_i_import_degrees(const gonio_i_import *import, double angle);
 
-/* Degrees that were computed, rounded to nine digits, so that the same direction is the same
- * number.
- */
+/* Rounds computed degrees to nine digits, so that equal directions are equal numbers. */
 double gonio_i_import_rounded(double degrees);
 
-/* Adds a row or leaves it out. Errors: _DATA for what cannot be an angle or a value; the message
- * has the number as it is in the file. */
+/* Adds a row or leaves it out. Errors: _DATA for an impossible angle or value; the message has the
+ * number as it is in the file. */
 gonio_status gonio_i_import_add(gonio_i_import *import, const gonio_i_row *row);
 
 /* Counts a row that the reader itself left out. */
@@ -77,15 +75,15 @@ static inline void gonio_i_import_leave_out(gonio_i_import *import, gonio_i_reas
     import->left_out[reason]++;
 }
 
-/* The end, after an error too: `status` is what the reader came to. Takes out rows that repeat
- * others, writes the note. Errors: _DATA if no reading is left, _MEMORY, `status`. */
+/* Ends the import, also after an error: `status` is the reader's. Removes rows that repeat others
+ * and writes the note. Errors: _DATA if no reading is left, _MEMORY, `status`. */
 gonio_status gonio_i_import_end(gonio_i_import *import, gonio_status status);
 
 /* ---- directions about the mirror direction ---- */
 
-/* theta_o and phi_o - phi_i, degrees, of a direction at a radial angle from the mirror direction of
- * theta_i and an azimuth about it: 0 towards the normal, counted as phi is. theta_o is above 90
- * below the horizon. */
+/* theta_o and phi_o - phi_i, degrees, of a direction that is given about the mirror direction of
+ * theta_i: by its radial angle from it, and its azimuth about it. The azimuth is 0 towards the
+ * normal and counted like phi. theta_o is above 90 below the horizon. */
 void gonio_i_from_mirror(double theta_i, double radial, double azimuth, double *theta_o,
                          double *phi_difference);
 

@@ -12,7 +12,8 @@ void gonio_instrument_options_default_of(gonio_instrument_options *options, size
     gonio_i_give(&usual, sizeof usual, options, size);
 }
 
-/* Noise belongs to a direction, not to a line: the same directions give the same reading. */
+/* The stream of random numbers of a pair of directions. Noise depends on the directions, not on the
+ * line, so that equal directions give equal readings. */
 static uint64_t stream_of(const gonio_pair *pair)
 {
     const union {
@@ -28,7 +29,7 @@ static uint64_t stream_of(const gonio_pair *pair)
     return stream;
 }
 
-/* Says how many directions the material has no data at. */
+/* Reports the number of directions at which the material has no data. */
 static gonio_status report_holes(gonio_context *context, const gonio_readings *readings,
                                  size_t holes, size_t first)
 {
@@ -47,7 +48,8 @@ static gonio_status report_holes(gonio_context *context, const gonio_readings *r
     return GONIO_OK;
 }
 
-/* What the instrument makes of a direction's true values. NaN stays. */
+/* Turns the true values of a direction into readings: noise, and a factor if the direction is an
+ * outlier. NaN stays. */
 static void disturb(const gonio_readings *readings, size_t reading,
                     const gonio_instrument_options *options, double *value)
 {
@@ -65,7 +67,7 @@ static void disturb(const gonio_readings *readings, size_t reading,
     }
 }
 
-/* Whether there are data. */
+/* Reads one direction from a table. Returns whether there are data. */
 static bool read_one(gonio_readings *readings, size_t reading, const gonio_table *table,
                      const gonio_instrument_options *options)
 {
@@ -118,7 +120,7 @@ gonio_status gonio_measure(gonio_context *context, gonio_readings *readings,
     return status == GONIO_OK ? report_holes(context, readings, holes, first) : status;
 }
 
-/* By the material's own evaluation, in its own channels. */
+/* Evaluates the material itself at all directions, in its own channels. */
 static gonio_status evaluate(gonio_context *context, gonio_readings *readings,
                              const gonio_material *material,
                              const gonio_instrument_options *options)
@@ -145,8 +147,7 @@ static gonio_status evaluate(gonio_context *context, gonio_readings *readings,
     return status == GONIO_OK ? report_holes(context, readings, holes, first) : status;
 }
 
-/* Whether what was planned can be read in the material's channels: a plan that names R, G or B
- * needs colours. */
+/* Whether the planned channels exist in the material. A plan that names R, G or B needs colours. */
 static bool is_for_all(const gonio_readings *readings, const gonio_material *material)
 {
     const gonio_material_view *view = gonio_material_describe(material);

@@ -1,4 +1,4 @@
-/* Rows of single wavelengths to rows of all: see long_table.h. */
+/* Tables with one wavelength a row: see long_table.h. */
 #include "long_table.h"
 
 #include <math.h>
@@ -84,7 +84,7 @@ static size_t channel_of(const double *wavelength, size_t count, double wanted)
 
 typedef struct place {
     const gonio_i_long_row *row;
-    size_t repeat; /* how many values before have its directions, wavelength and state */
+    size_t repeat; /* number of earlier values with the same directions, wavelength and state */
     size_t first;  /* the place of the first row of its directions and repeat */
 } place;
 
@@ -150,7 +150,7 @@ static void count_repeats(const gonio_i_long_table *table, place *places)
     }
 }
 
-/* The rows of one reading beside each other. */
+/* Sorts the rows so that those of one reading are adjacent. */
 static void group(const gonio_i_long_table *table, place *places)
 {
     for (size_t k = 0; k < table->count; k++) {
@@ -166,9 +166,9 @@ static void group(const gonio_i_long_table *table, place *places)
     qsort(places, table->count, sizeof *places, compare_first);
 }
 
-/* ---- rows of all wavelengths ---- */
+/* ---- rows with all wavelengths ---- */
 
-/* Sums of the values of one direction, and how many they are. [channels] each. */
+/* Sums of the values of one direction, and their numbers. [channels] each. */
 typedef struct sums {
     size_t channels;
     double *value;
@@ -192,7 +192,7 @@ static void add(const sums *s, const gonio_i_long_row *row, size_t channel)
     }
 }
 
-/* Sums to means, NaN where nothing was read, and hands them on. */
+/* Turns sums into means, NaN where nothing was read, and adds them as a row. */
 static gonio_status hand_on(const sums *s, const gonio_i_long_table *table,
                             const gonio_i_long_row *row, gonio_i_import *import)
 {
@@ -223,8 +223,8 @@ static gonio_status import_groups(const gonio_i_long_table *table, const place *
     return status;
 }
 
-/* A table of all channels may have holes, but not many times as many as it has values: a small file
- * would fill the memory. */
+/* Refuses tables that would mostly consist of holes: a small file could otherwise fill the memory.
+ */
 static gonio_status check_holes(const gonio_i_long_table *table, const place *places,
                                 size_t channels, const gonio_i_import *import)
 {

@@ -1,8 +1,8 @@
-/* Tables with a row for each direction and wavelength (and polarisation), to rows of all
- * wavelengths: equal directions are found, in the order in which they first appear. Values of a
- * direction and wavelength in several states become their mean: that of s and p is unpolarised.
- * Values in the same state are repeats: the second ones of a direction are a row of their own, and
- * so on. */
+/* Tables with a row for each direction and wavelength (and polarisation) become rows with all
+ * wavelengths. Equal directions are joined, in the order in which they first appear. Values of one
+ * direction and wavelength in several states of polarisation become their mean; the mean of s and p
+ * is unpolarised. Values in the same state are repeats: the second values of a direction are a row
+ * of their own, and so on. */
 #ifndef GONIO_LONG_TABLE_H
 #define GONIO_LONG_TABLE_H
 
@@ -10,7 +10,7 @@
 
 typedef struct gonio_i_long_row {
     double degrees[4]; /* as in gonio_i_row */
-    double wavelength; /* in the convention's unit; or the number of a channel, from 0 */
+    double wavelength; /* in the convention's unit; or the number of a channel from 0 on */
     double value;
     double deviation; /* NaN: not known */
     double state;     /* a number for each state of polarisation; no NaN */
@@ -23,16 +23,16 @@ typedef struct gonio_i_long_table {
     size_t room;
     gonio_i_long_row *row; /* [count] */
     bool any_deviation;
-    size_t numbered; /* channels without wavelengths, which rows number; 0: wavelengths */
+    size_t numbered; /* channels that rows number; 0: rows have wavelengths */
 } gonio_i_long_table;
 
-/* A table begins zero-initialised but for its context. Errors: _MEMORY. */
+/* Adds a row. A new table is zero except for its context. Errors: _MEMORY. */
 gonio_status gonio_i_long_table_add(gonio_i_long_table *table, const gonio_i_long_row *row);
 
-/* Says the channels of the import (numbered ones, or wavelengths ascending) and adds its rows.
- * The deviation of a mean of m values is the root of the sum of their squares, over m. Errors: as
- * of the import; _FORMAT for more than 4096 wavelengths, and where most of a large table would be
- * holes; _MEMORY. */
+/* Sets the channels of the import (numbered ones, or wavelengths ascending) and adds its rows. The
+ * deviation of a mean of m values is the root of the sum of their squared deviations, over m.
+ * Errors: as of the import; _FORMAT for more than 4096 wavelengths, and where most of a large table
+ * would be holes; _MEMORY. */
 gonio_status gonio_i_long_table_import(gonio_i_long_table *table, gonio_i_import *import);
 
 void gonio_i_long_table_free(gonio_i_long_table *table);

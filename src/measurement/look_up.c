@@ -1,4 +1,4 @@
-/* Readings taken out of others of the same material: see measurement.h. */
+/* Looking up readings in other readings of the same material: see measurement.h. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,17 +7,17 @@
 
 static const double SAME = 1e-4; /* radians */
 
-/* How a known reading is one of the directions that are looked for, the better the smaller. */
+/* How a known reading matches directions that are looked up. Smaller is better. */
 typedef enum likeness { EXACT, ROTATED, RECIPROCAL, NONE } likeness;
 
-/* ---- how far apart two pairs of directions are ---- */
+/* ---- the distance of two pairs of directions ---- */
 
 static double turn_between(double a, double b)
 {
     return fabs(remainder(a - b, 2.0 * M_PI));
 }
 
-/* As they are. */
+/* The largest difference of an angle, radians; azimuths count by the sine of theta. */
 static double distance(gonio_pair a, gonio_pair b)
 {
     const double theta =
@@ -29,8 +29,8 @@ static double distance(gonio_pair a, gonio_pair b)
     return fmax(theta, fmax(incident, outgoing));
 }
 
-/* Of an isotropic material, turned about the normal as suits best: so that the direction which is
- * nearer to the normal is off in azimuth. */
+/* The distance for an isotropic material, when both directions may be rotated about the normal. The
+ * direction nearer to the normal takes the difference in azimuth. */
 static double distance_rotated(gonio_pair a, gonio_pair b)
 {
     const double theta =
@@ -56,9 +56,9 @@ static likeness compare(gonio_pair a, gonio_pair b, double *apart)
 
 /* ---- the nearest reading ---- */
 
-/* A known reading, to be found by its polar angles. */
+/* A known reading, sorted by its polar angles. */
 typedef struct place {
-    int64_t column; /* of the incident one: its strip, SAME wide */
+    int64_t column; /* of theta_i, in strips of the width SAME */
     double theta_o;
     size_t reading;
 } place;
@@ -96,7 +96,7 @@ static bool sort_places(gonio_context *context, const gonio_readings *known, kno
     return k->place != NULL;
 }
 
-/* The first place at or behind one. */
+/* The first place that is not before `at`. */
 static size_t lower_bound(const known_places *k, place at)
 {
     size_t low = 0;
@@ -133,7 +133,7 @@ static void try_reading(const known_places *k, gonio_pair at, size_t reading, be
     }
 }
 
-/* Tries the readings whose polar angles are near to two. */
+/* Compares the readings whose polar angles are near theta_i and theta_o. */
 static void try_angles(const known_places *k, gonio_pair at, double theta_i, double theta_o,
                        best *b)
 {
@@ -147,7 +147,7 @@ static void try_angles(const known_places *k, gonio_pair at, double theta_i, dou
     }
 }
 
-/* The nearest of those that are most alike; the first of equals; `count` if there is none. */
+/* The best match, the nearest of several, the first of equals; `count` if there is none. */
 static size_t find(const known_places *k, gonio_pair at)
 {
     best b = {NONE, INFINITY, INFINITY, k->readings->count};
@@ -190,7 +190,7 @@ gonio_status gonio_readings_find(gonio_context *context, const gonio_readings *r
 
 /* ---- taking values ---- */
 
-/* Readings of the same directions, linked: next[reading] is the following one plus one; 0 ends. */
+/* Links readings of equal directions: next[reading] is the following one plus 1; 0 is the end. */
 static size_t *link_repeats(gonio_context *context, const gonio_readings *known)
 {
     size_t *next = gonio_i_allocate(context, known->count, sizeof *next);
@@ -204,7 +204,7 @@ static size_t *link_repeats(gonio_context *context, const gonio_readings *known)
     return next;
 }
 
-/* The mean of what was read there in one channel, and its deviation. Returns how many were. */
+/* The mean of the linked readings in one channel, and its deviation. Returns their number. */
 static size_t average(const gonio_readings *known, const size_t *next, size_t first, size_t channel,
                       double *value, double *deviation)
 {
@@ -224,8 +224,8 @@ static size_t average(const gonio_readings *known, const size_t *next, size_t fi
     return count;
 }
 
-/* Takes a direction's values, of readings with the same channels. Returns whether several were
- * averaged. */
+/* Copies the values of a direction. Both have the same channels. Returns whether several readings
+ * were averaged. */
 static bool take_values(gonio_readings *plan, size_t row, const gonio_readings *known,
                         const size_t *next, size_t from)
 {
@@ -242,7 +242,7 @@ static bool take_values(gonio_readings *plan, size_t row, const gonio_readings *
     return averaged;
 }
 
-/* Room for values, and deviations if they are known, in the channels of other readings. */
+/* Gives the plan the channels of the known readings, and room for values and deviations. */
 static gonio_status take_channels(gonio_context *context, gonio_readings *plan,
                                   const gonio_readings *known)
 {
@@ -294,8 +294,7 @@ gonio_status gonio_readings_look_up(gonio_context *context, gonio_readings *plan
     return status;
 }
 
-/* The means of the values that readings have at one direction. Returns whether several were
- * averaged. */
+/* The mean values at one direction. Returns whether several readings were averaged. */
 static bool average_direction(const gonio_readings *readings, const size_t *next, size_t first,
                               double *mean, double *deviation)
 {
@@ -306,7 +305,7 @@ static bool average_direction(const gonio_readings *readings, const size_t *next
     return averaged;
 }
 
-/* Puts means where there are values. */
+/* Replaces the values of a direction by their means. */
 static void spread(gonio_readings *readings, const size_t *next, size_t first, const double *mean,
                    const double *deviation)
 {

@@ -7,7 +7,7 @@
 #include "../core/comments.h"
 #include "../core/core.h"
 
-/* What a file holds besides readings: its format's, which writes it again. */
+/* What a format keeps of a file besides readings, to write it again. */
 typedef struct gonio_i_attachment {
     void *data;
     void (*release)(void *data);
@@ -18,7 +18,7 @@ struct gonio_readings {
     gonio_readings_options options; /* that they were made with */
     size_t count;
     size_t room;     /* readings that the arrays below have room for */
-    size_t expected; /* readings to make room for at once; 0: not known */
+    size_t expected; /* number of readings to come; 0: not known */
     size_t channels;
     gonio_pair *pair;
     int *planned;
@@ -33,26 +33,26 @@ struct gonio_readings {
     uint64_t basis;
     size_t components;
     const char *method;       /* that the comments state; "" */
-    gonio_i_comments comment; /* of the file, which CSV has room for */
-    gonio_i_comments note;    /* what its reader has to say of it */
+    gonio_i_comments comment; /* the comments of the file */
+    gonio_i_comments note;    /* what its reader says of it */
     gonio_i_attachment attachment;
     gonio_readings_view view; /* of what is above */
 };
 
 /* ---- making them ---- */
 
-/* What every function that changes readings ends with: the view of them as they are. */
+/* Updates the view. Every function that changes readings ends with it. */
 void gonio_i_readings_update_view(gonio_readings *readings);
 
 /* options may be NULL. Errors: _ARGUMENT (options that were not initialised), _MEMORY. */
 gonio_status gonio_i_readings_new(gonio_context *context, const char *path,
                                   const gonio_readings_options *options, gonio_readings **readings);
 
-/* The channels of readings that hold nothing yet. wavelength[channels] or NULL. */
+/* Sets the channels of readings that are still empty. wavelength[channels] or NULL. */
 gonio_status gonio_i_readings_begin(gonio_context *context, gonio_readings *readings,
                                     size_t channels, const double *wavelength);
 
-/* One reading as files have them. */
+/* One reading as a file has it. */
 typedef struct gonio_i_reading {
     double degrees[4]; /* theta_i, phi_i, theta_o, phi_o; phi in [-360, 360] */
     int planned;
@@ -61,12 +61,12 @@ typedef struct gonio_i_reading {
     const double *deviation; /* [channels] or NULL, in all readings the same */
 } gonio_i_reading;
 
-/* Adds a reading; every number is checked, and a value below zero becomes 0 if it may. */
+/* Adds a reading and checks every number. A value below zero becomes 0 if the options allow it. */
 gonio_status gonio_i_readings_add(gonio_context *context, gonio_readings *readings,
                                   const gonio_i_reading *reading);
 
-/* The last step: the same directions are found, and refused unless repeats are to be averaged.
- * `measured`: they are readings, not a plan. */
+/* The last step: finds equal directions, and refuses them unless repeats are to be averaged.
+ * `measured`: these are readings, not a plan. */
 gonio_status gonio_i_readings_finish(gonio_context *context, gonio_readings *readings,
                                      bool measured);
 
@@ -75,12 +75,11 @@ gonio_status gonio_i_readings_finish(gonio_context *context, gonio_readings *rea
 double *gonio_i_make_values(gonio_context *context, const gonio_readings *readings,
                             size_t channels);
 
-/* Other channels for all readings; their values are NaN. */
+/* Gives all readings other channels. Their values are NaN. */
 gonio_status gonio_i_readings_set_channels(gonio_context *context, gonio_readings *readings,
                                            size_t channels, const double *wavelength);
 
-/* What the reader of a file says of it ("taken as reflectance factor"): kept, and told to the
- * context. */
+/* Adds a note on the file ("taken as reflectance factor") and tells it to the context. */
 gonio_status gonio_i_readings_note(gonio_context *context, gonio_readings *readings,
                                    const char *format, ...) GONIO_I_PRINTF(3, 4);
 
@@ -90,32 +89,32 @@ static inline double *gonio_i_readings_values(gonio_readings *readings, size_t r
     return readings->value + reading * readings->channels;
 }
 
-/* theta_i, phi_i, theta_o or phi_o (which: 0 to 3) in degrees: as the file has it, if that is kept,
- * or of the pair. */
+/* theta_i, phi_i, theta_o or phi_o (which: 0 to 3) in degrees: as in the file if that is kept,
+ * otherwise from the pair. */
 double gonio_i_readings_degrees(const gonio_readings *readings, size_t reading, size_t which);
 
-/* The name of a channel's column of values: R_per_sr, 400nm_per_sr, value_per_sr; of their
- * deviations: R_deviation_per_sr and so on. */
+/* The name of a channel's column of values (R_per_sr, 400nm_per_sr, value_per_sr) or deviations
+ * (R_deviation_per_sr). */
 enum { GONIO_I_NAME_ROOM = 64 };
 void gonio_i_value_name(const gonio_readings *readings, size_t channel, bool deviation,
                         char name[GONIO_I_NAME_ROOM]);
 
 /* ---- the same directions (repeats.c, look_up.c) ---- */
 
-/* The reading that is nearest to each pair of directions, as they are or turned about the normal:
- * found[count], readings->count where there is none. Errors: _MEMORY. */
+/* Finds the reading that matches each pair of directions, as it is, rotated about the normal or
+ * reciprocal: found[count], readings->count where there is none. Errors: _MEMORY. */
 gonio_status gonio_i_find_readings(gonio_context *context, const gonio_readings *readings,
                                    const gonio_pair *pair, size_t count, size_t *found);
 
 /* Fills in first_same for readings in any order. */
 gonio_status gonio_i_readings_group(gonio_context *context, gonio_readings *readings);
 
-/* How many readings with values are the same directions as another one but for an azimuth where
- * theta is 0. */
+/* Counts the readings with values that differ from another one only by an azimuth where theta is 0.
+ */
 gonio_status gonio_i_readings_count_pole_repeats(gonio_context *context,
                                                  const gonio_readings *readings, size_t *repeats);
 
-/* _DATA if a direction is listed more than once for a channel. */
+/* Errors: _DATA if a direction is listed more than once for a channel. */
 gonio_status gonio_i_readings_refuse_repeats(gonio_context *context, const gonio_readings *readings,
                                              bool measured);
 

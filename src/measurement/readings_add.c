@@ -11,7 +11,7 @@
 
 enum { FIRST_ROOM = 64 };
 
-/* The block with room for more, or as it is and *done false. */
+/* Enlarges a block. If there is no memory, *done is false and the block stays. */
 static void *enlarge(void *block, size_t room, size_t size, bool *done)
 {
     void *more = reallocarray(block, room, size);

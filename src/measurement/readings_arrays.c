@@ -157,7 +157,7 @@ gonio_status gonio_readings_create_from_plan(gonio_context *context, const gonio
 
 /* ---- a copy ---- */
 
-/* NULL for NULL; *done becomes false when out of memory. */
+/* A copy of an array; NULL for NULL. *done becomes false when out of memory. */
 static void *copy_array(gonio_context *context, const void *from, size_t count, size_t size,
                         bool *done)
 {
@@ -214,7 +214,7 @@ gonio_status gonio_readings_set_values(gonio_context *context, gonio_readings *r
     if (status != GONIO_OK) {
         return status;
     }
-    gonio_readings changed = *readings; /* what fails leaves the readings as they are */
+    gonio_readings changed = *readings; /* a failure leaves the readings unchanged */
     changed.value = NULL;
     changed.deviation = NULL;
     changed.wavelength = NULL;

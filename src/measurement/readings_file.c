@@ -44,7 +44,7 @@ const char *gonio_readings_format_word(int index)
     return index >= 0 && index < FORMATS ? formats[index]->word : NULL;
 }
 
-/* The format that the user says, or else the one that the content tells. */
+/* The format that the user names, otherwise the one that recognises the text. */
 static const gonio_i_readings_format *find_format(const char *word, const char *text, size_t size)
 {
     size_t k = 0;
@@ -76,7 +76,7 @@ static gonio_status read_number(gonio_context *context, const gonio_readings *re
     return GONIO_OK;
 }
 
-/* What the comments say of the plan. */
+/* Reads what the comments say of the plan. */
 static gonio_status read_comments(gonio_context *context, gonio_readings *readings)
 {
     const char *grid = gonio_i_comments_value(&readings->comment, "grid");

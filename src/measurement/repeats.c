@@ -1,4 +1,4 @@
-/* Readings at the same directions. */
+/* Readings at equal directions: grouped, counted, refused. See readings.h. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -55,9 +55,9 @@ gonio_status gonio_i_readings_group(gonio_context *context, gonio_readings *read
     return GONIO_OK;
 }
 
-/* ---- at the normal, where azimuths mean nothing ---- */
+/* ---- at the normal, where azimuths have no meaning ---- */
 
-/* Nearer to the normal a direction has no azimuth, radians. */
+/* theta, radians, below which a direction has no azimuth. */
 static const double POLE = 1e-6;
 
 static bool has_pole(const gonio_pair *pair)
@@ -74,8 +74,8 @@ static bool has_value(const gonio_readings *readings, size_t reading)
     return any;
 }
 
-/* Of the readings in `sorted`, whose azimuths are 0 about the normal: how many have the directions
- * of the one before but other azimuths in the file. */
+/* Counts the readings in `sorted` that have the directions of the one before, but other azimuths in
+ * the file. Azimuths at the normal are 0 in `sorted`. */
 static size_t count_repeats(const gonio_readings *readings, const indexed_pair *sorted,
                             size_t count)
 {
@@ -87,7 +87,8 @@ static size_t count_repeats(const gonio_readings *readings, const indexed_pair *
     return repeats;
 }
 
-/* The readings at the normal, as pair[] has them with azimuths of 0 there. Returns how many. */
+/* Lists the readings with a direction at the normal; its azimuth in pair[] is 0. Returns their
+ * number. */
 static size_t find_poles(const gonio_readings *readings, gonio_pair *pair, indexed_pair *sorted)
 {
     size_t count = 0;
@@ -128,8 +129,8 @@ static bool channels_overlap(int a, int b)
     return a == b || a == GONIO_ALL_CHANNELS || b == GONIO_ALL_CHANNELS;
 }
 
-/* An earlier reading of the same directions that a reading repeats, plus one; 0 if there is none.
- * latest[reading]: of the same directions, the reading before; plus one. */
+/* The earlier reading that a reading repeats, plus 1; 0 if there is none. latest[reading]: the
+ * previous reading of the same directions, plus 1. */
 static size_t find_repeated(const gonio_readings *readings, const size_t *latest, size_t reading)
 {
     const int channel = readings->planned[reading];
@@ -145,7 +146,7 @@ static size_t find_repeated(const gonio_readings *readings, const size_t *latest
 gonio_status gonio_i_readings_refuse_repeats(gonio_context *context, const gonio_readings *readings,
                                              bool measured)
 {
-    /* [count] each: the last reading so far of the directions that begin here; the one before. */
+    /* [count] each: the last reading of the directions that first occur here; the previous one. */
     size_t *last = gonio_i_allocate(context, readings->count, sizeof *last);
     size_t *before = gonio_i_allocate(context, readings->count, sizeof *before);
     gonio_status status = last != NULL && before != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;

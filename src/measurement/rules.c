@@ -7,7 +7,7 @@
 
 const char *const gonio_i_angle_names[4] = {"theta_i_deg", "phi_i_deg", "theta_o_deg", "phi_o_deg"};
 
-/* 1/sr: far above any peak, in any unit, and far below where squares overflow. */
+/* 1/sr: far above any peak in any unit, far below the overflow of squares. */
 static const double MOST_VALUE = 1e30;
 
 const char *gonio_i_angle_problem(int which, double degrees, gonio_status *status)

@@ -1,4 +1,4 @@
-/* The environments that are built in, as images made from formulas. */
+/* The built-in environments: images made from formulas. */
 #include <math.h>
 #include <string.h>
 
@@ -15,8 +15,8 @@ static double smooth_step(double low, double high, double x)
     return t * t * (3.0 - 2.0 * t);
 }
 
-/* 1 within a rectangle that stands upright at an azimuth (0: behind the viewer, positive to the
- * right) and height, soft over a twentieth of its size. Degrees. */
+/* 1 within an upright rectangle at an azimuth (0: behind the viewer, positive to the right) and an
+ * elevation, 0 outside. Its edge is soft over a twentieth of its size. Degrees. */
 static double soft_box(const double d[3], double azimuth, double elevation, double half_width,
                        double half_height)
 {
@@ -60,7 +60,7 @@ static void sky(const double d[3], double rgb[3])
     }
 }
 
-/* The same from everywhere: what a surface does not absorb comes back. */
+/* Equal radiance from all directions: a surface reflects what it does not absorb. */
 static void furnace(const double d[3], double rgb[3])
 {
     (void)d;
@@ -88,7 +88,7 @@ const char *gonio_environment_summary(int index)
     return index >= 0 && index < BUILTIN ? builtin[index].summary : NULL;
 }
 
-/* Each pixel at its middle. */
+/* Fills each pixel with the radiance at its middle. */
 static void fill(radiance_of *radiance, gonio_image *image)
 {
     for (int row = 0; row < HEIGHT; row++) {

@@ -12,7 +12,7 @@
 
 enum { GAP = 8, MARGIN = 14, MOST_SIDE = 32767, SCALE_HEIGHT = 10 }; /* pixels */
 
-/* Where things are, in pixels. */
+/* The layout, in pixels. */
 typedef struct layout {
     int cell_width, cell_height;
     int font;  /* size */
@@ -65,7 +65,7 @@ static gonio_status check(gonio_context *context, const gonio_comparison_picture
     return GONIO_OK;
 }
 
-/* What the longest takes, roughly, within reason: text that is wider becomes smaller. */
+/* Roughly the width of the longest name, within limits. Wider text is drawn smaller. */
 static int width_of_names(const gonio_comparison_picture *picture, int font)
 {
     size_t longest = 6;
@@ -115,7 +115,7 @@ static int top_of(const layout *at, size_t row)
 
 /* ---- drawing ---- */
 
-/* Text that is not UTF-8 would stop cairo from drawing anything further. */
+/* Replaces bytes that are not UTF-8, because cairo draws nothing after them. */
 static void printable(const char *from, char *to, size_t size)
 {
     size_t n = 0;
@@ -138,8 +138,8 @@ static void printable(const char *from, char *to, size_t size)
     to[n] = '\0';
 }
 
-/* One line in a box of a width, its middle at x, its foot at y; smaller letters if it is too long.
- */
+/* Draws one line in a box of a width, with its middle at x and its foot at y. Long text has smaller
+ * letters. */
 static void put_text(const drawing *d, const char *text, double x, double y, double width,
                      bool bold)
 {
@@ -183,7 +183,7 @@ static void put_image(const drawing *d, const gonio_image *image, const gonio_to
     }
 }
 
-/* 0 .. 1 from black by blue, red and yellow to white, ever brighter. */
+/* The colour of a value in 0 .. 1: from black over blue, red and yellow to white, ever brighter. */
 static void heat(double value, unsigned char rgb[3])
 {
     static const double stops[5][3] = {
@@ -279,7 +279,7 @@ static gonio_status put_row(const drawing *d, size_t row, float *map)
     return status;
 }
 
-/* What the colours of the differences mean. */
+/* Draws the scale of the colours of differences. */
 static void put_scale(const drawing *d)
 {
     const int width = d->at.cell_width;

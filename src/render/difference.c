@@ -1,11 +1,11 @@
-/* How far renderings are from each other as people see them: PSNR and Delta E_ITP. */
+/* Differences of renderings as people see them: PSNR and Delta E_ITP. */
 #include <math.h>
 
 #include "image.h"
 
 /* ---- ICtCp (Recommendation ITU-R BT.2100) ---- */
 
-/* BT.709 to BT.2020, both white D65 (Report ITU-R BT.2087). */
+/* From BT.709 to BT.2020, both with the white D65 (Report ITU-R BT.2087). */
 static const double to_2020[3][3] = {
     {0.6274, 0.3293, 0.0433}, {0.0691, 0.9195, 0.0114}, {0.0164, 0.0880, 0.8956}};
 

@@ -1,4 +1,4 @@
-/* Environments: an image of the light from all directions, looked up and sampled by luminance. */
+/* Environments: images of the light from all directions, looked up and sampled by luminance. */
 #include "environment.h"
 
 #include <math.h>
@@ -9,8 +9,8 @@
 
 struct gonio_environment {
     gonio_image *image;
-    double *row_sum;        /* [height + 1]: of power, rows before; ends with all */
-    double *column_sum;     /* [height][width + 1]: within a row */
+    double *row_sum;        /* [height + 1]: power of all rows before */
+    double *column_sum;     /* [height][width + 1]: the same within a row */
     double *row_cosine;     /* [height + 1]: of the polar angle of the rows' edges */
     uint32_t *row_guide;    /* [height]: see guide_to */
     uint32_t *column_guide; /* [height][width] */
@@ -39,7 +39,7 @@ static const float *pixel_at(const gonio_environment *e, int column, int row)
            ((size_t)row * (size_t)e->image->width + (size_t)column) * GONIO_IMAGE_CHANNELS;
 }
 
-/* In pixels: 0 .. width from left to right, 0 .. height from the top. */
+/* The place of a direction in pixels: 0 .. width from left to right, 0 .. height from the top. */
 static void place_of(const gonio_environment *e, const double direction[3], double *x, double *y)
 {
     const double revolutions = atan2(direction[0], -direction[2]) / (2.0 * M_PI) + 0.5;
@@ -52,7 +52,7 @@ static int clamp(int value, int count)
     return value < 0 ? 0 : value < count ? value : count - 1;
 }
 
-/* Of each pixel of a row: a band of the sphere cut into equal parts. */
+/* The solid angle of each pixel of a row: a band of the sphere in equal parts. */
 static double solid_angle(const gonio_environment *e, int row)
 {
     return 2.0 * M_PI / e->image->width * (e->row_cosine[row] - e->row_cosine[row + 1]);
@@ -102,9 +102,9 @@ void gonio_i_environment_shown(const gonio_environment *environment, const doubl
 
 /* ---- sampling ---- */
 
-/* For each of `count` equal parts of an ascending list sum[count + 1], from 0 on, the interval that
- * holds its beginning: from there the one that holds a value is a step or two away (Chen and Asau
- * 1974). */
+/* Divides the range of an ascending list sum[count + 1], from 0 on, into `count` equal parts.
+ * guide: the interval of the list that holds the beginning of each part. From there the interval
+ * that holds a value is a step or two away (Chen and Asau 1974). */
 static void guide_to(const double *sum, int count, uint32_t *guide)
 {
     uint32_t at = 0;
@@ -116,7 +116,7 @@ static void guide_to(const double *sum, int count, uint32_t *guide)
     }
 }
 
-/* Chooses the interval in proportion to its length, and where in it, 0 .. 1. */
+/* Chooses an interval in proportion to its length, and a place in it, 0 .. 1. */
 static int choose(const double *sum, const uint32_t *guide, int count, double uniform,
                   double *within)
 {

@@ -11,14 +11,14 @@
 
 enum { PIXEL_BYTES = GONIO_IMAGE_CHANNELS * sizeof(float) };
 
-/* What a reader or a writer is called back with. */
+/* The user data of callbacks. */
 typedef struct stream {
     gonio_context *context;
     const char *path;
     const gonio_i_bytes *bytes; /* read */
     gonio_i_output *output;     /* written */
     gonio_status status;        /* of writing */
-    char message[256];          /* the library's first complaint */
+    char message[256];          /* the library's first message */
 } stream;
 
 static stream *stream_of(exr_const_context_t exr)
@@ -70,7 +70,7 @@ static int64_t size_of_bytes(exr_const_context_t exr, void *user)
     return (int64_t)((const stream *)user)->bytes->size;
 }
 
-/* Where a channel's values go in a pixel; -1 for one that is not wanted. */
+/* The place of a channel's values in a pixel; -1 for an unused channel. */
 static int place_of(const char *name)
 {
     static const char names[] = "RGBA";
@@ -129,7 +129,7 @@ static float value_of(const uint8_t *from, exr_pixel_type_t type)
     return type == EXR_PIXEL_FLOAT ? value : (float)word;
 }
 
-/* Puts one line of a channel in its place. */
+/* Copies one line of a channel to its place. */
 static void unpack_line(const exr_coding_channel_info_t *channel, const uint8_t *from, int line)
 {
     uint8_t *to = channel->decode_to_ptr;
@@ -144,8 +144,8 @@ static void unpack_line(const exr_coding_channel_info_t *channel, const uint8_t 
     }
 }
 
-/* The library's own unpacking takes all channels for wanted where three of them are half floats.
- * Lines follow one another; in each, the channels. */
+/* Unpacks a chunk: lines, in each the channels. The library's own unpacking assumes that all
+ * channels are wanted if three of them are half floats. */
 static exr_result_t unpack(exr_decode_pipeline_t *decoder)
 {
     const uint8_t *from = decoder->unpacked_buffer;
@@ -242,7 +242,7 @@ static exr_result_t decode_tiles(exr_context_t exr, channels wanted, gonio_image
     return code;
 }
 
-/* Grey to all colours, opaque where there is no A. */
+/* Copies grey to all colours. Without A, pixels are opaque. */
 static void complete(channels found, gonio_image *image)
 {
     const size_t pixels = (size_t)image->width * (size_t)image->height;

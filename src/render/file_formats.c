@@ -1,4 +1,4 @@
-/* Formats of meshes and images, told by content: see file_formats.h. */
+/* Formats of meshes and images, judged by content: see file_formats.h. */
 #include "file_formats.h"
 
 #include <string.h>
@@ -11,7 +11,7 @@ static bool begins(const char *bytes, size_t size, const char *with, size_t leng
     return size >= length && memcmp(bytes, with, length) == 0;
 }
 
-/* Words that begin the lines of an OBJ file. */
+/* Whether lines begin with the words of OBJ files. */
 static bool looks_like_obj(const char *bytes, size_t size)
 {
     static const char *const words[] = {"v",      "vn",     "vt",     "vp",  "f",    "l",

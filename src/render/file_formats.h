@@ -1,4 +1,4 @@
-/* Formats of meshes and images, told by content. Known without the renderer too. */
+/* Formats of meshes and images, judged by content, also without the renderer. */
 #ifndef GONIO_RENDER_FILE_FORMATS_H
 #define GONIO_RENDER_FILE_FORMATS_H
 
@@ -17,11 +17,11 @@ typedef enum gonio_i_image_format {
     GONIO_I_NO_IMAGE
 } gonio_i_image_format;
 
-/* The format of a file that begins with these bytes, which a zero follows. */
+/* The format of a file that begins with these bytes. A zero follows them. */
 gonio_i_mesh_format gonio_i_mesh_format_find(const char *bytes, size_t size);
 gonio_i_image_format gonio_i_image_format_find(const char *bytes, size_t size);
 
-/* Its name; NULL if it has none of these formats. */
+/* The name of a file's format; NULL if it has none of these. */
 const char *gonio_i_mesh_format_of(const gonio_i_file *file);
 const char *gonio_i_image_format_of(const gonio_i_file *file);
 

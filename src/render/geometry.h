@@ -22,7 +22,7 @@ static inline void gonio_i_along(const double a[3], double s, const double b[3],
     }
 }
 
-/* Leaves a zero vector as it is. */
+/* Scales a vector to length 1. A zero vector stays. */
 static inline void gonio_i_normalise(double a[3])
 {
     const double length = gonio_i_length(a);
@@ -63,7 +63,7 @@ static inline void gonio_i_to_world(const gonio_i_frame *frame, const double loc
     }
 }
 
-/* Of BT.709. */
+/* The luminance of linear BT.709 colours. */
 static inline double gonio_i_luminance(const double rgb[3])
 {
     return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];

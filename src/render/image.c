@@ -1,4 +1,4 @@
-/* Images in memory, and which reader a file needs. */
+/* Images in memory, and files read whole. */
 #include "image.h"
 
 #include <errno.h>
@@ -75,7 +75,7 @@ gonio_status gonio_i_read_bytes(gonio_context *context, const char *path, gonio_
 {
     *bytes = (gonio_i_bytes){0};
     struct stat look;
-    if (stat(path, &look) == 0 && S_ISFIFO(look.st_mode)) { /* which opening would wait for */
+    if (stat(path, &look) == 0 && S_ISFIFO(look.st_mode)) { /* opening one would wait */
         return cannot_read(context, path, "not a regular file");
     }
     FILE *stream = fopen(path, "rbe");

@@ -1,4 +1,4 @@
-/* Which reader an image file needs. */
+/* Reading images: chooses the reader of a file's format. */
 #include "file_formats.h"
 #include "image.h"
 

@@ -1,4 +1,4 @@
-/* Triangle meshes from files: which reader a file needs; centred and scaled. */
+/* Triangle meshes from files: chooses the reader of a format, centres and scales the mesh. */
 #include "mesh.h"
 
 #include <limits.h>
@@ -33,7 +33,7 @@ size_t gonio_mesh_corners(const gonio_mesh *mesh)
 
 /* ---- into the unit sphere ---- */
 
-/* About the middle of the box around the corners that triangles use. */
+/* The centre of the box around the corners that triangles use. */
 static void find_centre(const gonio_mesh *mesh, double centre[3])
 {
     double low[3] = {INFINITY, INFINITY, INFINITY};
@@ -78,7 +78,7 @@ static void fit(gonio_mesh *mesh)
 
 typedef gonio_status mesh_reader(gonio_i_mesh_making *making, const gonio_i_bytes *bytes);
 
-/* Of gonio_i_mesh_format. */
+/* In the order of gonio_i_mesh_format. */
 static mesh_reader *const readers[] = {gonio_i_read_obj, gonio_i_read_ply, NULL};
 
 static gonio_status read_bytes(gonio_i_mesh_making *making, const gonio_i_bytes *bytes)
@@ -101,7 +101,7 @@ static gonio_status read_bytes(gonio_i_mesh_making *making, const gonio_i_bytes 
     return status;
 }
 
-/* What is said of a mesh that is used all the same. */
+/* Warns of flaws of a mesh that is used all the same. */
 static gonio_status finish(const gonio_i_mesh_making *making)
 {
     gonio_status status = GONIO_OK;

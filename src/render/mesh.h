@@ -1,4 +1,4 @@
-/* Inside a mesh, and what its readers fill in. */
+/* Meshes inside the library, and what their readers fill in. */
 #ifndef GONIO_RENDER_MESH_H
 #define GONIO_RENDER_MESH_H
 
@@ -13,30 +13,30 @@ struct gonio_mesh {
     uint32_t *corner; /* [triangles][3] */
 };
 
-/* A mesh in the making. */
+/* A mesh that is being read. */
 typedef struct gonio_i_mesh_making {
     gonio_context *context;
     const char *path; /* for messages */
     gonio_mesh *mesh;
     size_t corner_room, triangle_room;
-    size_t flat;       /* triangles without area, which are left out */
-    bool with_normals; /* every corner has been given one */
+    size_t flat;       /* number of triangles without area, which are left out */
+    bool with_normals; /* every corner has a normal */
 } gonio_i_mesh_making;
 
 /* Adds a corner; normal is NULL where there is none. Errors: _DATA if it is not finite, _MEMORY. */
 gonio_status gonio_i_mesh_add_corner(gonio_i_mesh_making *making, const float position[3],
                                      const float *normal);
 
-/* Adds a triangle of corners that are there. Errors: _FORMAT if one is not, _MEMORY. */
+/* Adds a triangle of existing corners. Errors: _FORMAT if one does not exist, _MEMORY. */
 gonio_status gonio_i_mesh_add_triangle(gonio_i_mesh_making *making, const uint32_t corner[3]);
 
 /* The readers. Errors: _FORMAT, and those above. */
 gonio_status gonio_i_read_obj(gonio_i_mesh_making *making, const gonio_i_bytes *bytes);
 gonio_status gonio_i_read_ply(gonio_i_mesh_making *making, const gonio_i_bytes *bytes);
 
-/* Normals where a file has none: at each corner of each triangle the mean, weighted by area, over
- * the faces about the corner that lie within 50 degrees of it. Corners are then no longer shared.
- * Errors: _MEMORY. */
+/* Makes normals for a mesh without. The normal at a corner of a triangle is the mean, weighted by
+ * area, of the faces around the corner that are within 50 degrees of the triangle. Corners are no
+ * longer shared afterwards. Errors: _MEMORY. */
 gonio_status gonio_i_mesh_make_normals(gonio_context *context, gonio_mesh *mesh);
 
 #endif

@@ -1,4 +1,4 @@
-/* Corners and triangles are added to a mesh, each checked. */
+/* Adding corners and triangles to a mesh, each of them checked. */
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
@@ -27,7 +27,7 @@ static bool has_area(const float *a, const float *b, const float *c)
     return gonio_i_length(cross) > 1e-12 * side * side && side > 0.0;
 }
 
-/* Room for one more of what is `size` bytes each; doubled when it runs out. */
+/* Makes room for one more item of `size` bytes, by doubling. */
 static gonio_status make_room(const gonio_i_mesh_making *m, size_t count, size_t size, size_t *room,
                               void **array)
 {

@@ -9,7 +9,7 @@
 /* Faces that meet at more than 50 degrees do not share a normal. */
 static const double crease = 0.6427876096865393; /* its cosine */
 
-/* Which triangles are about each corner: triangle[first[c]] .. triangle[first[c + 1] - 1]. */
+/* The triangles around each corner c: triangle[first[c]] .. triangle[first[c + 1] - 1]. */
 typedef struct neighbours {
     size_t *first;      /* [corners + 1] */
     uint32_t *triangle; /* [3 triangles] */
@@ -47,7 +47,7 @@ static gonio_status find_neighbours(gonio_context *context, const gonio_mesh *me
     if (n->first == NULL || n->triangle == NULL || n->face == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    /* Counted two places ahead, summed up, and moved back by one while the lists are filled. */
+    /* Numbers are counted two places ahead and summed up. Filling the lists moves them by one. */
     for (size_t k = 0; k < uses; k++) {
         n->first[(size_t)mesh->corner[k] + 2]++;
     }

@@ -1,5 +1,5 @@
-/* OBJ meshes, by assimp. It sees only lines of corners, faces and groups: its readers of materials
- * do not stand damaged files. */
+/* OBJ meshes, by assimp. It sees only the lines of corners, faces and groups, because its readers
+ * of materials do not tolerate damaged files. */
 #include <assimp/cimport.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -9,7 +9,7 @@
 
 #include "mesh.h"
 
-/* ---- the lines that matter ---- */
+/* ---- selecting lines ---- */
 
 /* Whether a line begins with a word that is kept. */
 static bool is_kept(const char *line, const char *end)
@@ -30,14 +30,14 @@ static bool is_kept(const char *line, const char *end)
     return false;
 }
 
-/* Whether a line goes on in the next. */
+/* Whether a line continues in the next. */
 static bool goes_on(const char *line, const char *end)
 {
     end -= end > line && end[-1] == '\r';
     return end > line && end[-1] == '\\';
 }
 
-/* Turns all other lines, with those that continue them, to blanks. */
+/* Replaces all other lines, and those that continue them, by blanks. */
 static void blank_others(char *text, size_t size)
 {
     const char *last = text + size;
@@ -75,8 +75,8 @@ static double extent_of(const struct aiScene *scene)
     return fmax(fmax(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
 }
 
-/* assimp joins corners that are closer than 1e-5, whatever the unit. So a small mesh is made larger
- * first, by a power of two, which is exact. */
+/* Enlarges a small mesh by a power of two, which is exact: assimp joins corners that are closer
+ * than 1e-5 in any unit. */
 static void enlarge(const struct aiScene *scene)
 {
     const double extent = extent_of(scene);
@@ -119,7 +119,7 @@ static gonio_status add_part(gonio_i_mesh_making *making, const struct aiMesh *p
     return status;
 }
 
-/* From memory, so that a file can name no other files. NULL if it cannot be read. */
+/* Reads a text from memory, so that it cannot refer to other files. NULL if it cannot be read. */
 static const struct aiScene *import_scene(const char *text, size_t size)
 {
     const struct aiScene *scene =

@@ -1,5 +1,5 @@
-/* PLY meshes (Turk 1994), text and binary. Own code, as the libraries at hand do not stand damaged
- * files: assimp's reader never returns from some that are cut short. */
+/* PLY meshes (Turk 1994), text and binary. The code is gonio's own, because libraries do not
+ * tolerate damaged files: assimp's reader never returns from some truncated files. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,7 +18,7 @@ static const int bytes_of[NO_TYPE] = {1, 1, 2, 2, 4, 4, 4, 8};
 
 typedef struct property {
     char name[NAME];
-    type count; /* of a list; NO_TYPE for a single value */
+    type count; /* of a list's length; NO_TYPE for a single value */
     type value;
 } property;
 
@@ -46,7 +46,7 @@ static gonio_status fail(const reading *r, const char *what)
 
 /* ---- the header ---- */
 
-/* The next line without its end; false at the end of the file or for one that is too long. */
+/* The next line without its end. False at the end of the file or for a line that is too long. */
 static bool next_line(reading *r, char *line, size_t size)
 {
     const unsigned char *end = memchr(r->at, '\n', (size_t)(r->end - r->at));
@@ -163,7 +163,7 @@ static gonio_status read_header(reading *r)
 
 /* ---- values ---- */
 
-/* The file is followed by a zero byte, at which strtod stops. */
+/* Reads a number. A zero byte follows the file, so that strtod stops there. */
 static bool read_text(reading *r, double *value)
 {
     char *end = NULL;
@@ -214,7 +214,7 @@ static bool read_value(reading *r, type kind, double *value)
 
 /* ---- corners and faces ---- */
 
-/* Where a property of a corner goes: x, y, z, nx, ny, nz; -1 for others. */
+/* The place of a property of a corner: x, y, z, nx, ny, nz are 0 to 5; -1 for others. */
 static int place_of(const element *e, int index)
 {
     static const char *const names[PLACES] = {"x", "y", "z", "nx", "ny", "nz"};
@@ -238,7 +238,9 @@ static uint32_t corner_of(double value)
     return value >= 0.0 && value < (double)UINT32_MAX ? (uint32_t)value : UINT32_MAX;
 }
 
-/* A polygon is a fan of triangles about its first corner; other lists are passed over. */
+/* Reads a list. A polygon becomes a fan of triangles about its first corner. Other lists are
+ * skipped.
+ */
 static gonio_status read_list(reading *r, const property *p, bool polygon)
 {
     double count = 0.0;
@@ -302,7 +304,7 @@ gonio_status gonio_i_read_ply(gonio_i_mesh_making *making, const gonio_i_bytes *
     gonio_status status = read_header(r);
     for (int k = 0; k < r->elements && status == GONIO_OK; k++) {
         const element *e = &r->element[k];
-        /* Without properties an item takes no bytes, and the count could be anything. */
+        /* An item without properties takes no bytes, so its count has no limit. */
         for (unsigned long long item = 0;
              e->properties > 0 && item < e->items && status == GONIO_OK; item++) {
             status = read_item(r, e);

@@ -1,4 +1,4 @@
-/* What stands in for the renderer in a library built without it (GONIO_RENDER=OFF). */
+/* The functions of the renderer in a library that is built without it (GONIO_RENDER=OFF). */
 #include "image.h"
 
 static gonio_status not_built(gonio_context *context)
@@ -38,7 +38,7 @@ gonio_status gonio_mesh_read(gonio_context *context, const char *path, gonio_mes
     return not_built(context);
 }
 
-/* There are none. */
+/* Objects of the renderer do not exist in such a library. */
 void gonio_mesh_free(gonio_mesh **mesh)
 {
     (void)mesh;

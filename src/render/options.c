@@ -1,4 +1,4 @@
-/* What is rendered if nothing else is said. */
+/* The default options of rendering. */
 #include <gonio/render.h>
 #include "../core/options.h"
 #include <math.h>

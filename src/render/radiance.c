@@ -1,7 +1,7 @@
 /* Radiance .hdr images (Ward, "Real Pixels", Graphics Gems II, 1991): a header of text, then
- * scan lines of R, G, B mantissas with a common exponent, plain or each component run-length coded.
- * Own code, as the library at hand does not return from some files that are cut short, and does not
- * look at EXPOSURE. */
+ * scan lines of R, G, B mantissas with a common exponent, plain or run-length coded by component.
+ * The code is gonio's own, because the library at hand does not return from some truncated files
+ * and ignores EXPOSURE. */
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
@@ -17,7 +17,7 @@ typedef struct reading {
     const char *path;
     const unsigned char *at; /* the next byte */
     const unsigned char *end;
-    double scale[3]; /* what R, G, B were multiplied by */
+    double scale[3]; /* the factors that R, G, B were multiplied by */
     int width, height;
 } reading;
 
@@ -29,7 +29,7 @@ static gonio_status fail(const reading *r, const char *problem)
 
 /* ---- the header ---- */
 
-/* The next line, without its end; false if it is too long or there is none. */
+/* The next line without its end. False if it is too long or there is none. */
 static bool next_line(reading *r, char line[128])
 {
     const unsigned char *end = memchr(r->at, '\n', (size_t)(r->end - r->at));
@@ -92,14 +92,14 @@ static gonio_status read_header(reading *r)
     return fail(r, "its header does not end");
 }
 
-/* A whole number from 1 on; 0 for anything else. */
+/* A whole number from 1 on; 0 for other text. */
 static long side_of(const char *text, char **end)
 {
     const long side = strtol(text, end, 10);
     return *end != text && side > 0 ? side : 0;
 }
 
-/* "-Y height +X width", the usual orientation. */
+/* Reads "-Y height +X width", the usual orientation. */
 static gonio_status read_size(reading *r)
 {
     char line[128] = "";
@@ -123,7 +123,8 @@ static gonio_status read_size(reading *r)
 
 /* ---- scan lines ---- */
 
-/* One component of a coded line: a count above 128 repeats the next byte, another copies bytes. */
+/* Reads one component of a coded line. A count above 128 repeats the next byte; a smaller one
+ * copies bytes. */
 static bool read_component(reading *r, unsigned char *line, int component)
 {
     for (int x = 0; x < r->width;) {
@@ -150,7 +151,7 @@ static bool is_coded(const reading *r)
            r->at[0] == 2 && r->at[1] == 2 && (r->at[2] << 8 | r->at[3]) == r->width;
 }
 
-/* line[width][4]; false if the file ends before, or is damaged. */
+/* Reads line[width][4]. False if the file is damaged or ends early. */
 static bool read_line(reading *r, unsigned char *line)
 {
     if (!is_coded(r)) {
@@ -198,7 +199,8 @@ static gonio_status read_lines(reading *r, gonio_image *image)
     return status;
 }
 
-/* Each pixel of the file is 4 bytes, or a run of at most 127 of them 2 bytes a component. */
+/* Whether the file is large enough for its pixels. A pixel takes 4 bytes, or a run of at most 127
+ * pixels 2 bytes a component. */
 static bool can_hold(const reading *r)
 {
     return (int64_t)r->width * r->height / 127 * 2 <= r->end - r->at;

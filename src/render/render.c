@@ -1,4 +1,4 @@
-/* Rendering: light that comes straight from a lamp or an environment to every pixel. */
+/* Rendering: direct light from a lamp or an environment, for every pixel. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,12 +15,12 @@
 
 typedef struct camera {
     gonio_i_frame frame; /* z: from the object to the viewer */
-    double distance;     /* of the viewer; 0 for parallel rays */
+    double distance;     /* of the viewer from the object; 0 for parallel rays */
     double half_side;    /* of the shorter side: a slope, or for parallel rays a length */
     int width, height;
 } camera;
 
-static const double share = 0.95; /* of the shorter side, which the unit sphere fills */
+static const double share = 0.95; /* of the shorter side: the unit sphere fills it */
 
 static camera place_camera(const gonio_render_options *o)
 {
@@ -68,7 +68,7 @@ typedef struct view {
     double turn_cosine, turn_sine; /* of the environment */
 } view;
 
-/* Between the world and the environment's own frame: a turn about y, forth (1) or back (-1). */
+/* Rotates a direction about y: from the world to the environment's frame (sign 1) or back (-1). */
 static void turn(const view *v, double sign, const double from[3], double to[3])
 {
     const double sine = sign * v->turn_sine;
@@ -84,14 +84,14 @@ typedef struct place {
     double outgoing[3];  /* in the frame */
 } place;
 
-/* Whether light from a direction (of the world) arrives, after so long a way. */
+/* Whether light from a direction (in the world) at a distance reaches the place. */
 static bool arrives(const view *v, const place *p, const double world[3], double distance)
 {
     return gonio_i_dot3(p->frame.z, world) > 0.0 && gonio_i_dot3(p->hit->face, world) > 0.0 &&
            gonio_i_scene_is_free(v->scene, p->hit, world, distance);
 }
 
-/* Adds what it contributes: the BRDF times cosine times light. */
+/* Adds reflected light: the BRDF times the cosine times the light. */
 static void add_light(const view *v, const gonio_i_meeting *meeting, const double light[3],
                       double factor, double sum[3])
 {
@@ -102,7 +102,7 @@ static void add_light(const view *v, const gonio_i_meeting *meeting, const doubl
     }
 }
 
-/* Irradiance pi at the origin, facing the lamp. */
+/* Adds the light of the lamp. Its irradiance at the origin, facing it, is pi. */
 static void add_lamp(const view *v, const place *p, double sum[3])
 {
     const gonio_render_options *o = v->options;
@@ -125,8 +125,9 @@ static void add_lamp(const view *v, const place *p, double sum[3])
     }
 }
 
-/* The balance heuristic: one direction of either kind, each divided by the sum of the densities.
- * `own` is in the environment's frame. */
+/* Adds the light from one direction by the balance heuristic: one direction is sampled from the
+ * BRDF and one from the environment, and each is divided by the sum of both densities. `own` is in
+ * the environment's frame. */
 static void add_from_environment(const view *v, const place *p, const double own[3],
                                  const double world[3], const double incident[3], double sum[3])
 {
@@ -189,10 +190,10 @@ static void show_environment(const view *v, const double direction[3], double su
     gonio_i_along(sum, 1.0, light, sum);
 }
 
-/* The samples of a pixel are spread evenly: a lattice of points, shifted at random for each pixel.
+/* The samples of a pixel: an even lattice of points, shifted at random for each pixel,
  * frac(shift + n g^-k) with g^8 = g + 1 (Roberts 2018; the shift by Cranley and Patterson 1976).
- * They do not depend on what the rays meet, so that materials rendered with the same sampling share
- * their noise. */
+ * Samples do not depend on what the rays meet. So materials that are rendered with the same
+ * sampling share their noise. */
 typedef struct lattice {
     double number[NUMBERS], step[NUMBERS];
 } lattice;
@@ -355,7 +356,7 @@ gonio_status gonio_render(gonio_context *context, const gonio_material *material
 
 struct gonio_reference {
     gonio_render_options options;
-    gonio_environment *environment; /* of its own; NULL if the options are the caller's */
+    gonio_environment *environment; /* the reference's own; NULL if it is the caller's */
     gonio_i_surface *surface;
     gonio_image *image;
     gonio_tone tone;

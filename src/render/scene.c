@@ -1,4 +1,4 @@
-/* Where rays meet the object, by Embree. */
+/* Ray tracing by Embree: see scene.h. */
 #include "scene.h"
 
 #include <embree3/rtcore.h>
@@ -9,7 +9,7 @@
 #include "geometry.h"
 #include "mesh.h"
 
-/* How far from the surface a ray begins; the object has radius 1. */
+/* The distance from the surface at which a ray begins. The object has radius 1. */
 static const double away = 1e-4;
 
 struct gonio_i_scene {
@@ -75,8 +75,8 @@ static bool build(gonio_i_scene *s)
     return filled && rtcGetDeviceError(s->device) == RTC_ERROR_NONE;
 }
 
-/* One thread builds, so that the tree, and with it which of two faces an edge belongs to, does not
- * depend on how many there are. */
+/* One thread builds the tree. So the tree does not depend on the number of threads, nor does the
+ * face to which an edge belongs. */
 gonio_status gonio_i_scene_create(gonio_context *context, const gonio_mesh *mesh,
                                   gonio_i_scene **scene)
 {
@@ -120,7 +120,7 @@ static void orient_towards(const double side[3], double v[3])
     }
 }
 
-/* Between the corners; that of the face where they cancel out. */
+/* Interpolates the normal between the corners. Where they cancel out, it is that of the face. */
 static void interpolate_normal(const gonio_mesh *mesh, const struct RTCHit *hit,
                                gonio_i_hit *result)
 {
@@ -169,7 +169,7 @@ bool gonio_i_scene_trace(const gonio_i_scene *scene, const double origin[3],
     return true;
 }
 
-/* A sphere shades nothing that it turns its front to. */
+/* A sphere casts no shadow on its own lit side. */
 bool gonio_i_scene_is_free(const gonio_i_scene *scene, const gonio_i_hit *hit,
                            const double direction[3], double distance)
 {

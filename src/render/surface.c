@@ -12,15 +12,15 @@
 
 enum { VALUES = 4, HIGHLIGHT_THETA_D = 60 }; /* bins below 60 degrees show the highlight */
 
-/* What a bin without data weighs beside one with: nothing, unless there is no other. */
+/* The weight of a bin without data: it counts only if there is no bin with data. */
 static const float hole_weight = 1e-9F;
 
 struct gonio_i_surface {
     float (*bin)[VALUES];                      /* [GONIO_BINS]: R, G, B, and the bin's weight */
-    double cumulative[GONIO_THETA_H_BINS + 1]; /* of half vectors, by theta_h */
+    double cumulative[GONIO_THETA_H_BINS + 1]; /* distribution of half vectors by theta_h */
     double density[GONIO_THETA_H_BINS];        /* of them, 1/sr */
-    double highlight;                          /* the share of samples that go by them */
-    const gonio_material *direct;              /* what is evaluated; NULL: bins are looked up */
+    double highlight;                          /* the share of samples that are drawn by them */
+    const gonio_material *direct; /* the material, if it is evaluated; NULL: bins are looked up */
 };
 
 void gonio_i_surface_free(gonio_i_surface **surface)
@@ -35,7 +35,7 @@ void gonio_i_surface_free(gonio_i_surface **surface)
 
 /* ---- holes ---- */
 
-/* Along a line of bins, each without a value gets that of the one before it. */
+/* Along a line of bins, gives each bin without a value that of the one before it. */
 static void fill_forward(float (*bin)[VALUES], ptrdiff_t step, int count)
 {
     for (int k = 1; k < count; k++) {
@@ -48,7 +48,7 @@ static void fill_forward(float (*bin)[VALUES], ptrdiff_t step, int count)
     }
 }
 
-/* From lower indices first: they are farther from the horizon. */
+/* Fills a line of bins, first from lower indices, which are farther from the horizon. */
 static void fill_line(float (*bin)[VALUES], ptrdiff_t step, int count)
 {
     fill_forward(bin, step, count);
@@ -88,9 +88,9 @@ static double mean_luminance(float (*slab)[VALUES])
     return count > 0 ? sum / count : 0.0;
 }
 
-/* The share of light that the highlight reflects: what stands out above the least luminance, which
- * is that of a diffuse surface. d omega_o = 4 (i.h) d omega_h, here for incidence near the normal.
- * Some of either is always sampled. */
+/* The share of the reflected light that is in the highlight: the luminance above the least one,
+ * which is taken as diffuse. d omega_o = 4 (i.h) d omega_h, here for incidence near the normal. The
+ * share is limited, so that both parts are always sampled. */
 static double share_of_highlight(const double *luminance, const double *angle)
 {
     double least = luminance[0];
@@ -105,7 +105,7 @@ static double share_of_highlight(const double *luminance, const double *angle)
     return all > 0.0 ? fmin(fmax(above / all, 0.15), 0.85) : 0.5;
 }
 
-/* Half vectors in proportion to the luminance and their cosine. */
+/* Finds the distribution of half vectors, proportional to the luminance and their cosine. */
 static void find_highlight(gonio_i_surface *s)
 {
     double angle[GONIO_THETA_H_BINS];
@@ -130,7 +130,7 @@ static void find_highlight(gonio_i_surface *s)
 
 /* ---- making one ---- */
 
-/* Copies the bins of a cell that have data; returns how many of the valid ones have. */
+/* Copies the bins of a cell that have data. Returns the number of valid bins among them. */
 static size_t copy_cell(const double *rho, int first_valid, float (*bin)[VALUES])
 {
     size_t data = 0;
@@ -147,7 +147,7 @@ static size_t copy_cell(const double *rho, int first_valid, float (*bin)[VALUES]
     return data;
 }
 
-/* Returns how many valid bins lack data. */
+/* Copies all values. Returns the number of valid bins without data. */
 static size_t copy_values(const gonio_table *table, float (*bin)[VALUES], size_t *data)
 {
     size_t valid = 0;

@@ -1,4 +1,4 @@
-/* A material made ready for rendering: quick to look up at any pair of directions, and to sample.
+/* A material prepared for rendering: fast to look up at any pair of directions, and to sample.
  *
  * Directions are unit vectors in the surface's frame (normal +z), both above the surface. */
 #ifndef GONIO_RENDER_SURFACE_H
@@ -8,13 +8,13 @@
 
 typedef struct gonio_i_surface gonio_i_surface;
 
-/* The material must outlive what asks for values; sampling does without it. Errors: _DATA if the
- * material has no data at all, _MEMORY, _CANCELLED, those of the material. */
+/* The material must outlive calls that ask for values; sampling does not need it. Errors: _DATA if
+ * the material has no data at all, _MEMORY, _CANCELLED, those of the material. */
 gonio_status gonio_i_surface_create(gonio_context *context, const gonio_material *material,
                                     gonio_i_surface **surface);
 void gonio_i_surface_free(gonio_i_surface **surface);
 
-/* Where two directions meet on the grid. */
+/* The coordinates of two directions. */
 typedef struct gonio_i_meeting {
     double towards_light[3]; /* the directions themselves */
     double towards_viewer[3];
@@ -25,19 +25,19 @@ typedef struct gonio_i_meeting {
 
 gonio_i_meeting gonio_i_meet(const double incident[3], const double outgoing[3]);
 
-/* The BRDF, 1/sr: as gonio_material_evaluate of a material that can be evaluated at any directions,
- * otherwise as gonio_table_value; where that has no data, of the nearest bin with data (render.h).
- */
+/* The BRDF, 1/sr: that of gonio_material_evaluate if the material can be evaluated at any
+ * directions, otherwise that of gonio_table_value. Without data there, it is that of the nearest
+ * bin with data (render.h). */
 void gonio_i_surface_value(const gonio_i_surface *surface, const gonio_i_meeting *meeting,
                            double rho[GONIO_CHANNELS]);
 
-/* An incident direction for three uniform numbers in (0, 1), by the cosine or by way of a half
- * vector whose polar angle is distributed like the highlight, each as often as its share of the
- * reflected light. False if it comes out below the surface. */
+/* An incident direction for three uniform numbers in (0, 1). It is sampled either by the cosine or
+ * by a half vector whose polar angle is distributed like the highlight, each as often as its share
+ * of the reflected light. False if the direction is below the surface. */
 bool gonio_i_surface_sample(const gonio_i_surface *surface, const double outgoing[3],
                             const double uniform[3], double incident[3]);
 
-/* The density of that, 1/sr. */
+/* The density of gonio_i_surface_sample, 1/sr. */
 double gonio_i_surface_density(const gonio_i_surface *surface, const gonio_i_meeting *meeting);
 
 #endif

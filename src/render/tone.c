@@ -4,7 +4,7 @@
 #include "geometry.h"
 #include "image.h"
 
-/* A pixel's colour as if it were opaque; false for one that shows nothing. */
+/* A pixel's colour without its opacity. False for a transparent pixel. */
 static bool colour_of(const float rgba[GONIO_IMAGE_CHANNELS], double rgb[3])
 {
     for (int k = 0; k < 3; k++) {

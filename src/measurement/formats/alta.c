@@ -1,4 +1,4 @@
-/* Readings as the ALTA library has them: `#KEY` lines, then rows of coordinates and values. */
+/* Readings in the format of the ALTA library: `#KEY` lines, then rows of coordinates and values. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,7 +25,7 @@ static void from_view_light_difference(const double *x, double angle[4])
     memcpy(angle, (double[4]){x[1], 0.0, x[0], x[2]}, 4 * sizeof *angle);
 }
 
-/* theta_l, then theta_v as a vector along the difference of azimuths. */
+/* From theta_l, and theta_v as a vector along the difference of azimuths. */
 static void from_projected_difference(const double *x, double angle[4])
 {
     const double difference = x[1] == 0.0 && x[2] == 0.0 ? 0.0 : atan2(x[2], x[1]);
@@ -47,7 +47,7 @@ static void from_half_difference(const double *x, double angle[4])
         4 * sizeof *angle);
 }
 
-/* theta_h, phi_h, theta_d, phi_d of an isotropic material. */
+/* From theta_h, phi_h, theta_d, phi_d of an isotropic material. */
 static void from_four_half_difference(const double *x, double angle[4])
 {
     from_half_difference((double[3]){x[0], x[2], x[3]}, angle);
@@ -59,7 +59,7 @@ static void spherical(const double *x, double *theta, double *phi)
     *phi = x[0] == 0.0 && x[1] == 0.0 ? 0.0 : atan2(x[1], x[0]);
 }
 
-/* Two vectors: view, light. */
+/* From two vectors: view, light. */
 static void from_vectors(const double *x, double angle[4])
 {
     spherical(x + 3, &angle[0], &angle[1]);
@@ -87,9 +87,9 @@ enum { PARAMETRISATIONS = sizeof parametrisations / sizeof *parametrisations };
 typedef struct header {
     size_t coordinates; /* of #DIM */
     size_t values;
-    const struct parametrisation *in; /* NULL: not said, or not known */
+    const struct parametrisation *in; /* NULL: not stated or unknown */
     char unknown[GONIO_I_WORD];       /* its name */
-    bool cosine;                      /* values have that of theta_v */
+    bool cosine;                      /* values include the cosine of theta_v */
 } header;
 
 static const struct parametrisation *find_parametrisation(const char *name)
@@ -102,7 +102,7 @@ static const struct parametrisation *find_parametrisation(const char *name)
     return NULL;
 }
 
-/* Reads `#KEY word ...`; the line's end is passed. */
+/* Reads a line `#KEY word ...` with its end. */
 static void read_key(gonio_i_numbers *n, header *h)
 {
     char key[GONIO_I_WORD];

@@ -1,5 +1,5 @@
-/* Readings as ASTM E1392 tables, as laboratories use them: `KEY value` lines, VARS with the names
- * of the columns, then rows of numbers with commas between them. */
+/* Readings as ASTM E1392 tables of laboratories: `KEY value` lines, VARS with the names of the
+ * columns, then rows of numbers separated by commas. */
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -56,7 +56,7 @@ static const char *next_name(const char *at)
     return at + strspn(at, " \t");
 }
 
-/* Wavelengths, if every name has one. */
+/* Reads the wavelengths if every name has one. */
 static gonio_status read_wavelengths(gonio_context *context, const char *at, columns *c)
 {
     c->wavelength = gonio_i_allocate(context, c->channels, sizeof *c->wavelength);
@@ -139,7 +139,7 @@ static gonio_status read_rows(gonio_i_numbers *n, gonio_i_import *in, const colu
     return status;
 }
 
-/* Whether as many rows came as NUM_POINTS says. */
+/* Checks the number of rows against NUM_POINTS. */
 static gonio_status check_points(gonio_i_readings_file *file, const char *points, size_t rows)
 {
     const unsigned long stated = points != NULL ? strtoul(points + 10, NULL, 10) : rows;

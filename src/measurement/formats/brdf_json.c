@@ -18,7 +18,7 @@ enum { ANGLES = 4, MOST_CHANNELS = 4096 };
 typedef struct column {
     const json_t *values; /* NULL: there is none */
     double scale;         /* to degrees; 1 */
-    bool relative;        /* deviations that are shares of their values */
+    bool relative;        /* deviations are fractions of their values */
 } column;
 
 typedef struct columns {
@@ -26,8 +26,8 @@ typedef struct columns {
     column wavelength;
     column value;
     column deviation;
-    const json_t *lit;      /* polarisations of the light */
-    const json_t *analysed; /* and of what is detected */
+    const json_t *lit;      /* polarisation of the light */
+    const json_t *analysed; /* polarisation of the detector */
     const json_t *channel;  /* names or numbers of channels without wavelengths; NULL: none */
     size_t channels;        /* of these */
     size_t rows;
@@ -49,7 +49,7 @@ static const char *unit_of(const json_t *object)
     return unit != NULL ? unit : "";
 }
 
-/* as: what the user says of the file, which its units yield to. */
+/* Finds a column of angles. The user's unit (as) comes before that of the file. */
 static gonio_status find_angle(const gonio_i_readings_file *file, const json_t *data,
                                const char *name, const gonio_convention *as, column *c)
 {
@@ -74,7 +74,7 @@ static gonio_status find_angle(const gonio_i_readings_file *file, const json_t *
     return GONIO_OK;
 }
 
-/* The unit of a wavelength; 0 for one that is not known. */
+/* The unit of a wavelength; 0 for an unknown one. */
 static int wavelength_unit(const char *unit)
 {
     return strcasecmp(unit, "nm") == 0 || *unit == '\0' ? GONIO_NANOMETRES
@@ -123,7 +123,7 @@ static gonio_status find_values(const gonio_i_readings_file *file, const json_t 
                               file->path, unit_of(brdf));
 }
 
-/* The number behind "k =" in a text; NaN where there is none. */
+/* The number after "k =" in a text; NaN if there is none. */
 static double factor_in(const char *text)
 {
     for (const char *k = text; k != NULL && (k = strchr(k, 'k')) != NULL; k++) {
@@ -137,7 +137,7 @@ static double factor_in(const char *text)
     return NAN;
 }
 
-/* That of expanded uncertainties, where it is stated; 1. */
+/* The coverage factor of expanded uncertainties if it is stated, otherwise 1. */
 static double coverage_factor(const json_t *uncertainty)
 {
     const json_t *stated = gonio_i_json_member(uncertainty, "coverage_factor");
@@ -148,7 +148,7 @@ static double coverage_factor(const json_t *uncertainty)
     return factor > 0.0 && isfinite(factor) ? factor : 1.0;
 }
 
-/* Uncertainties of each value come before one of all. */
+/* Finds the deviations. Uncertainties of single values come before one for all. */
 static gonio_status find_deviation(const gonio_i_readings_file *file, const json_t *data,
                                    const json_t *brdf, column *c)
 {
@@ -164,7 +164,7 @@ static gonio_status find_deviation(const gonio_i_readings_file *file, const json
                               file->path, unit);
 }
 
-/* R, G, B are 0, 1, 2; numbers are counted from 1. MOST_CHANNELS for what is neither. */
+/* The channel of a row: 0, 1, 2 for R, G, B; numbers count from 1. MOST_CHANNELS for neither. */
 static size_t channel_at(const columns *c, size_t row)
 {
     const json_t *entry = json_array_get(c->channel, row);
@@ -178,7 +178,7 @@ static size_t channel_at(const columns *c, size_t row)
     return number >= 1 && number <= MOST_CHANNELS ? (size_t)number - 1 : MOST_CHANNELS;
 }
 
-/* The channels of a file without wavelengths: what gonio writes of colours and of sensors. */
+/* Finds the channels of a file without wavelengths, as gonio writes colours and sensors. */
 static gonio_status find_channels(const gonio_i_readings_file *file, const json_t *data, columns *c)
 {
     c->channel = c->wavelength.values == NULL
@@ -200,7 +200,7 @@ static gonio_status find_channels(const gonio_i_readings_file *file, const json_
     return GONIO_OK;
 }
 
-/* As many rows as values; every other column has as many, or one number. */
+/* Checks that every column has as many rows as the values, or one number. */
 static gonio_status check_lengths(const gonio_i_readings_file *file, columns *c)
 {
     const column *const all[] = {&c->angle[0], &c->angle[1],   &c->angle[2],
@@ -266,8 +266,8 @@ static double number_at(const column *c, size_t row)
     return gonio_i_json_double(value) * c->scale;
 }
 
-/* A number for each state of polarisation: above 0 for s, below for p, 0 for none. Stokes vectors
- * are (1, Q, U, V), and s is Q = 1. */
+/* A number for each state of polarisation: above 0 for s, below 0 for p, 0 for unpolarised. Stokes
+ * vectors are (1, Q, U, V); Q is 1 for s. */
 static double state_at(const json_t *states, size_t row)
 {
     const json_t *entry = json_array_get(states, row);
@@ -283,7 +283,7 @@ static double state_at(const json_t *states, size_t row)
     return state;
 }
 
-/* Which states occur. */
+/* The states that occur. */
 typedef struct states {
     bool s;
     bool p;
@@ -302,14 +302,15 @@ static states states_of(const json_t *array)
     return found;
 }
 
-/* What is detected of s and of p adds up; what is lit by s and by p is averaged. */
+/* The factor of values that were detected as s and as p: these add up. Values lit by s and by p are
+ * averaged. */
 static double analysers(const columns *c)
 {
     const states detected = states_of(c->analysed);
     return detected.s && detected.p ? 2.0 : 1.0;
 }
 
-/* Says where light of one polarisation only stands for light of none. */
+/* Notes that values of one polarisation stand for unpolarised light. */
 static gonio_status note_polarisation(const gonio_i_readings_file *file, gonio_readings *readings,
                                       const char *what, const json_t *array)
 {

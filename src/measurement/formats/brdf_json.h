@@ -1,4 +1,4 @@
-/* Readings as BRDF JSON: what reads and what writes them share. */
+/* Readings as BRDF JSON: what the reader and the writer share. */
 #ifndef GONIO_BRDF_JSON_H
 #define GONIO_BRDF_JSON_H
 
@@ -10,11 +10,11 @@
 gonio_status gonio_i_brdf_json_print(gonio_context *context, const gonio_readings *readings,
                                      const char *command, FILE *stream);
 
-/* The object `metadata`; false when out of memory. */
+/* Prints the object `metadata`. False when out of memory. */
 bool gonio_i_brdf_json_print_metadata(const gonio_readings *readings, const char *command,
                                       FILE *stream);
 
-/* The comments of a file that gonio wrote, as they were. Errors: _MEMORY. */
+/* Reads the comments of a file that gonio wrote. Errors: _MEMORY. */
 gonio_status gonio_i_brdf_json_read_comments(const gonio_i_readings_file *file, const json_t *root,
                                              gonio_readings *readings);
 

@@ -1,5 +1,5 @@
-/* The metadata of BRDF JSON: what gonio knows of readings, within the published schema, and its
- * comments read back. */
+/* The metadata of BRDF JSON, within the published schema: written from what gonio knows of
+ * readings, and comments read back. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,7 +18,7 @@ static void print_text(FILE *stream, const char *text)
     free(printed);
 }
 
-/* The lines of the comments as one text; the caller's. NULL: out of memory. */
+/* The lines of the comments as one text, which the caller frees. NULL: out of memory. */
 static char *join(const gonio_i_comments *comments)
 {
     char *text = NULL;

@@ -1,7 +1,6 @@
-/* Writing readings as BRDF JSON: an entry of `data` for each value. Names and forms are those of
- * the published schema; its azimuths are from 0 to below 360 degrees, and it has no word for a
- * value that was not read: such entries are left out where nothing else is lost with them, and
- * null. */
+/* Writing readings as BRDF JSON: an entry of `data` for each value. Names and forms follow the
+ * published schema. Its azimuths are from 0 to below 360 degrees. It has no word for a value that
+ * was not read. Such an entry is left out if nothing else is lost with it, otherwise it is null. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -11,7 +10,7 @@
 typedef struct printer {
     FILE *stream;
     const gonio_readings *readings;
-    const bool *held; /* [channels]: any reading has a value of it */
+    const bool *held; /* [channels]: whether any reading has a value */
     size_t angle;     /* that print_angle prints */
 } printer;
 
@@ -33,7 +32,7 @@ static void print_number(FILE *stream, double number)
 
 /* ---- the columns ---- */
 
-/* From 0 to below 360, also when it is printed. */
+/* An azimuth from 0 to below 360 degrees, also after it is printed. */
 static double from_zero(double degrees)
 {
     const double rest = fmod(degrees, 360.0);
@@ -41,7 +40,7 @@ static double from_zero(double degrees)
     return turn < 360.0 - 1e-9 ? turn : 0.0;
 }
 
-/* Twelve digits, as CSV has, so that 60 degrees are 60. */
+/* Prints twelve digits, as in CSV, so that 60 degrees are 60. */
 static void print_angle(const printer *p, size_t reading, size_t channel)
 {
     const double degrees = gonio_i_readings_degrees(p->readings, reading, p->angle);
@@ -91,14 +90,15 @@ static bool has_values(const gonio_readings *r, size_t reading)
     return any;
 }
 
-/* Whether a channel of a reading has an entry: a value, or what nothing else tells of. */
+/* Whether a channel of a reading has an entry: it has a value, or the channel or the direction
+ * would be lost. */
 static bool is_entry(const printer *p, size_t reading, size_t channel)
 {
     return !isnan(p->readings->value[reading * p->readings->channels + channel]) ||
            !p->held[channel] || !has_values(p->readings, reading);
 }
 
-/* An array with an element for each entry, channels fastest. */
+/* Prints an array with an element for each entry, channels fastest. */
 static void print_values(const printer *p, print_entry *print)
 {
     const gonio_readings *r = p->readings;
@@ -114,7 +114,7 @@ static void print_values(const printer *p, print_entry *print)
     fputs("]", p->stream);
 }
 
-/* key: "unit" or another, and its word. */
+/* Prints a column. key: "unit" or another; word: its value. */
 static void print_column(const printer *p, const char *name, const char *key, const char *word,
                          print_entry *print)
 {
@@ -123,7 +123,7 @@ static void print_column(const printer *p, const char *name, const char *key, co
     fputs("},\n", p->stream);
 }
 
-/* Channels without wavelengths are a variable of their own. */
+/* Prints channels without wavelengths, which are a variable of their own. */
 static void print_channels(const printer *p)
 {
     if (p->readings->wavelength != NULL) {
@@ -167,7 +167,7 @@ static void print_data(const printer *p)
     fputs("}\n  }\n", p->stream);
 }
 
-/* Whether each channel has a value anywhere; the caller's. NULL: out of memory. */
+/* Whether each channel has a value anywhere, which the caller frees. NULL: out of memory. */
 static bool *find_held(gonio_context *context, const gonio_readings *r)
 {
     bool *held = gonio_i_allocate(context, r->channels, sizeof *held);

@@ -1,5 +1,5 @@
-/* Reading readings and plans as CSV: docs/plan-and-readings.md. Cells are parsed straight into
- * numbers; the text is kept, so that other columns can be written again as they are. */
+/* Reading readings and plans as CSV: see docs/plan-and-readings.md. Cells are parsed straight into
+ * numbers. The text is kept, so that other columns can be written again as they are. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,8 +12,8 @@
 #include "csv_notes.h"
 #include "format.h"
 
-/* Column names between commas, semicolons or tabs, or none yet. What is wrong with them is for the
- * reader to say. */
+/* Whether the text begins with column names between commas, semicolons or tabs, or is empty. The
+ * reader checks the names. */
 static bool recognises(const char *text, size_t size)
 {
     gonio_i_csv_lines lines;
@@ -119,7 +119,7 @@ static gonio_status take_value(const csv_source *s, size_t column, size_t channe
     return problem == NULL ? GONIO_OK : bad_cell(s, column, status, problem);
 }
 
-/* A share is made one of the value when that is known. */
+/* Takes a deviation. A relative one is multiplied by the value, which was read before. */
 static gonio_status take_deviation(const csv_source *s, size_t column, size_t channel)
 {
     gonio_status status = GONIO_OK;
@@ -141,7 +141,7 @@ static gonio_status take_wavelength(csv_source *s, size_t column)
                : bad_cell(s, column, GONIO_ERROR_FORMAT, "is no wavelength");
 }
 
-/* Values come before deviations (csv_columns.h). */
+/* Takes a cell. Values come before deviations (csv_columns.h). */
 static gonio_status take_cell(csv_source *s, size_t k, gonio_i_row *row)
 {
     const gonio_i_csv_column *column = &s->columns->column[k];
@@ -173,7 +173,7 @@ static void take_difference(const csv_source *s, gonio_i_row *row)
     }
 }
 
-/* Kept until all wavelengths of its directions are known. */
+/* Adds a row of one wavelength. It is kept until all wavelengths of its directions are known. */
 static gonio_status add_long(csv_source *s, const gonio_i_row *row)
 {
     gonio_i_long_row kept = {.wavelength = s->wavelength,
@@ -230,7 +230,7 @@ static gonio_status take_rows(csv_source *s)
     return status;
 }
 
-/* ---- what the file is taken for ---- */
+/* ---- the file as a whole ---- */
 
 /* The convention that holds unless the user gives another. */
 static gonio_convention convention_of(const gonio_i_csv_columns *columns)
@@ -247,7 +247,7 @@ static bool is_convention_given(const gonio_convention *as)
            as->zeros != 0;
 }
 
-/* Columns are known by wavelengths in nm from here on. */
+/* From here on the columns have wavelengths in nm. */
 static void take_nanometres(gonio_i_csv_columns *columns, const gonio_readings *readings)
 {
     for (size_t k = 0; k < columns->count && readings->wavelength != NULL; k++) {
@@ -258,7 +258,7 @@ static void take_nanometres(gonio_i_csv_columns *columns, const gonio_readings *
     }
 }
 
-/* Before the notes of the import, what they cannot know. */
+/* Writes the notes that the import cannot know. */
 static gonio_status write_notes(csv_source *s)
 {
     gonio_status status = GONIO_OK;
@@ -275,8 +275,8 @@ static gonio_status write_notes(csv_source *s)
                               : status;
 }
 
-/* As many as there are lines, and no more than lines of that many cells fit into the text: arrays
- * that never grow are not copied. */
+/* The number of lines, at most as many as fit into the text. Arrays that need not grow are not
+ * copied. */
 static size_t expected_rows(const gonio_i_csv_reader *reader)
 {
     const char *end = reader->text + reader->size;
@@ -299,7 +299,7 @@ static void begin_import(csv_source *s, gonio_i_csv_kept *kept, const char *take
     s->readings->keep_angles = kept->rewrite_angles || s->columns->by_wavelength;
 }
 
-/* Rows of one wavelength each say their channels only at the end. */
+/* Imports rows of one wavelength each, whose channels are known only at the end. */
 static gonio_status import_long(csv_source *s)
 {
     s->table.context = s->context;
@@ -335,7 +335,7 @@ static gonio_status import_rows(csv_source *s, gonio_i_csv_kept *kept)
     return gonio_i_import_end(&s->in, status);
 }
 
-/* Rows of which several are one reading are not written over. */
+/* Drops the kept text: rows of which several are one reading cannot be written over. */
 static void drop_kept(gonio_readings *readings)
 {
     readings->attachment.release(readings->attachment.data);

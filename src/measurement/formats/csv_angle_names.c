@@ -12,7 +12,7 @@ enum {
     INCIDENT = 1 << 2,
     OUTGOING = 1 << 3,
     DIFFERENCE = 1 << 4,
-    ANY_ANGLE = 1 << 5, /* of the plane: polar where nothing says azimuth */
+    ANY_ANGLE = 1 << 5, /* an angle in the plane: polar unless a word says azimuth */
     DEGREES = 1 << 6,
     RADIANS = 1 << 7,
     FILLER = 1 << 8
@@ -98,7 +98,7 @@ static const gonio_i_known_word angle_words[] = {
     {"radians", RADIANS, 0},
 };
 
-/* What words say of angles; whether all of them do. */
+/* Adds up what words say of angles. Returns whether every word does. */
 static bool hear_angle(const gonio_i_words *words, gonio_i_meaning *s)
 {
     bool all = words->whole && words->count > 0;
@@ -123,7 +123,7 @@ static int unit_of_angle(unsigned bits)
                                    : 0;
 }
 
-/* 0 to 3, or the difference; -1 for none. */
+/* The number of an angle, 0 to 3, or GONIO_I_AZIMUTH_DIFFERENCE; -1 for none. */
 static int angle_of(unsigned bits)
 {
     const bool in = (bits & INCIDENT) != 0;

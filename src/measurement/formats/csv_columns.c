@@ -6,7 +6,7 @@
 
 #include "../rules.h"
 
-/* What is on the way from names to columns. */
+/* The search for columns. */
 typedef struct finder {
     const gonio_i_csv_reader *r;
     const gonio_readings_options *options;
@@ -24,7 +24,9 @@ static gonio_status refuse_two(const finder *f, const char *what, size_t a, size
                         what, f->r->name[a], f->r->name[b]);
 }
 
-/* A unit that one column states, against what others stated: *unit is 0 before any did. */
+/* Checks that columns agree in their unit. unit: of one column; *stated: of those before, 0 for
+ * none.
+ */
 static gonio_status agree(const finder *f, const char *what, const char *key, size_t k, int unit,
                           int *stated, size_t *by)
 {
@@ -39,7 +41,7 @@ static gonio_status agree(const finder *f, const char *what, const char *key, si
     return GONIO_OK;
 }
 
-/* What a comment "key: ..." says, in any letter case; NULL if it is another. */
+/* The text after the key of a comment "key: ...", in any letter case; NULL for another key. */
 static const char *text_behind(const char *comment, const char *key)
 {
     const size_t length = strlen(key);
@@ -47,7 +49,7 @@ static const char *text_behind(const char *comment, const char *key)
     return same ? comment + length + 1 + strspn(comment + length + 1, " ") : NULL;
 }
 
-/* What a comment with one of these keys says; the keys end with NULL. */
+/* The text of the first comment with one of the keys, which end with NULL. */
 static const char *comment_of(const finder *f, const char *const *keys)
 {
     const char *text = NULL;
@@ -61,7 +63,7 @@ static const char *comment_of(const finder *f, const char *const *keys)
 
 /* ---- angles ---- */
 
-/* The column of an angle; gonio's own name before others. */
+/* Chooses the column of each angle. gonio's own names come before others. */
 static gonio_status choose_angles(const finder *f, size_t chosen[GONIO_I_ANGLE_COLUMNS])
 {
     const size_t none = f->r->columns;
@@ -142,14 +144,14 @@ static size_t first_certain(const finder *f, gonio_i_family family)
     return k;
 }
 
-/* Wavelengths before colours, and these before values of neither. */
+/* The rank of a family: wavelengths come before colours, colours before unnamed channels. */
 static int rank(gonio_i_family family)
 {
     return family == GONIO_I_WAVELENGTH ? 2 : family == GONIO_I_COLOUR ? 1 : 0;
 }
 
-/* Than those before; a name of nothing but a channel and a unit, as gonio's, before one that names
- * a quantity. */
+/* Whether a name is surer than those before. A name of only a channel and a unit, as gonio's, comes
+ * before one that names a quantity. */
 static bool is_surer(const finder *f, const gonio_i_column_name *n)
 {
     if (n->strength != f->strongest) {
@@ -159,7 +161,7 @@ static bool is_surer(const finder *f, const gonio_i_column_name *n)
            (n->family == f->family && n->quantity == 0 && f->quantity != 0);
 }
 
-/* Which columns are those of values: the surest of them say their family and quantity. */
+/* Chooses the family and the quantity of the values: those of the surest name. */
 static gonio_status choose_family(finder *f)
 {
     const size_t colour = first_certain(f, GONIO_I_COLOUR);
@@ -210,7 +212,7 @@ static gonio_status add_value(const finder *f, size_t k, size_t *unit_by, size_t
     return status;
 }
 
-/* What a comment says of values that their names do not. */
+/* Takes the kind of values from a comment if the names do not state it. */
 static void take_value_comment(gonio_i_csv_columns *c, const char *comment)
 {
     const int kind = comment != NULL ? gonio_i_value_kind_in(comment) : 0;
@@ -238,7 +240,7 @@ static gonio_status find_values(const finder *f)
     return status;
 }
 
-/* ---- channels by what names them ---- */
+/* ---- deviations, by the key of their channel ---- */
 
 typedef struct keyed {
     double key; /* colour, wavelength or number */
@@ -305,7 +307,7 @@ static int compare_to_key(const void *key, const void *item)
 }
 
 /* The column of values that a deviation belongs to; the number of columns if there is none. A
- * deviation of no channel is that of the only one. */
+ * deviation without a channel belongs to the only channel. */
 static size_t value_of(const finder *f, const key_list *list, const gonio_i_column_name *n)
 {
     const double key = key_of(n);
@@ -344,8 +346,8 @@ static void try_deviation(const finder *f, size_t k, const key_list *list, bool 
     }
 }
 
-/* Deviations belong to the values of the same name; of others they are not read. Of two for the
- * same, gonio's own name goes first. */
+/* Finds the deviations of the values that are read. Of two for the same values, gonio's own name
+ * comes first. */
 static gonio_status find_deviations(const finder *f)
 {
     key_list list;
@@ -370,7 +372,7 @@ static gonio_status find_deviations(const finder *f)
 
 /* ---- all ---- */
 
-/* A column that is not read, but has a number in the row that was read; NULL if there is none. */
+/* The name of a column that is not read but holds a number; NULL if there is none. */
 static const char *number_not_read(const finder *f)
 {
     double value = 0.0;
@@ -407,7 +409,7 @@ static void find_planned(const finder *f)
     }
 }
 
-/* Values of one column may be of many wavelengths, which another column states. */
+/* Finds the column that states the wavelength of the row's one value. */
 static void find_row_wavelength(const finder *f)
 {
     gonio_i_csv_columns *c = f->c;
@@ -422,7 +424,7 @@ static void find_row_wavelength(const finder *f)
     }
 }
 
-/* Angles first, then the channel, so that errors come in that order. */
+/* Orders the columns: angles first, then the channel, so that errors come in this order. */
 static gonio_status order_columns(const finder *f)
 {
     gonio_i_csv_columns *c = f->c;
@@ -493,7 +495,7 @@ void gonio_i_csv_columns_free(gonio_i_csv_columns *columns)
 
 /* ---- a line of units ---- */
 
-/* Whether a row is one of units: an angle's among them, and no numbers but 1 of what has none. */
+/* Whether a row is one of units: it has a unit of angles, and no number except 1. */
 static bool is_unit_row(const gonio_i_csv_reader *r)
 {
     bool angle = false;

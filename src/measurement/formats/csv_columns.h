@@ -7,10 +7,10 @@
 #include "csv_names.h"
 
 typedef struct gonio_i_csv_column {
-    gonio_i_column_kind kind; /* OTHER: not read */
+    gonio_i_column_kind kind; /* GONIO_I_OTHER: not read */
     size_t index;      /* of an angle (gonio_i_column_name); of a value's channel in the file */
-    double wavelength; /* of a value or deviation, as the name has it; 0: none */
-    double scale;      /* of a deviation that is relative: to a share of the value; 0: it is not */
+    double wavelength; /* of a value or deviation, as in the name; 0: none */
+    double scale;      /* of a relative deviation: factor to a fraction of the value; 0: absolute */
 } gonio_i_csv_column;
 
 typedef struct gonio_i_csv_columns {
@@ -25,25 +25,25 @@ typedef struct gonio_i_csv_columns {
     const char *unclear; /* a comment on values that is not understood or not heeded; belongs to the
                           * reader */
     size_t difference_gives; /* the azimuth that a difference replaces, 1 or 3; 0: there is none */
-    bool by_wavelength;      /* a row has the value of one wavelength */
+    bool by_wavelength;      /* a row has one value of one wavelength */
     bool own_angles;         /* named as gonio does */
     bool own;                /* all are */
     bool any_value;
     bool any_deviation;
 } gonio_i_csv_columns;
 
-/* From the reader's column names and comments, and what the options say of units. Errors: _FORMAT
- * for angles that are not there, no values where they are needed (the message names a column that
- * has a number in the reader's row), columns of more than one kind of channels, two columns of the
- * same, columns that differ in their units. */
+/* Finds the columns from their names, the comments, and the units in the options. Errors: _FORMAT
+ * for missing angles, for missing values where they are needed (the message names a column that has
+ * a number in the reader's row), for columns of more than one kind of channels, for two columns of
+ * the same name, and for columns that differ in their units. */
 gonio_status gonio_i_csv_columns_find(const gonio_i_csv_reader *reader,
                                       const gonio_readings_options *options,
                                       gonio_i_csv_columns *columns);
 
 void gonio_i_csv_columns_free(gonio_i_csv_columns *columns);
 
-/* Reads the line of units that may follow the names, and puts units behind names: "theta_i (deg)".
- * The next row is the first of numbers then. */
+/* Reads the line of units that may follow the names, and appends units to names: "theta_i (deg)".
+ * The next row is then the first row of numbers. */
 gonio_status gonio_i_csv_take_units(gonio_i_csv_reader *reader);
 
 #endif

@@ -1,4 +1,4 @@
-/* What the words of a name say together: see csv_meaning.h. */
+/* What the words of a name mean together: see csv_meaning.h. */
 #include "csv_meaning.h"
 
 #include <string.h>

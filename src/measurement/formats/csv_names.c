@@ -1,4 +1,4 @@
-/* What the name of a column says: see csv_names.h. */
+/* The meaning of a column's name: see csv_names.h. */
 #include "csv_names.h"
 
 #include <ctype.h>
@@ -48,7 +48,7 @@ static gonio_i_column_name name_of(const char *text)
     return (gonio_i_column_name){0};
 }
 
-/* Without capitals, which begin words elsewhere. */
+/* Reads the name in small letters, because capitals begin words. */
 static gonio_i_column_name name_of_small(const char *text)
 {
     char small[128];

@@ -1,4 +1,4 @@
-/* What is said of a CSV file that is read: see csv_notes.h. */
+/* Notes on a CSV file that is read: see csv_notes.h. */
 #include "csv_notes.h"
 
 #include <stdlib.h>
@@ -19,7 +19,7 @@ static void add_text(const name_list *list, const char *text)
     snprintf(list->text + used, list->room - used, "%s", text);
 }
 
-/* A column by its name, or else by its place. */
+/* Adds a column by its name, or by its number if it has none. */
 static void add_name(name_list *list, const gonio_i_csv_reader *reader, size_t column)
 {
     char quoted[MOST_OF_NAME + 32];
@@ -113,7 +113,7 @@ void gonio_i_csv_others_look(gonio_i_csv_others *others, const gonio_i_csv_reade
     others->count = kept;
 }
 
-/* What gonio itself writes for the record. */
+/* Whether gonio writes a column only for the record. */
 static bool is_for_the_record(const char *name)
 {
     return strcasecmp(name, "expected_e6_percent") == 0;

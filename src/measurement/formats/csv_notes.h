@@ -1,5 +1,5 @@
-/* What is said of a CSV file that is read: what its columns are taken for, and which hold numbers
- * and are not read. */
+/* Notes on a CSV file that is read: what its columns are taken for, and which columns of numbers
+ * are not read. */
 #ifndef GONIO_CSV_NOTES_H
 #define GONIO_CSV_NOTES_H
 
@@ -10,21 +10,21 @@ enum { GONIO_I_TAKEN_ROOM = 512 };
 void gonio_i_csv_describe(const gonio_i_csv_reader *reader, const gonio_i_csv_columns *columns,
                           char text[GONIO_I_TAKEN_ROOM]);
 
-/* Columns that are not read and hold nothing but numbers so far. */
+/* Columns that are not read and have held only numbers so far. */
 typedef struct gonio_i_csv_others {
     size_t count;
     size_t *column; /* [count] */
-    bool *number;   /* [count]: one was there */
+    bool *number;   /* [count]: whether there was one */
 } gonio_i_csv_others;
 
 /* Errors: _MEMORY. */
 gonio_status gonio_i_csv_others_begin(gonio_i_csv_others *others, gonio_context *context,
                                       const gonio_i_csv_columns *columns);
 
-/* Looks at the row that was read last. */
+/* Inspects the row that was read last. */
 void gonio_i_csv_others_look(gonio_i_csv_others *others, const gonio_i_csv_reader *reader);
 
-/* Names columns of numbers that gonio does not know in a note. Errors: _MEMORY. */
+/* Writes a note that names the unknown columns of numbers. Errors: _MEMORY. */
 gonio_status gonio_i_csv_others_note(gonio_i_csv_others *others, const gonio_i_csv_reader *reader,
                                      gonio_readings *readings);
 

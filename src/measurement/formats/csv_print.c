@@ -6,8 +6,8 @@
 #include "../rules.h"
 #include "csv_kept.h"
 
-/* What a column of the file that is written holds: a cell of the file that was read, an angle, a
- * planned channel, or a value or deviation of one of the channels. */
+/* A column of the written file: a column of the file that was read, an angle, the planned channel,
+ * or the value or deviation of a channel. */
 typedef struct printed_column {
     gonio_i_column_kind kind;
     size_t index; /* of the column in the file that was read; of the angle; of the channel */
@@ -37,7 +37,7 @@ static void end_line(printer *p)
     p->first = true;
 }
 
-/* Nothing for NaN. */
+/* Prints a number; NaN is an empty cell. */
 static void print_number(printer *p, double number, int digits)
 {
     char text[64] = "";
@@ -108,7 +108,7 @@ static bool has_note(const gonio_i_comments *comments, const char *note)
     return found;
 }
 
-/* The reader's notes, once each. */
+/* Adds the reader's notes, once each. */
 static bool add_notes(gonio_i_comments *all, const gonio_i_comments *note)
 {
     bool done = true;
@@ -118,7 +118,7 @@ static bool add_notes(gonio_i_comments *all, const gonio_i_comments *note)
     return done;
 }
 
-/* What is written has gonio's units, whatever the file said of its own. */
+/* Drops comments on units, because gonio writes its own units. */
 static void drop_units(gonio_i_comments *all)
 {
     static const char *const keys[] = {"unit",        "units",      "values",     "angles",
@@ -128,7 +128,7 @@ static void drop_units(gonio_i_comments *all)
     }
 }
 
-/* The title, what the comments say of the plan, the reader's notes, and who writes the file. */
+/* Prints the title, the comments on the plan, the reader's notes, and the program. */
 static bool print_comments(const printer *p, const char *command)
 {
     const gonio_i_csv_kept *kept = gonio_i_csv_kept_of(p->readings);
@@ -150,7 +150,7 @@ static bool print_comments(const printer *p, const char *command)
     return done;
 }
 
-/* ---- which columns ---- */
+/* ---- the columns ---- */
 
 static void add_column(printer *p, gonio_i_column_kind kind, size_t index)
 {
@@ -166,8 +166,8 @@ static bool has_column(const printer *p, gonio_i_column_kind kind, size_t index)
     return k < p->columns;
 }
 
-/* The channel that a column of values or deviations of the file that was read still holds;
- * p->readings->channels if there is none. */
+/* The channel of a column of values or deviations in the file that was read;
+ * p->readings->channels if the readings no longer have it. */
 static size_t channel_now(const printer *p, const gonio_i_csv_columns *old,
                           const gonio_i_csv_column *column)
 {
@@ -187,7 +187,7 @@ static size_t channel_now(const printer *p, const gonio_i_csv_columns *old,
     return k;
 }
 
-/* Where the file has its first angle, if angles are written anew. */
+/* Adds a column of angles. If angles are written anew, all four take the place of the first. */
 static void add_old_angle(printer *p, bool rewrite, size_t k)
 {
     if (!rewrite) {
@@ -208,8 +208,8 @@ static bool has_name_of(const gonio_readings *r, size_t channel, const char *old
     return strcasecmp(value, old_name) == 0 || strcasecmp(deviation, old_name) == 0;
 }
 
-/* Whether a column that was not read would be read from what is written: deviations of values that
- * the file does not have, but gonio writes, empty. */
+/* Whether an unread column would be read from the written file: it has deviations of values that
+ * the file lacks, but gonio writes. */
 static bool is_written_anew(const printer *p, const char *old_name)
 {
     const gonio_readings *r = p->readings;
@@ -224,8 +224,8 @@ static bool is_written_anew(const printer *p, const char *old_name)
     return same;
 }
 
-/* The columns of the file that was read: as they were, but values and deviations are those of now,
- * and dropped where there are none. */
+/* Adds the columns of the file that was read. Values and deviations are the present ones; columns
+ * without any are dropped. */
 static void add_old_columns(printer *p, const gonio_i_csv_kept *kept, char *const *name)
 {
     const gonio_i_csv_columns *old = &kept->columns;
@@ -270,7 +270,7 @@ static gonio_status add_missing_columns(gonio_context *context, printer *p,
     return GONIO_OK;
 }
 
-/* Angles, and what was planned if it is not all channels everywhere. */
+/* Adds the angles, and the planned channel unless it is always all channels. */
 static void add_directions(printer *p)
 {
     const gonio_readings *r = p->readings;
@@ -306,9 +306,10 @@ static gonio_status choose_columns(gonio_context *context, printer *p, const gon
     return status;
 }
 
-/* ---- with and without a file that was read ---- */
+/* ---- files written again, and new ones ---- */
 
-/* The row of the old file that a reading comes from: rows that are no readings were left out. */
+/* Goes to the row of the old file that a reading comes from. Rows that are no readings are skipped.
+ */
 static gonio_status find_row(gonio_i_csv_reader *old, size_t line)
 {
     gonio_status status = gonio_i_csv_next(old);

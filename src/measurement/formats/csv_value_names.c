@@ -10,7 +10,7 @@
 enum {
     COLOUR = 1 << 0,
     QUANTITY = 1 << 1,
-    SURE = 1 << 2, /* a quantity that can be nothing else */
+    SURE = 1 << 2, /* a quantity without another meaning */
     SPREAD = 1 << 3,
     RELATIVE = 1 << 4,
     STERADIAN = 1 << 5,
@@ -97,7 +97,8 @@ static const gonio_i_known_word value_words[] = {
     {"measured", FILL, 0},
 };
 
-/* What words say of values; whether all of them do. *number is the one that is no exponent. */
+/* Adds up what words say of values. Returns whether every word does. *number: the number in the
+ * name, exponents of units aside. */
 static bool hear_value(const gonio_i_words *words, gonio_i_meaning *s, double *number)
 {
     bool all = words->whole && words->count > 0;
@@ -156,7 +157,7 @@ int gonio_i_value_kind_in(const char *text)
     return unit_of_value(&s);
 }
 
-/* "f_r" is the usual sign of a BRDF, and not the red of f. */
+/* Joins "f_r", the usual symbol of a BRDF, which is not the red channel of f. */
 static void join_f_r(const char *text, gonio_i_words *words)
 {
     for (size_t k = 1; k < words->count; k++) {
@@ -182,7 +183,7 @@ static int wavelength_unit(const gonio_i_meaning *s)
                                          : 0;
 }
 
-/* A channel by colour, by wavelength or by number; false if a name says more than one. */
+/* Takes the channel: a colour, a wavelength or a number. False if the name has more than one. */
 static bool take_channel(const gonio_i_meaning *s, double number, gonio_i_column_name *name)
 {
     enum { LEAST_BARE_WAVELENGTH = 100 };
@@ -218,7 +219,7 @@ static gonio_i_strength strength_of(const gonio_i_meaning *s, const gonio_i_colu
     return has_certain_unit(s) ? GONIO_I_CERTAIN : likely ? GONIO_I_LIKELY : GONIO_I_BARE;
 }
 
-/* "wavelength (nm)", without a number. */
+/* Takes "wavelength (nm)", without a number. */
 static bool take_row_wavelength(const gonio_i_meaning *s, gonio_i_column_name *name)
 {
     const unsigned allowed = LAMBDA | NANOMETRE | MICROMETRE | FILL;

@@ -1,11 +1,11 @@
-/* The words of a text that names something: see csv_words.h. */
+/* Splitting a name into words: see csv_words.h. */
 #include "csv_words.h"
 
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Signs beyond ASCII, in UTF-8 and, where a single byte is clear, in Latin-1. */
+/* Signs beyond ASCII in UTF-8, and in Latin-1 where a single byte is unambiguous. */
 static const struct {
     const char *sign;
     const char *text;
@@ -31,8 +31,8 @@ static const char *sign_at(const char *at, size_t *length)
     return NULL;
 }
 
-/* Lower case in ASCII, with a blank where a capital follows a small letter; false if it does not
- * fit. */
+/* Turns a text into lower case ASCII, with a blank where a capital follows a small letter. False if
+ * it does not fit. */
 static bool simplify(const char *text, char simple[NAME_ROOM])
 {
     size_t used = 0;
@@ -77,7 +77,7 @@ static void add_text(gonio_i_words *words, const char *text, size_t length)
     }
 }
 
-/* A number and where it ends: digits with at most one point. */
+/* Adds a number, digits with at most one point. Returns its end. */
 static const char *add_number(gonio_i_words *words, const char *at)
 {
     char digits[GONIO_I_WORD_ROOM] = "";
@@ -94,7 +94,7 @@ static const char *add_number(gonio_i_words *words, const char *at)
     return at + length;
 }
 
-/* "thetai" is two words: the angle, and a side of up to three letters. */
+/* Adds letters. "thetai" is two words: the angle, and a side of up to three letters. */
 static void add_letters(gonio_i_words *words, const char *text, size_t length)
 {
     static const char *const angles[] = {"theta", "phi"};
@@ -114,7 +114,7 @@ static bool is_letter(char c)
     return islower((unsigned char)c) || (unsigned char)c >= 0x80;
 }
 
-/* A number below zero is no wavelength. */
+/* Whether a text begins with a negative number, which is no wavelength. */
 static bool is_negative(const char *text)
 {
     text += strspn(text, " ");

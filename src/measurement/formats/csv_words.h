@@ -1,4 +1,4 @@
-/* The words of a text that names something. */
+/* The words of a column's name. */
 #ifndef GONIO_CSV_WORDS_H
 #define GONIO_CSV_WORDS_H
 
@@ -15,11 +15,12 @@ typedef struct gonio_i_name_word {
 typedef struct gonio_i_words {
     size_t count;
     gonio_i_name_word word[GONIO_I_MOST_WORDS];
-    bool whole; /* nothing was too long or too much */
+    bool whole; /* no word is missing or cut */
 } gonio_i_words;
 
-/* Words are letters; numbers, Greek letters and signs of units are words of their own, and so are
- * the parts of "thetaIn" and "thetai". Signs between them are passed over. */
+/* Splits a text into words. A word is a run of letters. Numbers, Greek letters and signs of units
+ * are words of their own, and so are the parts of "thetaIn" and "thetai". Signs between words are
+ * skipped. */
 void gonio_i_words_split(const char *text, gonio_i_words *words);
 
 #endif

@@ -49,7 +49,7 @@ static gonio_status parse_directions(gonio_i_numbers *n, double (*angle)[4])
     return GONIO_OK;
 }
 
-/* One message, which says what the table is for. */
+/* Reads the table. If it is missing, the message says what it is for. */
 static gonio_status read_table(const gonio_i_readings_file *file, const char *path, char **text,
                                size_t *size)
 {
@@ -172,7 +172,7 @@ static gonio_status read(gonio_i_readings_file *file, gonio_readings *readings)
     return gonio_i_import_end(&in, status);
 }
 
-/* A whole number and 205 numbers in the first line. */
+/* Whether the first line has a whole number and 205 numbers. */
 static bool recognises(const char *text, size_t size)
 {
     gonio_i_numbers n = gonio_i_numbers_of(NULL, "", text, size, '#');

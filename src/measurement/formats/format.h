@@ -1,12 +1,10 @@
 /* File formats of readings: one file and one name in the list below each.
  *
- * A file is read whole, once; the first format that recognises it reads it. The reader
- * says what its numbers stand for and its channels, and adds one row after another (../import.h,
- * which turns angles and values into gonio's, leaves out what is no reading, and says in a note
- * what the file was taken for). It puts comments into readings->comment, and what else it wants to
- * write again into readings->attachment. Numbers are read and printed with decimal points in any
- * locale.
- */
+ * A file is read whole, once. The first format that recognises it reads it. The reader states the
+ * convention of the file's numbers and the channels, and adds one row after another (../import.h).
+ * The import turns angles and values into gonio's, leaves out rows that are no readings, and notes
+ * what the file was taken for. The reader puts comments into readings->comment, and what else is to
+ * be written again into readings->attachment. Numbers have decimal points in any locale. */
 #ifndef GONIO_READINGS_FORMAT_H
 #define GONIO_READINGS_FORMAT_H
 
@@ -26,21 +24,21 @@ typedef struct gonio_i_readings_file {
 typedef struct gonio_i_readings_format {
     const char *word;          /* for --as format=WORD */
     const char *name;          /* for people */
-    const char *extensions[2]; /* of files that are written so; CSV is written by any other name */
+    const char *extensions[2]; /* of files that are written in it; all others are CSV */
 
-    /* Whether a text is of this format, by its content; text[size] is 0. */
+    /* Whether a text is of this format, judged by its content. text[size] is 0. */
     bool (*recognises)(const char *text, size_t size);
 
-    /* Fills in readings that have path and options. */
+    /* Fills in readings whose path and options are set. */
     gonio_status (*read)(gonio_i_readings_file *file, gonio_readings *readings);
 
-    /* Prints readings of any origin; NULL: the format is only read. Errors of the stream are looked
-     * for afterwards. */
+    /* Prints readings of any origin. NULL: the format is only read. The caller checks the stream
+     * for errors. */
     gonio_status (*print)(gonio_context *context, const gonio_readings *readings,
                           const char *command, FILE *stream);
 } gonio_i_readings_format;
 
-/* The formats, in the order in which they are tried; CSV takes what nothing else does. */
+/* The formats, in the order in which they are tried. CSV, the last, takes all other text. */
 /* clang-format off */
 #define GONIO_I_READINGS_FORMATS(FORMAT) \
     FORMAT(rgl) FORMAT(scattered) FORMAT(alta) FORMAT(pab) FORMAT(astm) FORMAT(tracepro) \
@@ -51,7 +49,7 @@ typedef struct gonio_i_readings_format {
 #define GONIO_I_DECLARE_FORMAT(name) extern const gonio_i_readings_format gonio_i_readings_##name;
 GONIO_I_READINGS_FORMATS(GONIO_I_DECLARE_FORMAT)
 
-/* The name of the format that a file is of, told by its beginning; NULL if of none. */
+/* The name of a file's format, judged by its beginning; NULL if it has none of them. */
 const char *gonio_i_readings_format_of(const gonio_i_file *file);
 
 /* The names of the formats; NULL past the last. */

@@ -1,4 +1,4 @@
-/* Readings as FRED text, which RPC Photonics and VIAVI write too: blocks of a line with the
+/* Readings as FRED text, which RPC Photonics and VIAVI also write. A block is a line with the
  * incidence (theta, phi) and lines with theta, phi and a value. */
 #include <math.h>
 #include <stdlib.h>
@@ -9,11 +9,11 @@
 #include "format.h"
 #include "numbers.h"
 
-/* What stands where the detector was blocked. */
+/* The value where the detector was blocked. */
 static const double BLOCKED = 1e-5;
 
 typedef struct settings {
-    bool sines;     /* theta stands as its sine */
+    bool sines;     /* the file has sin theta in place of theta */
     bool logarithm; /* values are decimal logarithms */
     double scale;
 } settings;
@@ -77,7 +77,7 @@ static gonio_status bad_row(const gonio_i_numbers *n, size_t line, const char *p
     return gonio_i_fail(n->context, GONIO_ERROR_FORMAT, "%s:%zu: %s", n->path, line, problem);
 }
 
-/* A line of 2 numbers is an incidence, one of 3 a value there. */
+/* Reads a line. Two numbers are an incidence, three a value there. */
 static gonio_status read_row(gonio_i_numbers *n, gonio_i_import *in, const settings *s,
                              double incidence[2])
 {

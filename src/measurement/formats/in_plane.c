@@ -1,7 +1,6 @@
-/* Readings as columns of text without gonio's names, as instruments in the plane of incidence write
- * them: names in the last `#` line and blanks between numbers (Scatterworks, NASA's CAR), or an
- * incident and a measured angle with commas between them and reflectance factors of wavelengths
- * (OMS). */
+/* Readings in the plane of incidence as columns of text. Either names are in the last `#` line and
+ * numbers are separated by blanks (Scatterworks, NASA's CAR). Or columns are an incident angle, a
+ * measured angle and reflectance factors by wavelength, separated by commas (OMS). */
 #include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
@@ -14,7 +13,7 @@
 
 enum { THETA_I, PHI_I, THETA_O, PHI_O, VALUE, MOST_COLUMNS = 4096 };
 
-/* What stands where a value was too low for the instrument. */
+/* The value where a value was too low for the instrument. */
 static const double FLOOR = 1e-4;
 
 typedef struct column_name {
@@ -60,7 +59,8 @@ static bool is_between(char c)
     return c == ',' || c == ' ' || c == '\t' || c == '\r';
 }
 
-/* The next name of a line, its length 0 at the end; a blank before a unit belongs to the number. */
+/* The next name of a line; its length is 0 at the end. A blank before a unit belongs to the name.
+ */
 static const char *next_name(const char *at, const char *end, size_t *length)
 {
     while (at < end && is_between(*at)) {
@@ -103,7 +103,8 @@ static bool is_of_factors(int role, const char *name, size_t length)
                          : length > end && strncasecmp(name + length - end, angle, end) == 0;
 }
 
-/* Names of a line to columns; false unless all are known and there are angles and values. */
+/* Finds the columns of a line of names. False unless all names are known and there are angles and
+ * values. */
 static bool find_columns(const char *line, const char *end, columns *c)
 {
     size_t length = 0;
@@ -154,7 +155,8 @@ static const char *line_end(const char *at, const char *end)
     return stop != NULL ? stop : end;
 }
 
-/* The line of names: the last `#` line before the first row, or the first line. NULL: none. */
+/* The line of names: the last `#` line before the first row, otherwise the first line. NULL: none.
+ */
 static const char *find_names(const char *text, const char *end, const char **stop)
 {
     const char *found = NULL;
@@ -171,8 +173,8 @@ static const char *find_names(const char *text, const char *end, const char **st
     return found;
 }
 
-/* Names in a comment are no CSV; of names with commas between them only the table of two angles is
- * meant here. */
+/* Whether names are in a comment, as CSV never has them. Of names separated by commas, only the
+ * table of two angles is of this format. */
 static bool recognises(const char *text, size_t size)
 {
     const char *stop = NULL;
@@ -204,7 +206,8 @@ static double wavelength_in(const char *text, const char *end)
 
 /* ---- rows ---- */
 
-/* Some call the polar angle phi: a theta beyond 90 degrees is an azimuth then. */
+/* Whether theta and phi are exchanged: some files call the polar angle phi. A theta beyond 90
+ * degrees is then an azimuth. */
 static bool are_exchanged(gonio_i_numbers n, const columns *c)
 {
     double number[MOST_COLUMNS];

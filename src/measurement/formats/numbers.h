@@ -12,35 +12,35 @@ typedef struct gonio_i_numbers {
     const char *at;
     const char *end;
     size_t line;  /* from 1 */
-    char comment; /* the sign that begins a comment, which goes to the end of its line; 0: none */
-    bool commas;  /* stand between words, as blanks do */
+    char comment; /* begins a comment, which goes to the end of its line; 0: none */
+    bool commas;  /* commas separate words, as blanks do */
 } gonio_i_numbers;
 
-/* At the beginning of a text, which is kept. */
+/* Starts at the beginning of a text, which must outlive the result. */
 gonio_i_numbers gonio_i_numbers_of(gonio_context *context, const char *path, const char *text,
                                    size_t size, char comment);
 
-/* Passes to a place further on. */
+/* Skips to a later place. */
 void gonio_i_numbers_go_to(gonio_i_numbers *numbers, const char *place);
 
-/* Passes over blanks, line ends and comments; whether there is more. */
+/* Skips blanks, line ends and comments. Returns whether there is more. */
 bool gonio_i_numbers_skip(gonio_i_numbers *numbers);
 
-/* The same within a line; whether the line has more. */
+/* The same within a line. Returns whether the line has more. */
 bool gonio_i_numbers_skip_blanks(gonio_i_numbers *numbers);
 
-/* Passes to the beginning of the next line. */
+/* Skips to the beginning of the next line. */
 void gonio_i_numbers_next_line(gonio_i_numbers *numbers);
 
 /* The next word, at most 63 characters of it; "" at the end. */
 void gonio_i_numbers_word(gonio_i_numbers *numbers, char word[GONIO_I_WORD]);
 
-/* The next number, on whatever line. Errors: _FORMAT at the end of the text, for a word that is no
+/* The next number, on any line. Errors: _FORMAT at the end of the text and for a word that is no
  * finite number; the message names the line. */
 gonio_status gonio_i_numbers_read(gonio_i_numbers *numbers, double *value);
 
-/* The numbers of the rest of the line, at most `most`, and its end is passed. A word that is none
- * ends them: -1 is returned then. Otherwise their count, 0 for an empty line. */
+/* Reads the numbers of the rest of the line, at most `most`, and its end. Returns their count, 0
+ * for an empty line, or -1 if a word is no number. */
 int gonio_i_numbers_row(gonio_i_numbers *numbers, double *value, int most);
 
 #endif

@@ -1,5 +1,5 @@
-/* Readings as ASAM OpenMATERIAL 3D has them (.xompt): JSON with rows of wavelength (m), theta_i,
- * theta_o, phi_o - phi_i (radians) and the BRDF (1/sr) in brdf.lookupTable. */
+/* Readings as ASAM OpenMATERIAL 3D (.xompt): JSON with rows of wavelength (m), theta_i, theta_o,
+ * phi_o - phi_i (radians) and the BRDF (1/sr) in brdf.lookupTable. */
 #include <math.h>
 
 #include "../import.h"
@@ -9,7 +9,7 @@
 
 enum { WAVELENGTH, THETA_I, THETA_O, DIFFERENCE, BRDF, NUMBERS };
 
-/* Metres that differ by their rounding only are the same. */
+/* A wavelength in millionths of nm, in which wavelengths that differ by rounding only are equal. */
 static double millionths_of_nm(double metres)
 {
     return nearbyint(metres * 1e15) / 1e15;

@@ -15,7 +15,7 @@ enum { MOST_VALUES = 64 };
 typedef struct header {
     double incidence[2]; /* theta, phi; degrees */
     bool known[2];
-    double up; /* phi that is counted from */
+    double up; /* the phi from which azimuths are counted */
     size_t values;
     int kind;    /* gonio_value_kind */
     bool colour; /* values are X, Y, Z */
@@ -33,7 +33,7 @@ static double number_after(gonio_i_numbers *n, bool *known)
     return value;
 }
 
-/* `#format: theta phi BSDF`: a column for each word; DSF has the cosine in it. */
+/* Reads `#format: theta phi BSDF`, a column for each word. DSF includes the cosine. */
 static void read_format(gonio_i_numbers *n, header *h)
 {
     size_t columns = 0;
@@ -55,7 +55,7 @@ static void read_colorimetry(gonio_i_numbers *n, header *h)
     h->colour = strcasecmp(word, "CIE-XYZ") == 0;
 }
 
-/* The key of a `#key` or `#key:` line, without either sign. */
+/* Reads the key of a line `#key` or `#key:`, without both signs. */
 static void read_name(gonio_i_numbers *n, char name[GONIO_I_WORD])
 {
     char word[GONIO_I_WORD];
@@ -128,7 +128,8 @@ static gonio_status read_row(gonio_i_numbers *n, gonio_i_import *in, const heade
     return gonio_i_import_add(in, &row);
 }
 
-/* Keys may stand between rows: a file of several incidences has those of each before its rows. */
+/* Reads rows. Keys may be between them: a file of several incidences has the keys of each before
+ * its rows. */
 static gonio_status read_rows(gonio_i_numbers *n, gonio_i_import *in, header *h)
 {
     gonio_status status = GONIO_OK;

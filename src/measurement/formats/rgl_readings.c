@@ -7,7 +7,7 @@
 #include "../import.h"
 #include "format.h"
 
-static const double MEASURED = 80.0; /* degrees; what files hold beyond is extrapolated */
+static const double MEASURED = 80.0; /* degrees; beyond it the values of files are extrapolated */
 
 static gonio_status add_sample(gonio_i_import *in, const gonio_i_rgl *rgl, size_t k, bool measured,
                                double *value)

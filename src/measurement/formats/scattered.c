@@ -1,4 +1,4 @@
-/* Scattered readings as text, as Cornell's laboratory and pbrt have them: see measurement.h. */
+/* Scattered readings as text, in the format of Cornell's laboratory and pbrt: see measurement.h. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,8 +13,8 @@ static bool is_whole_number(const char *word)
     return word[0] != '\0' && word[strspn(word, "0123456789")] == '\0';
 }
 
-/* Whether the rest of a line could be wavelengths, or the first of them: at most `most` numbers,
- * and larger than angles in radians and values are. */
+/* Whether the rest of a line could be wavelengths or the first of them: at most `most` numbers,
+ * which are larger than values and angles in radians. */
 static bool begins_with_wavelengths(gonio_i_numbers *n, size_t most)
 {
     double wavelength = 0.0;
@@ -30,8 +30,8 @@ static bool begins_with_wavelengths(gonio_i_numbers *n, size_t most)
     return good;
 }
 
-/* A text that begins with a whole number and as many wavelengths: in a CSV file there are names.
- * What is wrong with their values is for the reader to say. */
+/* Whether a text begins with a whole number and as many wavelengths. A CSV file has names there.
+ * The reader checks the numbers. */
 static bool recognises(const char *text, size_t size)
 {
     gonio_i_numbers n = gonio_i_numbers_of(NULL, "", text, size, '#');

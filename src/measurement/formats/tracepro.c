@@ -1,8 +1,9 @@
-/* Readings as TracePro exports them: the rows below Table_BSDF_Data.
+/* Readings that TracePro exports: the rows below Table_BSDF_Data.
  *
- * A row has a wavelength in micrometres, the incidence, and the scattered direction as the
- * difference of its direction cosines beta from those of the mirror direction, beta_0: its length
- * and its azimuth about the mirror direction, taken as 0 away from the normal. */
+ * A row has a wavelength in micrometres, the incidence, and the scattered direction. The direction
+ * is given by the difference of its direction cosines beta from those of the mirror direction,
+ * beta_0: the length of the difference and its azimuth, which is taken as 0 away from the normal.
+ */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,7 +32,7 @@ static double to_degrees(double radians)
     return radians * 180.0 / M_PI;
 }
 
-/* theta_o and phi_o - phi_i, degrees; theta_o is 180 where no direction has such cosines. */
+/* theta_o and phi_o - phi_i, degrees. theta_o is 180 if no direction has these cosines. */
 static void from_cosines(double theta_i, double beta, double azimuth, double *theta_o, double *phi)
 {
     const double a = azimuth * M_PI / 180.0;
@@ -56,7 +57,7 @@ static gonio_status add_row(gonio_i_long_table *table, const double *number, siz
     return gonio_i_long_table_add(table, &row);
 }
 
-/* Up to the first line that is no row of numbers. */
+/* Reads rows up to the first line that is no row of numbers. */
 static gonio_status read_rows(gonio_i_numbers *n, gonio_i_long_table *table)
 {
     gonio_status status = GONIO_OK;
@@ -76,7 +77,7 @@ static gonio_status read_rows(gonio_i_numbers *n, gonio_i_long_table *table)
     }
 }
 
-/* The rows of every table in the file. */
+/* Reads the rows of every table in the file. */
 static gonio_status read_tables(gonio_i_numbers *n, gonio_i_long_table *table)
 {
     gonio_status status = GONIO_OK;

@@ -1,5 +1,5 @@
-/* Readings as Zemax BSDF files: values on a grid of incidences, azimuths and radial angles, the
- * last two about the mirror direction. */
+/* Readings as Zemax BSDF files: values on a grid of incidences, azimuths and radial angles.
+ * Azimuths and radial angles are about the mirror direction. */
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -48,7 +48,7 @@ static size_t total(const grid *g)
 
 /* ---- the header ---- */
 
-/* The number of angles, which the rest of the text has to have room for. */
+/* Reads the number of angles. The rest of the text must have room for them. */
 static gonio_status read_count(gonio_i_numbers *n, const char *name, size_t *count)
 {
     double number = 0.0;
@@ -89,7 +89,7 @@ static gonio_status check_type(const gonio_i_numbers *n, const char *type)
 
 /* ---- the values ---- */
 
-/* Room for a plane, if the rest of the text can hold as many values. */
+/* Allocates a plane if the rest of the text can hold as many values. */
 static gonio_status make_plane(gonio_i_numbers *n, grid *g)
 {
     const size_t room = (size_t)(n->end - n->at);
@@ -114,7 +114,7 @@ static gonio_status make_plane(gonio_i_numbers *n, grid *g)
     return g->value[g->planes] != NULL && g->line != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
 }
 
-/* "TIS value" stands before each incidence. */
+/* Skips "TIS value", which is before each incidence. */
 static gonio_status skip_total(gonio_i_numbers *n)
 {
     char word[GONIO_I_WORD] = "";
@@ -167,7 +167,7 @@ static gonio_status read_word(gonio_i_numbers *n, const char *word, grid *g)
     return strcasecmp(word, "DataBegin") == 0 ? read_plane(n, g) : GONIO_OK;
 }
 
-/* Words that say nothing about the values are passed over. */
+/* Reads the grid. Words without meaning for the values are skipped. */
 static gonio_status read_grid(gonio_i_numbers *n, grid *g)
 {
     gonio_status status = GONIO_OK;
@@ -199,7 +199,7 @@ static void take_values(const grid *g, size_t k, double value[MOST_PLANES])
     }
 }
 
-/* The k-th angle of each axis, radial fastest. */
+/* The angles of value k, radial fastest. */
 static void find_angles(const grid *g, size_t k, double angle[AXES])
 {
     for (int a = AXES - 1; a >= 0; a--) {
@@ -247,7 +247,7 @@ static gonio_status read(gonio_i_readings_file *file, gonio_readings *readings)
     return gonio_i_import_end(&in, status);
 }
 
-/* The comments before the first word may be longer than what is looked at. */
+/* Whether the beginning of a text names two of the format's axes. */
 static bool recognises(const char *text, size_t size)
 {
     return memmem(text, size, "AngleOfIncidence", 16) != NULL &&
