@@ -32,6 +32,8 @@ _gonio_values()
         --mapping)  echo "log relative" ;;
         --method)   [[ $2 == reconstruct ]] && echo "posterior least-squares ridge" ||
                         echo "expected-error condition random matusik nielsen frost" ;;
+        --directions) echo "planned next random in-plane repeated condition matusik nielsen frost" ;;
+        --methods)  echo "posterior interpolation lambert-ggx external" ;;
         --environment|-e) echo "studio sky furnace" ;;
         --light)    echo "directional point" ;;
         --start)    echo "random qr volume" ;;
@@ -39,7 +41,7 @@ _gonio_values()
         --format)   echo "merl rgl table klems zemax csv" ;;
         *)
             case $(_gonio_value_name "$1" "$2") in
-                ''|FILE|DIR|OUT|BASIS|PLAN|READINGS|PAGE) return 1 ;;
+                ''|FILE|DIR|DIR'|'BASIS|OUT|BASIS|PLAN|READINGS|PAGE) return 1 ;;
                 *) echo "" ;; # numbers, names and texts
             esac ;;
     esac

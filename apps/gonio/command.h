@@ -24,6 +24,7 @@ typedef struct tool_command {
     COMMAND(report, "a page for a browser: spheres, directions, lobes, errors")                    \
     COMMAND(render, "a material on a sphere or a mesh, comparison pictures")                       \
     COMMAND(reproduce, "the paper's experiments on your materials")                                \
+    COMMAND(benchmark, "how well BRDFs are completed from n readings")                             \
     COMMAND(demo, "the whole chain on a built-in material")
 
 #define TOOL_DECLARE_COMMAND(name, summary) int cmd_##name(int argc, const char **argv);

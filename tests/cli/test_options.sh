@@ -77,7 +77,7 @@ done
 # ---- words that the completion offers for a value are those of the help ----
 
 for pair in learn:--grid learn:--channels learn:--mapping plan:--metric plan:--method plan:--start next:--metric \
-    reconstruct:--method render:--environment render:--light reproduce:--only; do
+    reconstruct:--method render:--environment render:--light reproduce:--only benchmark:--directions benchmark:--methods; do
     command=${pair%:*}
     offered=$(complete_words "$command" "${pair#*:}" '')
     expect_true "the completion offers words for $pair" test "$(wc -w <<<"$offered")" -ge 2

@@ -1,0 +1,11 @@
+/* Curves of mean errors against directions, one figure a set. */
+#ifndef GONIO_BENCHMARK_CURVES_H
+#define GONIO_BENCHMARK_CURVES_H
+
+#include "summary.h"
+
+/* figures/e6-K.png and its data, K the place of the set from 1. Errors: those of figure.h. */
+gonio_status benchmark_draw_curves(gonio_context *context, const benchmark_summary *summary,
+                                   const char *folder);
+
+#endif

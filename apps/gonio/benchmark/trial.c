@@ -1,0 +1,221 @@
+/* A trial: see trial.h. */
+#include "trial.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <time.h>
+
+#include "score.h"
+
+#include "core/core.h"
+
+/* Published comparisons render reconstructions from so many readings. */
+static const size_t rendered_sizes[] = {8, 16, 32};
+
+/* While a trial is made. */
+typedef struct state {
+    const benchmark_trial *trial;
+    gonio_context *context; /* asks whether to stop */
+    gonio_context *silent;  /* for the work: what it notes of each reading does not matter here */
+    benchmark_sample sample;
+    benchmark_pairs chosen;
+    gonio_reference *reference; /* the rendered table; NULL until it is needed */
+    json_t *rows;
+} state;
+
+static double seconds_now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static json_t *number(double value)
+{
+    return isfinite(value) ? json_real(value) : json_null();
+}
+
+/* ---- renderings ---- */
+
+static bool is_rendered(const state *s, size_t n)
+{
+    bool wanted = false;
+    for (size_t k = 0; k < sizeof rendered_sizes / sizeof *rendered_sizes; k++) {
+        wanted = wanted || n == rendered_sizes[k];
+    }
+    return wanted && s->trial->setting->render && s->sample.table != NULL && s->trial->draw == 0;
+}
+
+static gonio_status compare_rendered(state *s, const gonio_material *made, gonio_image_error *error)
+{
+    gonio_status status = GONIO_OK;
+    if (s->reference == NULL) {
+        status = gonio_reference_create(s->silent, s->sample.material, NULL, &s->reference);
+    }
+    return status == GONIO_OK ? gonio_reference_compare(s->silent, s->reference, made, error)
+                              : status;
+}
+
+/* ---- one method from one n ---- */
+
+static json_t *errors_json(const gonio_error *error)
+{
+    json_t *list = json_array();
+    for (int m = 0; gonio_metric_describe(m) != NULL; m++) {
+        json_array_append_new(list, number(error->value[m]));
+    }
+    return list;
+}
+
+static void add_row(const state *s, size_t n, const char *method, size_t read,
+                    const benchmark_score *score, double expected, const gonio_image_error *image,
+                    double seconds)
+{
+    json_array_append_new(
+        s->rows,
+        json_pack("{s:I, s:s, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "n", (json_int_t)n,
+                  "method", method, "read", (json_int_t)read, "values", (json_int_t)score->values,
+                  "errors", errors_json(&score->error), "inside", number(score->inside), "expected",
+                  number(expected), "expected_here", number(score->expected_here), "psnr",
+                  number(image->psnr), "delta_e_itp", number(image->delta_e_itp), "seconds",
+                  number(seconds)));
+}
+
+static gonio_status judge(state *s, const benchmark_task *task, size_t n,
+                          const benchmark_completion *completion, benchmark_score *score,
+                          gonio_image_error *image)
+{
+    gonio_material *whole = NULL;
+    if (s->sample.known != NULL) {
+        return benchmark_score_readings(s->silent, &s->sample, task->readings, completion, score);
+    }
+    gonio_status status = benchmark_score_table(s->silent, &s->sample, task->setting->reach,
+                                                completion, score, &whole);
+    if (status == GONIO_OK && is_rendered(s, n)) {
+        status = compare_rendered(s, whole, image);
+    }
+    gonio_material_free(&whole);
+    return status;
+}
+
+/* Whether a method may fail so without ending the run. */
+static bool is_excused(gonio_status status)
+{
+    return status == GONIO_ERROR_UNDETERMINED || status == GONIO_ERROR_DATA ||
+           status == GONIO_ERROR_NUMERICAL || status == GONIO_ERROR_MISMATCH;
+}
+
+static gonio_status try_method(state *s, const benchmark_task *task, size_t n,
+                               const benchmark_method *method, const char *name)
+{
+    const size_t read = gonio_readings_describe(task->readings)->count;
+    benchmark_completion completion = {.expected = NAN};
+    benchmark_score score = {.inside = NAN, .expected_here = NAN};
+    gonio_image_error image = {NAN, NAN};
+    for (int m = 0; m < GONIO_MOST_METRICS; m++) {
+        score.error.value[m] = NAN;
+    }
+    const bool loud = method == &benchmark_external; /* its author wants to know why */
+    gonio_context *context = loud ? s->context : s->silent;
+    const double start = seconds_now();
+    gonio_status status = method->complete(context, task, &completion);
+    const double seconds = seconds_now() - start;
+    const double expected = completion.expected;
+    if (status == GONIO_OK) {
+        status = judge(s, task, n, &completion, &score, &image);
+    }
+    benchmark_completion_free(&completion);
+    if (status == GONIO_OK || (is_excused(status) && !loud)) {
+        add_row(s, n, name, read, &score, expected, &image, seconds);
+        return GONIO_OK;
+    }
+    return gonio_i_fail(s->context, status, "%s by %s from %zu readings: %s",
+                        s->trial->subject->name, name, n, gonio_status_text(status));
+}
+
+/* ---- all methods from one n ---- */
+
+static gonio_status find_basis(state *s, const gonio_basis **basis)
+{
+    const char *plan = s->trial->ways->plan_method;
+    return benchmark_basis(s->silent, s->trial->bases, plan != NULL ? plan : "expected-error",
+                           basis);
+}
+
+static gonio_status try_methods(state *s, size_t n, const gonio_readings *readings)
+{
+    const benchmark_directions *ways = s->trial->ways;
+    const benchmark_setting *setting = s->trial->setting;
+    benchmark_task task = {.setting = setting, .readings = readings};
+    gonio_status status = find_basis(s, &task.basis);
+    if (status == GONIO_OK && ways->own_methods) {
+        task.method = gonio_plan_method_reconstruction(ways->plan_method);
+        return try_method(s, &task, n, &benchmark_published, task.method);
+    }
+    for (size_t k = 0; k < setting->method_count && status == GONIO_OK; k++) {
+        const benchmark_method *method = benchmark_method_at(setting->method[k]);
+        status = try_method(s, &task, n, method, method->name);
+    }
+    return status;
+}
+
+static gonio_status choose_and_try(state *s, size_t n)
+{
+    const benchmark_trial *t = s->trial;
+    const benchmark_choosing with = {t->setting, &s->sample, t->bases, t->plan, t->draw};
+    gonio_readings *readings = NULL;
+    gonio_status status = t->ways->choose(s->silent, &with, n, &s->chosen);
+    const benchmark_pairs first = {n + t->ways->repeats, s->chosen.pair};
+    if (status != GONIO_OK || s->chosen.count < first.count) {
+        return status;
+    }
+    status = benchmark_sample_read(s->silent, t->setting, &s->sample, &first, &readings);
+    if (status == GONIO_OK) {
+        status = try_methods(s, n, readings);
+    }
+    gonio_readings_free(&readings);
+    return status;
+}
+
+static gonio_status try_sizes(state *s)
+{
+    const benchmark_setting *setting = s->trial->setting;
+    const size_t most = benchmark_sample_most(&s->sample);
+    gonio_status status = GONIO_OK;
+    for (size_t k = 0; k < setting->sizes && status == GONIO_OK; k++) {
+        if (setting->size[k] <= most) {
+            status = choose_and_try(s, setting->size[k]);
+        }
+        if (status == GONIO_OK) {
+            status = gonio_i_progress(s->context, "a trial", 0.5);
+        }
+    }
+    return status;
+}
+
+gonio_status benchmark_trial_run(gonio_context *context, const benchmark_trial *trial,
+                                 json_t **rows)
+{
+    const gonio_context_options quiet = {.size = sizeof quiet, .threads = 1};
+    state s = {.trial = trial, .context = context, .rows = json_array()};
+    gonio_status status = gonio_context_create(&s.silent, &quiet);
+    if (status == GONIO_OK) {
+        status = benchmark_sample_open(s.silent, trial->setting, trial->subject, trial->candidates,
+                                       &s.sample);
+    }
+    if (status == GONIO_OK) {
+        status = try_sizes(&s);
+    }
+    if (status == GONIO_OK) {
+        *rows = json_incref(s.rows);
+    } else if (status != GONIO_ERROR_CANCELLED) {
+        gonio_i_fail(context, status, "%s, %s: %s", trial->subject->path, trial->ways->name,
+                     gonio_status_text(status));
+    }
+    json_decref(s.rows);
+    gonio_reference_free(&s.reference);
+    benchmark_sample_free(&s.sample);
+    free(s.chosen.pair);
+    gonio_context_free(&s.silent);
+    return status;
+}
