@@ -1,5 +1,4 @@
 """What tests share: a small basis, a plan, readings, directions."""
-import os
 import pathlib
 
 import numpy as np
@@ -57,4 +56,3 @@ def some_directions():
 def in_scratch(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("MPLBACKEND", "Agg")
-    os.environ.setdefault("OMP_WAIT_POLICY", "passive")

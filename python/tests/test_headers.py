@@ -38,9 +38,9 @@ UNBOUND = {
         gonio_material_writer_summary gonio_plan_method_summary gonio_plan_method_reconstruction
         gonio_plan_method_basis gonio_plan_start_name gonio_plan_start_summary gonio_reconstruct_method_summary
         gonio_reconstruct_method_suits_mixtures gonio_readings_format_word gonio_environment_summary
-        gonio_readings_survey gonio_survey_free gonio_sheet_write_png gonio_tone_apply gonio_srgb_encode""",
+        gonio_comparison_picture_write_png gonio_tone_apply gonio_srgb_encode""",
 }
-KINDS = ("basis context database environment image material mesh plan readings reconstruction table").split()
+KINDS = ("basis context database environment image material mesh plan readings reconstruction survey table").split()
 
 # Fields of options and the parameters that they are; None: the package sets them itself.
 OPTIONS = {

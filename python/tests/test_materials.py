@@ -102,6 +102,11 @@ def test_what_a_function_raises_comes_out(some_directions):
     def broken(wi, wo):
         raise ZeroDivisionError("mine")
 
+    for work in (lambda m: gonio.errors("atlas:gold-leaf", m), lambda m: gonio.render(m, width=8, height=8),
+                 lambda m: gonio.learn([m, "atlas:gold-leaf"]), lambda m: m.to_numpy(), lambda m: m.save("a.binary"),
+                 lambda m: gonio.SimulatedInstrument(m).read(*some_directions)):
+        with pytest.raises(ZeroDivisionError, match="mine"):
+            work(gonio.Material(broken))
     with pytest.raises(ZeroDivisionError, match="mine"):
         gonio.Material(broken).eval(*some_directions)
     with pytest.raises(gonio.ArgumentError, match="returned shape"):

@@ -26,6 +26,10 @@ def test_rendering(sample, tmp_path):
         gonio.tone_map(np.zeros((4, 4)))
 
 
+def test_materials_show_themselves(sample):
+    assert sample._repr_png_().startswith(b"\x89PNG")
+
+
 def test_report(sample, model, tmp_path):
     try:
         page = gonio.report(sample, model.reconstruction_)

@@ -76,6 +76,16 @@ def test_readings_and_files(plan, values, tmp_path):
         gonio.Readings(plan.wi, plan.wo, -values)
 
 
+def test_survey(sample):
+    theta_o, phi_o = np.meshgrid(np.radians(np.arange(5, 80, 10)), np.radians(np.arange(0, 360, 20)))
+    wi = gonio.directions(np.full(theta_o.size, 0.5))
+    found = gonio.Readings(wi, gonio.directions(theta_o.ravel(), phi_o.ravel())).measured(sample).survey()
+    assert found["measured"] == theta_o.size and found["empty"] == 0 and found["outliers"] == []
+    [one] = found["incidences"]
+    assert one["count"] == theta_o.size and one["covered"] > 0.9 and np.all(one["albedo"] > 0.0)
+    assert np.allclose(found["theta_i"], 0.5)
+
+
 def test_spectra_and_single_sensors(basis, plan, values, some_directions):
     nm = [450.0, 550.0, 650.0, 700.0]
     spectra = np.column_stack([values, values[:, 0]])

@@ -40,6 +40,22 @@ def test_noise_of_readings(basis, plan, values, some_directions):
         gonio.Regressor(basis).fit(plan.directions, values, noise=np.ones(5))
 
 
+def test_a_basis_by_its_path(basis_path, plan, values):
+    models = [gonio.Regressor(path).fit(plan.directions, values) for path in (basis_path, str(basis_path))]
+    assert models[0].reconstruction_.basis is models[1].reconstruction_.basis
+    with pytest.raises(gonio.FileError, match="no-such"):
+        gonio.Regressor("no-such.gonio").fit(plan.directions, values)
+
+
+def test_warnings_may_be_exceptions(basis, sample, some_directions):
+    import warnings
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with pytest.raises(gonio.GonioWarning):
+            gonio.Regressor(basis).fit(some_directions, 100.0 * np.pi * sample.eval(*some_directions))
+
+
 def test_score(model, sample, some_directions):
     truth = sample.eval(*some_directions)
     assert model.score(some_directions, model.predict(*some_directions)) == 1.0

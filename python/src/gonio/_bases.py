@@ -4,6 +4,7 @@ from __future__ import annotations
 import os
 import pathlib
 import tempfile
+import weakref
 import zlib
 from typing import Any, Iterable, Optional, Union
 
@@ -14,7 +15,7 @@ from . import _calls
 from ._backend import ffi, lib
 from ._directions import Array
 from ._exceptions import ArgumentError, MismatchError
-from ._materials import as_material, atlas
+from ._materials import as_material, atlas, causes
 from ._plans import Plan, plan_options
 
 Path = Union[str, "os.PathLike[str]"]
@@ -70,7 +71,8 @@ def learn(materials: Iterable[Any], *, grid: str = "sectored", channels: Optiona
                            channels=usual.channels if channels is None else _parsed("channel_model", channels),
                            scratch=folder)
     handles = ffi.new("gonio_material *[]", [m._handle for m in used])
-    database = _calls.made("database", lib.gonio_database_create_from_materials, handles, len(used), where)
+    with causes(*used):
+        database = _calls.made("database", lib.gonio_database_create_from_materials, handles, len(used), where)
     how = _calls.options("basis", components=components, mixtures=mixtures, seed=seed, without_mean=not mean)
     return Basis._of(_calls.made("basis", lib.gonio_basis_learn, database, how))
 
@@ -292,7 +294,26 @@ def _library_digest() -> str:
 
 
 def as_basis(value: Any) -> Basis:
-    """An argument that may be a basis, the path of one, or None for the built-in one."""
+    """An argument that may be a basis, the path of one, or None for the built-in one. A file in use is read once."""
     if value is None:
         return builtin_basis()
-    return value if isinstance(value, Basis) else Basis.load(value)
+    if isinstance(value, Basis):
+        return value
+    path = os.path.abspath(os.fspath(value))
+    found = _loaded.get(_state(path))
+    if found is None:
+        found = Basis.load(path)
+        _loaded[_state(path)] = found
+    return found
+
+
+_loaded: "weakref.WeakValueDictionary[tuple[Any, ...], Basis]" = weakref.WeakValueDictionary()
+
+
+def _state(path: str) -> tuple[Any, ...]:
+    """A file as it is now; a missing one is found out by loading it."""
+    try:
+        now = os.stat(path)
+        return path, now.st_mtime_ns, now.st_size, now.st_ino
+    except OSError:
+        return (path,)

@@ -178,10 +178,16 @@ def run(function: Callable[..., int], *arguments: Any) -> None:
 
 
 def made(kind: str, function: Callable[..., int], *arguments: Any) -> Any:
-    """Calls a function whose last argument is a gonio_KIND **; the object is freed with what is returned."""
+    """Calls a function whose last argument is a gonio_KIND **; the object is freed with what is returned. None for
+    NULL."""
     out = ffi.new(f"gonio_{kind} **")
-    run(function, *arguments, out)
-    return owned(kind, out[0])
+    result = None
+    try:
+        run(function, *arguments, out)
+    finally:  # a warning may be an exception
+        if out[0] != ffi.NULL:
+            result = owned(kind, out[0])
+    return result
 
 
 def owned(kind: str, pointer: Any) -> Any:
@@ -199,6 +205,14 @@ def options(kind: str, **fields: Any) -> Any:
         if value is not None:
             setattr(struct, name, value)
     return struct
+
+
+def struct(name: str, **fields: Any) -> Any:
+    """A struct of input or output, zeros but for the fields, and its size if it begins with one."""
+    made = ffi.new(f"{name} *", fields)
+    if hasattr(made, "size"):
+        made.size = ffi.sizeof(name)
+    return made
 
 
 def text(pointer: Any) -> str:

@@ -11,7 +11,7 @@ from . import _calls
 from ._backend import ffi, lib
 from ._directions import Array
 from ._exceptions import ArgumentError
-from ._materials import as_material
+from ._materials import as_material, causes
 from ._plans import metrics
 from ._readings import Readings
 
@@ -72,10 +72,9 @@ def errors(reference: Any, other: Any, *, left_out: Optional[npt.ArrayLike] = No
     if left_out is not None:
         raise ArgumentError("left_out is of readings; two materials are compared over all bins")
     first, second = as_material(reference), as_material(other)
-    found = ffi.new("gonio_comparison *")
-    if hasattr(found, "size"):
-        found.size = ffi.sizeof("gonio_comparison")
-    second._run(lib.gonio_compare, first._handle, second._handle, found)
+    found = _calls.struct("gonio_comparison")
+    with causes(first, second):
+        _calls.run(lib.gonio_compare, first._handle, second._handle, found)
     by_channel = [_values(found.channel[c]) for c in range(lib.GONIO_CHANNELS)]
     channels = {name: np.array([e[name] for e in by_channel]) for name in metrics()}
     return Errors(_values(found.all), channels, int(found.bins), int(found.missing))
@@ -90,7 +89,7 @@ def _of_readings(reference: Any, other: Any, left_out: Any) -> Errors:
         skipped = np.ascontiguousarray(left_out, dtype=np.bool_)
         if skipped.shape != (len(places),):
             raise ArgumentError(f"left_out has shape {skipped.shape}: it needs a bool for each of {len(places)} readings")
-    error, compared = ffi.new("gonio_error *"), ffi.new("size_t *")
+    error, compared = _calls.struct("gonio_error"), ffi.new("size_t *")
     _calls.run(lib.gonio_compare_readings, a, b, _calls.buffer(skipped, "bool"), error, compared)
     return Errors(_values(error), None, int(compared[0]), 0)
 

@@ -1,9 +1,10 @@
 """Materials: a BRDF at any directions, from a file, by name, from an array or from a function."""
 from __future__ import annotations
 
+import contextlib
 import os
 import threading
-from typing import Any, Callable, Optional, Union
+from typing import Any, Callable, Iterator, Optional, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -57,6 +58,19 @@ def _evaluate(user: Any, _context: Any, given: Any, count: int, values: Any) -> 
         function.raised = error
         return int(lib.GONIO_ERROR_DATA)
     return int(lib.GONIO_OK)
+
+
+@contextlib.contextmanager
+def causes(*materials: "Material") -> Iterator[None]:
+    """While materials are evaluated: what the function of one raises comes out, rather than what the library says."""
+    try:
+        yield
+    except Exception as error:
+        for function in [m._function for m in materials if m._function is not None]:
+            if function.raised is not None:
+                cause, function.raised = function.raised, None
+                raise cause from error
+        raise
 
 
 @_calls.free_of_change
@@ -156,17 +170,6 @@ class Material:
         self._handle = _calls.made("material", lib.gonio_python_function_material, name.encode(), handle, channels,
                                    _calls.buffer(nm), anisotropic, lib.gonio_python_evaluate)
 
-    def _run(self, function: Callable[..., int], *arguments: Any) -> None:
-        """A call that may evaluate the material; what its own function raises is the cause."""
-        try:
-            _calls.run(function, *arguments)
-        except Exception as error:
-            cause = self._function.raised if self._function is not None else None
-            if cause is None:
-                raise
-            self._function.raised = None  # type: ignore[union-attr]
-            raise cause from error
-
     # -- what it is --
 
     @property
@@ -230,8 +233,9 @@ class Material:
         at = pairs(wi, wo, below_is_wrong=mode == "raise")
         values = np.empty((*at.shape[:-1], self.channels))
         if values.size:
-            self._run(lib.gonio_material_evaluate, self._handle, _calls.buffer(at, "gonio_pair"), at.size // 4,
-                      _calls.buffer(values))
+            with causes(self):
+                _calls.run(lib.gonio_material_evaluate, self._handle, _calls.buffer(at, "gonio_pair"), at.size // 4,
+                           _calls.buffer(values))
         if mode == "zero":
             values[(at[..., 0] >= np.pi / 2) | (at[..., 2] >= np.pi / 2)] = 0.0
         if cosine:
@@ -242,9 +246,8 @@ class Material:
         """The table, read once."""
         with self._lock:
             if self._table is None:
-                out = ffi.new("gonio_table **")
-                self._run(lib.gonio_table_load, self._handle, out)
-                self._table = _calls.owned("table", out[0])
+                with causes(self):
+                    self._table = _calls.made("table", lib.gonio_table_load, self._handle)
             return self._table
 
     def albedo(self, theta: npt.ArrayLike) -> Array:
@@ -311,7 +314,14 @@ class Material:
         name = ffi.NULL if format is None else ffi.new("char[]", format.encode())
         how = _calls.options("write", format=name, theta_i_step=theta_i_step, theta_o_step=theta_o_step,
                              phi_step=phi_step)
-        self._run(lib.gonio_material_write, self._handle, _calls.encoded(path), how)
+        with causes(self):
+            _calls.run(lib.gonio_material_write, self._handle, _calls.encoded(path), how)
+
+    def _repr_png_(self) -> Optional[bytes]:
+        """A small rendering, for notebooks."""
+        from ._rendering import thumbnail
+
+        return thumbnail(self)
 
     def __reduce__(self) -> Any:
         function, arguments, keywords = self._origin

@@ -166,7 +166,7 @@ def _rebuild(cell: Any, channel: Any, at: Any, expected: Any, fields: dict[str, 
     """A pickled plan again; its memory is Python's."""
     table = np.zeros(len(cell), _ENTRY)
     table["cell"], table["channel"], table["pair"] = cell, channel, at
-    plan = ffi.new("gonio_plan *", {"count": len(cell), **fields})
+    plan = _calls.struct("gonio_plan", count=len(cell), **fields)
     plan.entries = _calls.buffer(table, "gonio_plan_entry")
     errors = None if expected is None else np.array(expected)
     plan.expected = _calls.buffer(errors)

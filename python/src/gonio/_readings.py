@@ -11,6 +11,7 @@ from . import _calls
 from ._backend import ffi, lib
 from ._directions import Array, from_pairs, numbers, pairs
 from ._exceptions import ArgumentError
+from ._materials import as_material, causes
 from ._plans import Plan
 
 Path = Union[str, "os.PathLike[str]"]
@@ -77,10 +78,9 @@ class Readings:
 
     def _make(self, at: Array, value: Any, spread: Any, nm: Any, channels: int, average_repeats: bool,
               negative_to_zero: bool) -> None:
-        arrays = ffi.new("gonio_readings_arrays *", {
-            "size": ffi.sizeof("gonio_readings_arrays"), "count": len(at), "channels": channels,
-            "pair": _calls.buffer(at, "gonio_pair"), "wavelength": _calls.buffer(nm), "value": _calls.buffer(value),
-            "deviation": _calls.buffer(spread)})
+        arrays = _calls.struct(
+            "gonio_readings_arrays", count=len(at), channels=channels, pair=_calls.buffer(at, "gonio_pair"),
+            wavelength=_calls.buffer(nm), value=_calls.buffer(value), deviation=_calls.buffer(spread))
         how = _calls.options("readings", average_repeats=average_repeats, negative_to_zero=negative_to_zero)
         self._handle = _calls.made("readings", lib.gonio_readings_create, arrays, how)
         self._view = lib.gonio_readings_describe(self._handle)
@@ -177,6 +177,33 @@ class Readings:
     def __repr__(self) -> str:
         return f"<gonio.Readings: {len(self)} directions, {self.channels} channels>"
 
+    def survey(self) -> dict[str, Any]:
+        """What they contain, before anything is done with them.
+
+        Returns
+        -------
+        dict
+            measured, empty : readings with a value, values that are missing.
+            theta_i, theta_o, theta_h : least and most, radians.
+            incidences : for each polar angle of the light a dict with theta_i, count, the share of the hemisphere that is
+            covered, and the albedo of that part, (channels,) or None.
+            repeats, repeats_percent : readings at the angles of an earlier one, and how far they differ (RMS).
+            reciprocal_pairs, reciprocity_percent : the same with light and viewer exchanged.
+            outliers : places of readings that are far from all around them, at most 16.
+        """
+        found = _calls.made("survey", lib.gonio_readings_survey, self._handle)
+        numbers = ("measured", "empty", "in_plane", "repeats", "repeats_percent", "reciprocal_pairs",
+                   "reciprocity_percent")
+        made: dict[str, Any] = {name: getattr(found, name) for name in numbers}
+        made.update({name: tuple(getattr(found, name)) for name in ("theta_i", "theta_o", "theta_h")})
+        made["incidences"] = [self._incidence(found, found.incidence[k]) for k in range(found.incidences)]
+        made["outliers"] = [int(found.outlier[k]) for k in range(min(found.outliers, lib.GONIO_MOST_OUTLIERS))]
+        return made
+
+    def _incidence(self, owner: Any, one: Any) -> dict[str, Any]:
+        return {"theta_i": float(one.theta_i), "count": int(one.count), "covered": float(one.covered),
+                "albedo": _copied(_calls.view(owner, one.albedo, (self.channels,)))}
+
     # -- other readings --
 
     def _copy(self) -> Any:
@@ -197,11 +224,10 @@ class Readings:
         outliers : float
             Share of directions, 0 to 1, where all values are ten times too large or too small.
         """
-        from ._materials import as_material
-
         how = _calls.options("instrument", noise=noise, floor=floor, seed=seed, outliers=outliers)
         sample, handle = as_material(material), self._copy()
-        sample._run(lib.gonio_measure_material, handle, sample._handle, how)
+        with causes(sample):
+            _calls.run(lib.gonio_measure_material, handle, sample._handle, how)
         return Readings._of(handle)
 
     def looked_up(self, known: "Readings") -> "Readings":

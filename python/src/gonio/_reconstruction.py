@@ -331,9 +331,9 @@ class Reconstruction:
         """
         what, _keep = plan_options(n, instrument, metric, target_error, candidates)
         how, _word = self._options()
-        out = ffi.new("gonio_plan **")
-        _calls.run(lib.gonio_plan_next, self.basis._handle, self.readings._handle, how, what, ffi.NULL, ffi.NULL, out)
-        return None if out[0] == ffi.NULL else Plan._of(_calls.owned("plan", out[0]))
+        made = _calls.made("plan", lib.gonio_plan_next, self.basis._handle, self.readings._handle, how, what, ffi.NULL,
+                           ffi.NULL)
+        return None if made is None else Plan._of(made)
 
     def __reduce__(self) -> Any:
         return Reconstruction._solve, (self.basis, self.readings, self._settings)

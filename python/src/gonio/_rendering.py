@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import os
 import pathlib
+import tempfile
 from typing import Any, Optional, Sequence, Union
 
 import numpy as np
@@ -10,8 +11,8 @@ import numpy.typing as npt
 
 from . import _calls
 from ._backend import ffi, lib
-from ._exceptions import ArgumentError
-from ._materials import as_material
+from ._exceptions import ArgumentError, GonioError
+from ._materials import as_material, causes
 
 Path = Union[str, "os.PathLike[str]"]
 Image = npt.NDArray[np.float32]
@@ -78,9 +79,8 @@ def render(material: Any, *, width: int = 512, height: int = 512, samples: int =
                          environment=light, environment_turn=environment_turn, show_environment=show_environment,
                          lamp=LAMPS[lamp], lamp_position=lamp_position, azimuth=azimuth, elevation=elevation,
                          field_of_view=field_of_view)
-    out = ffi.new("gonio_image **")
-    sample._run(lib.gonio_render, sample._handle, how, out)
-    return _array(_calls.owned("image", out[0]))
+    with causes(sample):
+        return _array(_calls.made("image", lib.gonio_render, sample._handle, how))
 
 
 def _array(image: Any) -> Image:
@@ -101,7 +101,7 @@ def _image(image: Any) -> tuple[Any, Any]:
                             f"linear R, G, B, A, or (height, width, 3)")
     pixels = np.ones((*given.shape[:2], 4), np.float32)
     pixels[..., :given.shape[2]] = given
-    made = ffi.new("gonio_image *", {"width": given.shape[1], "height": given.shape[0]})
+    made = _calls.struct("gonio_image", width=given.shape[1], height=given.shape[0])
     made.rgba = _calls.buffer(pixels, "float")
     return made, pixels
 
@@ -144,9 +144,21 @@ def save_image(image: npt.ArrayLike, path: Path, *, key: float = 0.18) -> None:
         _calls.run(lib.gonio_image_write_png, made, _tone(image, key), _calls.encoded(path))
 
 
+def thumbnail(material: Any) -> Optional[bytes]:
+    """A small rendering as PNG; None if the library was built without the renderer."""
+    try:
+        image = render(material, width=160, height=160, samples=16, environment=environments()[0])
+    except GonioError:
+        return None
+    with tempfile.TemporaryDirectory() as folder:
+        path = pathlib.Path(folder) / "a.png"
+        save_image(image, path)
+        return path.read_bytes()
+
+
 def image_errors(reference: npt.ArrayLike, other: npt.ArrayLike, *, key: float = 0.18) -> dict[str, float]:
     """How far a rendering is from another as they are shown: "psnr" in dB and "delta_e_itp" (BT.2124)."""
     (a, _a), (b, _b) = _image(reference), _image(other)
-    found = ffi.new("gonio_image_error *")
+    found = _calls.struct("gonio_image_error")
     _calls.run(lib.gonio_image_compare, a, b, _tone(reference, key), found, ffi.NULL)
     return {"psnr": float(found.psnr), "delta_e_itp": float(found.delta_e_itp)}

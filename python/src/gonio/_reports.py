@@ -7,8 +7,8 @@ import tempfile
 from typing import Any, Optional
 
 from . import _calls
-from ._backend import ffi, lib
-from ._materials import Material, as_material
+from ._backend import lib
+from ._materials import Material, as_material, causes
 from ._readings import Path, Readings
 from ._reconstruction import Reconstruction
 
@@ -64,15 +64,9 @@ def report(material: Any, reconstruction: Any = None, *, readings: Optional[Read
         if deviation is None and reconstruction is not None and shown.field is not None:
             deviation = shown.deviation_material()
     keep = [as_material(material), None if reconstruction is None else as_material(reconstruction)]
-    content = ffi.new("gonio_page_content *", {"size": ffi.sizeof("gonio_page_content")})
-    content.reference = keep[0]._handle  # type: ignore[union-attr]
-    if keep[1] is not None:
-        content.reconstruction = keep[1]._handle
-    if deviation is not None:
-        content.deviation = deviation._handle
-    if readings is not None:
-        content.readings = readings._handle
-    with tempfile.TemporaryDirectory() as folder:
+    parts = dict(reference=keep[0], reconstruction=keep[1], deviation=deviation, readings=readings)
+    content = _calls.struct("gonio_page_content", **{n: p._handle for n, p in parts.items() if p is not None})
+    with tempfile.TemporaryDirectory() as folder, causes(*[m for m in keep if m is not None]):
         path = pathlib.Path(folder) / "page.html"
         _calls.run(lib.gonio_page_write, content, _calls.encoded(path))
         return Report(path.read_text(encoding="utf-8"))
