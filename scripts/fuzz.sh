@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Fuzzes one target after the other: fuzz.sh BUILD SECONDS [TARGET...], with a build of the preset "fuzz". Inputs are
-# kept in BUILD/corpus/TARGET, and the next run begins with them; what crashes, hangs for 10 s or asks for more than
-# 1 GiB is left in BUILD/found. Exit code 1 if there is anything.
+# kept in BUILD/corpus/TARGET, and the next run begins with them; what crashes, hangs for 10 s ($TIMEOUT) or asks for
+# more than 1 GiB is left in BUILD/found. Exit code 1 if there is anything.
 set -u
 build=$1
 seconds=$2
@@ -18,7 +18,7 @@ for target in "$@"; do
     more=()
     [ ! -f "tests/fuzz/dictionaries/$target" ] || more+=("-dict=tests/fuzz/dictionaries/$target")
     [ ! -d "tests/regression/fuzz/$target" ] || more+=("tests/regression/fuzz/$target")
-    if nice "$build/tests/fuzz/fuzz-$target" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2500 \
+    if nice "$build/tests/fuzz/fuzz-$target" -max_total_time="$seconds" -timeout="${TIMEOUT:-10}" -rss_limit_mb=2500 \
         -malloc_limit_mb=1024 -max_len=65536 -artifact_prefix="$build/found/$target-" \
         "$corpus" "$build/seeds/$target" "${more[@]}" \
         >"$build/found/$target.log" 2>&1; then

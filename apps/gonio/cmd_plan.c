@@ -8,7 +8,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 typedef struct options {
     const char *output;
@@ -75,15 +74,29 @@ static bool check(const tool *t, const options *o, size_t count, const char **ar
         return tool_refuse(t, "give at most one BASIS, not %zu", count);
     }
     if (!tool_check_output(t, o->output, arguments, count) ||
-        (o->history != NULL && !tool_check_output(t, o->history, arguments, count))) {
+        (o->history != NULL && (!tool_check_output(t, o->history, arguments, count) ||
+                                !tool_check_output(t, o->history, &o->planning.candidates, 1)))) {
         return false;
     }
-    if (o->history != NULL && strcmp(o->history, o->output) == 0) {
+    if (o->history != NULL && tool_is_one_output(o->history, o->output)) {
         return tool_refuse(t, "--history and -o name the same file");
     }
     return planning_options_check(t, &o->planning, o->output) &&
            tool_check_count(t, "--restarts", o->restarts, 1) &&
            tool_check_count(t, "--components", o->components, 0);
+}
+
+/* The plan and its history, both or none. */
+static gonio_status write_files(tool *t, const options *o, const gonio_plan *plan)
+{
+    gonio_status status = gonio_outputs_hold(t->context);
+    if (status == GONIO_OK && o->history != NULL) {
+        status = gonio_plan_write_history(t->context, plan, t->command_line, o->history);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_plan_write(t->context, plan, t->command_line, o->output);
+    }
+    return gonio_outputs_release(t->context, status);
 }
 
 static int run(tool *t, void *given)
@@ -96,11 +109,8 @@ static int run(tool *t, void *given)
     }
     gonio_plan *plan = NULL;
     gonio_status status = make_plan(t, o, count > 0 ? arguments[0] : NULL, &plan);
-    if (status == GONIO_OK && o->history != NULL) {
-        status = gonio_plan_write_history(t->context, plan, t->command_line, o->history);
-    }
     if (status == GONIO_OK) {
-        status = gonio_plan_write(t->context, plan, t->command_line, o->output);
+        status = write_files(t, o, plan);
     }
     const int code = status == GONIO_OK ? report(t, plan, o) : tool_exit_code(status);
     gonio_plan_free(&plan);

@@ -11,7 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 typedef struct options {
     const char *output;
@@ -36,21 +35,25 @@ typedef struct energy {
     double theta_i; /* degrees */
 } energy;
 
-/* Finds the largest albedo. It is unknown only if memory runs out. No context is used, so that it
- * is also known of results made before an interrupt. */
+/* Finds the largest albedo. It is unknown only if memory runs out. The context is a new one, so
+ * that it is also known of results made before an interrupt. */
 static energy find_energy(const gonio_basis *basis, const gonio_reconstruction *r)
 {
     gonio_material *material = NULL;
     gonio_table *table = NULL;
+    gonio_context *context = NULL;
+    const gonio_context_options silent = {.size = sizeof silent, .threads = tool_threads};
     energy e = {0};
-    e.known = gonio_reconstruction_material(NULL, basis, r, "made", &material) == GONIO_OK &&
-              gonio_table_load(NULL, material, &table) == GONIO_OK;
+    e.known = gonio_context_create(&context, &silent) == GONIO_OK &&
+              gonio_reconstruction_material(context, basis, r, "made", &material) == GONIO_OK &&
+              gonio_table_load(context, material, &table) == GONIO_OK;
     if (e.known) {
         double albedo[TOOL_INCIDENCES][GONIO_CHANNELS];
         e.theta_i = tool_incidence_deg[tool_albedos(table, albedo, &e.albedo)];
     }
     gonio_table_free(&table);
     gonio_material_free(&material);
+    gonio_context_free(&context);
     return e;
 }
 
@@ -189,9 +192,6 @@ static gonio_status write_more(tool *t, const options *o, const gonio_basis *bas
     }
     if (status == GONIO_OK && at != NULL) {
         status = gonio_readings_write(t->context, at, t->command_line, o->output);
-        if (status != GONIO_OK && deviation != NULL) {
-            unlink(o->deviation); /* both outputs or none */
-        }
     }
     gonio_material_free(&deviation);
     gonio_readings_free(&at);
@@ -221,6 +221,22 @@ static gonio_status open_made(tool *t, const options *o, const gonio_basis *basi
     return status;
 }
 
+/* Writes the output and what is wanted besides, both or none. material: NULL where `write_more`
+ * writes the output. */
+static gonio_status write_both(tool *t, const options *o, const gonio_basis *basis,
+                               const gonio_reconstruction *made, const gonio_material *material,
+                               const char *output)
+{
+    gonio_status status = gonio_outputs_hold(t->context);
+    if (status == GONIO_OK) {
+        status = write_more(t, o, basis, made);
+    }
+    if (status == GONIO_OK && material != NULL) {
+        status = gonio_material_write(t->context, material, output, &o->how);
+    }
+    return gonio_outputs_release(t->context, status);
+}
+
 /* Reconstructs one file of readings when more than the table is wanted. */
 static gonio_status reconstruct_one(tool *t, const options *o, const gonio_basis *basis,
                                     const gonio_readings *readings, const char *output,
@@ -234,13 +250,7 @@ static gonio_status reconstruct_one(tool *t, const options *o, const gonio_basis
         status = open_made(t, o, basis, made, output, &material);
     }
     if (status == GONIO_OK) {
-        status = write_more(t, o, basis, made);
-    }
-    if (status == GONIO_OK && material != NULL) {
-        status = gonio_material_write(t->context, material, output, &o->how);
-        if (status != GONIO_OK && o->deviation != NULL) {
-            unlink(o->deviation); /* both outputs or none */
-        }
+        status = write_both(t, o, basis, made, material, output);
     }
     if (status == GONIO_OK) {
         report(basis, made, output, o->predict_at == NULL, results);
@@ -341,7 +351,7 @@ static bool check_different(const tool *t, const char *const *paths, char *const
 {
     for (size_t k = 1; k < count; k++) {
         for (size_t j = 0; j < k; j++) {
-            if (strcmp(outputs[j], outputs[k]) == 0) {
+            if (tool_is_one_output(outputs[j], outputs[k])) {
                 return tool_refuse(t, "%s and %s would both be written to %s; rename one", paths[j],
                                    paths[k], outputs[k]);
             }
@@ -370,10 +380,11 @@ static bool check_more(const tool *t, const options *o, const char *const *input
     if (o->predict_at != NULL && !tool_check_output(t, o->output, &o->predict_at, 1)) {
         return false;
     }
-    if (o->deviation != NULL && strcmp(o->deviation, o->output) == 0) {
+    if (o->deviation != NULL && tool_is_one_output(o->deviation, o->output)) {
         return tool_refuse(t, "--deviation and -o name the same file");
     }
-    return o->deviation == NULL || tool_check_output(t, o->deviation, inputs, count);
+    return o->deviation == NULL || (tool_check_output(t, o->deviation, inputs, count) &&
+                                    tool_check_output(t, o->deviation, &o->predict_at, 1));
 }
 
 static bool check(const tool *t, const options *o, const char *const *inputs, size_t count)

@@ -49,7 +49,11 @@ static char *join(int argc, const char **argv)
         }
         fputc('\'', stream);
     }
-    fclose(stream);
+    const bool whole = ferror(stream) == 0;
+    if (fclose(stream) != 0 || !whole) {
+        free(text);
+        return NULL;
+    }
     return text;
 }
 
@@ -145,10 +149,13 @@ static int begin(tool *t, int argc, const char **argv, const tool_command_line *
     remember_defaults(t);
     if (asprintf(&t->title, "gonio %s", argv[0]) < 0) {
         t->title = NULL;
+    }
+    argv[0] = t->title != NULL ? t->title : argv[0]; /* the program's name in the help */
+    t->options = t->title != NULL ? poptGetContext(t->title, argc, argv, t->table, 0) : NULL;
+    if (t->options == NULL || t->command_line == NULL) {
+        tool_say(&t->messages, GONIO_MESSAGE_ERROR, "out of memory");
         return EXIT_DATA;
     }
-    argv[0] = t->title; /* the program's name in the help */
-    t->options = poptGetContext(t->title, argc, argv, t->table, 0);
     poptSetOtherOptionHelp(t->options, line->usage);
     const int code = parse(t, line);
     if (code >= 0) {
@@ -167,7 +174,9 @@ static void end(tool *t)
 {
     tool_clear_progress(&t->messages);
     gonio_context_free(&t->context);
-    poptFreeContext(t->options);
+    if (t->options != NULL) {
+        poptFreeContext(t->options);
+    }
     free_strings(t);
     free(t->title);
     free(t->command_line);
@@ -213,16 +222,49 @@ static bool is_standard_output(const char *path)
            (!S_ISCHR(file.st_mode) || isatty(STDOUT_FILENO));
 }
 
+/* Whether two paths that are not there name one file of one folder. */
+static bool is_same_place(const char *a, const char *b)
+{
+    struct stat first;
+    struct stat second;
+    const char *name_a = strrchr(a, '/') != NULL ? strrchr(a, '/') + 1 : a;
+    const char *name_b = strrchr(b, '/') != NULL ? strrchr(b, '/') + 1 : b;
+    char *folder_a = name_a > a ? strndup(a, (size_t)(name_a - a)) : strdup(".");
+    char *folder_b = name_b > b ? strndup(b, (size_t)(name_b - b)) : strdup(".");
+    const bool same = folder_a != NULL && folder_b != NULL && strcmp(name_a, name_b) == 0 &&
+                      stat(folder_a, &first) == 0 && stat(folder_b, &second) == 0 &&
+                      first.st_dev == second.st_dev && first.st_ino == second.st_ino;
+    free(folder_a);
+    free(folder_b);
+    return same;
+}
+
+/* Whether two paths name one file, by whatever name or link. */
+static bool is_same_file(const char *a, const char *b)
+{
+    struct stat first;
+    struct stat second;
+    const bool there = stat(a, &first) == 0;
+    if (there != (stat(b, &second) == 0)) {
+        return false;
+    }
+    return there ? first.st_dev == second.st_dev && first.st_ino == second.st_ino
+                 : is_same_place(a, b);
+}
+
+static bool is_regular(const char *path)
+{
+    struct stat status;
+    return stat(path, &status) == 0 && S_ISREG(status.st_mode);
+}
+
 bool tool_check_output(const tool *t, const char *output, const char *const *inputs, size_t count)
 {
-    struct stat out;
     if (output == NULL || *output == '\0') {
         return tool_refuse(t, "no output: give -o FILE");
     }
-    for (size_t k = 0; stat(output, &out) == 0 && k < count; k++) {
-        struct stat in;
-        if (inputs[k] != NULL && stat(inputs[k], &in) == 0 && in.st_dev == out.st_dev &&
-            in.st_ino == out.st_ino && S_ISREG(in.st_mode)) {
+    for (size_t k = 0; k < count; k++) {
+        if (inputs[k] != NULL && is_regular(inputs[k]) && is_same_file(inputs[k], output)) {
             return tool_refuse(t, "%s is an input: give another name for the output", output);
         }
     }
@@ -230,6 +272,13 @@ bool tool_check_output(const tool *t, const char *output, const char *const *inp
         tool_keep_results_off_standard_output(true);
     }
     return true;
+}
+
+bool tool_is_one_output(const char *a, const char *b)
+{
+    struct stat status;
+    const bool device = stat(a, &status) == 0 && !S_ISREG(status.st_mode);
+    return strcmp(a, b) == 0 || (!device && is_same_file(a, b));
 }
 
 bool tool_check_count(const tool *t, const char *option, long value, long least)

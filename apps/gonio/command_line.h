@@ -65,6 +65,9 @@ int tool_exit_code(gonio_status status);
  * output, results are printed to standard error from now on (tool_results). */
 bool tool_check_output(const tool *t, const char *output, const char *const *inputs, size_t count);
 
+/* Whether two outputs are one file, by whatever names, and not a device. */
+bool tool_is_one_output(const char *a, const char *b);
+
 /* Checks that an integer is at least `least`. */
 bool tool_check_count(const tool *t, const char *option, long value, long least);
 

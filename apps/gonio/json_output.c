@@ -2,10 +2,26 @@
 #include "json_output.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 static json_t **kept_json = NULL;
+
+/* Whether jansson could not have some memory; what it made may then lack a part. */
+static bool ran_out = false;
+
+static void *allocate(size_t size)
+{
+    void *made = malloc(size);
+    ran_out = ran_out || made == NULL;
+    return made;
+}
+
+void tool_watch_json_memory(void)
+{
+    json_set_alloc_funcs(allocate, free);
+}
 
 void tool_keep_json(json_t **kept)
 {
@@ -66,16 +82,22 @@ json_t *tool_error_json(const gonio_error *error)
 
 int tool_print_json(const tool *t, json_t *json)
 {
-    if (json == NULL) {
-        fprintf(stderr, "gonio %s: no JSON: a name is not UTF-8, or out of memory\n", t->name);
+    if (json == NULL || ran_out) {
+        fprintf(stderr, "gonio %s: no JSON: %s\n", t->name,
+                ran_out ? "out of memory" : "a name is not UTF-8, or out of memory");
+        json_decref(json);
         return EXIT_DATA;
     }
     if (kept_json != NULL) {
         *kept_json = json;
         return 0;
     }
-    json_dumpf(json, tool_results(), JSON_INDENT(2) | JSON_REAL_PRECISION(10));
+    const bool whole =
+        json_dumpf(json, tool_results(), JSON_INDENT(2) | JSON_REAL_PRECISION(10)) == 0;
     fputc('\n', tool_results());
     json_decref(json);
-    return 0;
+    if (!whole && ferror(tool_results()) == 0) {
+        fprintf(stderr, "gonio %s: no JSON: out of memory\n", t->name);
+    }
+    return whole ? 0 : EXIT_DATA;
 }

@@ -1,6 +1,8 @@
 /* The program gonio: a table of commands. */
 #include "blas_kernels.h"
 #include "command.h"
+#include "json_output.h"
+#include "messages.h"
 
 #include <gonio/gonio.h>
 
@@ -45,7 +47,9 @@ static int run_command(const char *name, int argc, const char **argv)
 {
     for (int k = 0; k < COMMANDS; k++) {
         if (strcmp(commands[k].name, name) == 0) {
-            return finish_output(name, commands[k].run(argc, argv));
+            const int code = finish_output(name, commands[k].run(argc, argv));
+            tool_end_if_interrupted();
+            return code;
         }
     }
     fprintf(stderr, "gonio: no command is called '%s'\n\n", name);
@@ -73,5 +77,6 @@ int main(int argc, char **argv)
         return EXIT_USAGE;
     }
     blas_kernels_choose(argv);
+    tool_watch_json_memory();
     return run_command(name, argc - 1, (const char **)(argv + 1));
 }

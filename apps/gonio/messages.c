@@ -20,23 +20,44 @@ void tool_keep_results_off_standard_output(bool kept)
     standard_output_is_taken = kept;
 }
 
-/* Set by the first interrupt. The work then ends at its next progress report and cleans up. */
+static const int ends[] = {SIGINT, SIGTERM, SIGHUP};
+
+enum { ENDS = sizeof ends / sizeof *ends };
+
+/* The signal of the first interrupt. The work then ends at its next progress report and cleans up.
+ */
 static volatile sig_atomic_t interrupted = 0;
 
 static void on_interrupt(int signal_number)
 {
-    (void)signal_number;
-    interrupted = 1;
-    signal(SIGINT, SIG_DFL);
-    signal(SIGTERM, SIG_DFL);
+    interrupted = signal_number;
+    for (int k = 0; k < ENDS; k++) {
+        signal(ends[k], SIG_DFL);
+    }
 }
 
+/* Calls that wait, as for the writer of a pipe, end with EINTR. What nohup has turned off stays so.
+ */
 void tool_catch_signals(void)
 {
-    signal(SIGINT, on_interrupt);
-    signal(SIGTERM, on_interrupt);
+    const struct sigaction action = {.sa_handler = on_interrupt};
+    struct sigaction before;
+    for (int k = 0; k < ENDS; k++) {
+        if (ends[k] != SIGHUP || sigaction(SIGHUP, NULL, &before) != 0 ||
+            before.sa_handler != SIG_IGN) {
+            sigaction(ends[k], &action, NULL);
+        }
+    }
     signal(SIGXFSZ, SIG_IGN); /* a file-size limit becomes an error like a full disk */
     signal(SIGPIPE, SIG_IGN);
+}
+
+void tool_end_if_interrupted(void)
+{
+    if (interrupted != 0) {
+        signal(interrupted, SIG_DFL);
+        raise(interrupted);
+    }
 }
 
 static double now(void)

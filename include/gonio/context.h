@@ -58,6 +58,15 @@ GONIO_API void gonio_context_free(gonio_context **context);
  * nothing to a context that was not cancelled, and to NULL. Thread-safe. */
 GONIO_API void gonio_context_resume(gonio_context *context);
 
+/* Several output files that appear together, or none of them: what is written from now on under
+ * this context, and is finished, waits for gonio_outputs_release. That puts the files in place, in
+ * order, if `status` is GONIO_OK, and otherwise removes them; it returns `status`, or _IO if a file
+ * cannot be put in place (those before it are then). Each hold needs its release, before the
+ * context is freed. Errors of holding: _ARGUMENT without a context, and if outputs are held
+ * already; _MEMORY. */
+GONIO_API gonio_status gonio_outputs_hold(gonio_context *context);
+GONIO_API gonio_status gonio_outputs_release(gonio_context *context, gonio_status status);
+
 /* The number of threads that work under this context, or under NULL, uses; 1 in a parallel region
  * of OpenMP. Thread-safe. */
 GONIO_API int gonio_context_threads(const gonio_context *context);

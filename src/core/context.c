@@ -22,9 +22,10 @@ struct gonio_context {
     bool cancelled;
     const char *task; /* the progress reported last */
     double fraction;
-    gonio_context *above; /* of a shared context or a piece: where its messages go */
-    bool failed;          /* of a shared context: an error was reported */
-    const char *piece;    /* of a piece: what its messages begin with */
+    gonio_context *above;      /* of a shared context or a piece: where its messages go */
+    bool failed;               /* of a shared context: an error was reported */
+    const char *piece;         /* of a piece: what its messages begin with */
+    struct gonio_i_held *held; /* NULL while outputs are not held */
 };
 
 /* More threads than this a processor cost memory and are not faster. */
@@ -78,6 +79,9 @@ gonio_status gonio_context_create(gonio_context **context, const gonio_context_o
     }
     gonio_context *made = calloc(1, sizeof *made);
     if (made == NULL) {
+        if (taken.message != NULL) {
+            taken.message(taken.user, GONIO_MESSAGE_ERROR, "out of memory");
+        }
         return GONIO_ERROR_MEMORY;
     }
     made->options = taken;
@@ -114,6 +118,14 @@ void gonio_context_resume(gonio_context *context)
         context->cancelled = false;
         pthread_mutex_unlock(&context->callbacks);
     }
+}
+
+struct gonio_i_held **gonio_i_held_of(gonio_context *context)
+{
+    while (context != NULL && context->above != NULL) {
+        context = context->above;
+    }
+    return context != NULL ? &context->held : NULL;
 }
 
 void gonio_i_keep_blas_on_one_thread(void)

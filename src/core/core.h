@@ -43,6 +43,11 @@ void gonio_i_piece_end(gonio_context *piece);
  * `task` must last as long as the context. */
 gonio_status gonio_i_progress(gonio_context *context, const char *task, double fraction);
 
+/* Where the outputs that a context holds are kept, that of the context above if it has one; NULL
+ * without a context. Used by output.c alone. */
+struct gonio_i_held;
+struct gonio_i_held **gonio_i_held_of(gonio_context *context);
+
 /* Limits OpenBLAS to one thread a call, process-wide, because gonio runs its own threads. To be
  * called before threads are started and before every call of OpenBLAS. Thread-safe. */
 void gonio_i_keep_blas_on_one_thread(void);

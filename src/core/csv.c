@@ -264,7 +264,8 @@ gonio_status gonio_i_csv_write(gonio_context *context, const gonio_i_csv *csv, c
         return gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", path);
     }
     print_table(stream, csv);
-    if (fclose(stream) != 0) {
+    const bool whole = ferror(stream) == 0;
+    if (fclose(stream) != 0 || !whole) {
         free(text);
         return gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", path);
     }

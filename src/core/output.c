@@ -14,11 +14,30 @@ static gonio_status cannot_write(gonio_context *context, const char *path)
     return gonio_i_fail(context, GONIO_ERROR_IO, "%s: cannot write: %s", path, strerror(errno));
 }
 
+/* ---- the file that is written ---- */
+
+enum { ATTEMPTS = 100, MOST_NAME = 200 /* bytes of the target's name that are kept */ };
+
+/* The bytes of a path up to its last slash, and that. */
+static int folder_length(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash != NULL ? (int)(slash + 1 - path) : 0;
+}
+
+/* The name of a new file beside the target; NULL when out of memory. */
+static char *name_beside(const char *path, int attempt)
+{
+    const int folder = folder_length(path);
+    return gonio_i_format("%.*s%.*s.%ld-%d.part", folder, path, MOST_NAME, path + folder,
+                          (long)getpid(), attempt);
+}
+
 /* A new file beside the target, with a name of its own. */
 static int create_beside(const char *path, char **temporary)
 {
-    for (int attempt = 0; attempt < 100; attempt++) {
-        char *name = gonio_i_format("%s.%ld-%d.part", path, (long)getpid(), attempt);
+    for (int attempt = 0; attempt < ATTEMPTS; attempt++) {
+        char *name = name_beside(path, attempt);
         if (name == NULL) {
             errno = ENOMEM;
             return -1;
@@ -35,6 +54,65 @@ static int create_beside(const char *path, char **temporary)
     }
     return -1;
 }
+
+/* A new file in the target's folder without a name, of which a kill leaves nothing; -1 where the
+ * file system or the kernel has none. */
+static int create_without_name(const char *path)
+{
+#if defined(__linux__) && defined(O_TMPFILE)
+    const int length = folder_length(path);
+    char *folder = length > 0 ? gonio_i_format("%.*s", length, path) : strdup(".");
+    const int descriptor = folder != NULL && access("/proc/self/fd", X_OK) == 0
+                               ? open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0666)
+                               : -1;
+    free(folder);
+    return descriptor;
+#else
+    (void)path;
+    return -1;
+#endif
+}
+
+/* Gives a file without a name one beside its target. */
+static bool give_name(gonio_i_output *output)
+{
+    char open_file[64];
+    snprintf(open_file, sizeof open_file, "/proc/self/fd/%d", output->descriptor);
+    for (int attempt = 0; attempt < ATTEMPTS; attempt++) {
+        char *name = name_beside(output->path, attempt);
+        if (name == NULL) {
+            errno = ENOMEM;
+            return false;
+        }
+        if (linkat(AT_FDCWD, open_file, AT_FDCWD, name, AT_SYMLINK_FOLLOW) == 0) {
+            output->temporary = name;
+            output->nameless = false;
+            return true;
+        }
+        free(name);
+        if (errno != EEXIST) {
+            return false;
+        }
+    }
+    return false;
+}
+
+static void create_file(gonio_i_output *output)
+{
+    output->descriptor = create_without_name(output->path);
+    output->nameless = output->descriptor >= 0;
+    if (!output->nameless) {
+        output->descriptor = create_beside(output->path, &output->temporary);
+    }
+}
+
+/* Whether a new file is written, not standard output, a device or a pipe. */
+static bool is_new_file(const gonio_i_output *output)
+{
+    return output->temporary != NULL || output->nameless;
+}
+
+/* ---- the target ---- */
 
 /* Standard output goes where the shell sent it, also if that is a file with other things in it. */
 static bool is_standard_output(const char *path)
@@ -78,13 +156,33 @@ static void open_special(const char *path, gonio_i_output *output)
     }
 }
 
+/* What a link points to that may not be there; NULL when out of memory. */
+static char *follow(const char *path)
+{
+    enum { MOST_LINKS = 40, LONGEST = 4096 };
+    char *at = strdup(path);
+    for (int k = 0; k < MOST_LINKS && at != NULL; k++) {
+        char link[LONGEST];
+        const ssize_t length = readlink(at, link, sizeof link - 1);
+        if (length < 0) {
+            break;
+        }
+        link[length] = '\0';
+        char *next =
+            link[0] == '/' ? strdup(link) : gonio_i_format("%.*s%s", folder_length(at), at, link);
+        free(at);
+        at = next;
+    }
+    return at;
+}
+
 static gonio_status open_target(gonio_context *context, const char *path, gonio_i_output *output)
 {
     struct stat status;
     const bool standard = is_standard_output(path);
     const bool exists = !standard && stat(path, &status) == 0;
     const bool special = standard || (exists && !S_ISREG(status.st_mode)); /* a device or a pipe */
-    char *resolved = exists && !special ? realpath(path, NULL) : strdup(path);
+    char *resolved = special ? strdup(path) : exists ? realpath(path, NULL) : follow(path);
     *output = (gonio_i_output){.path = resolved, .descriptor = -1, .final = -1};
     if (resolved == NULL) {
         return cannot_write(context, path);
@@ -99,9 +197,15 @@ static gonio_status open_target(gonio_context *context, const char *path, gonio_
     if (special) {
         open_special(path, output);
     } else {
-        output->descriptor = create_beside(resolved, &output->temporary);
+        create_file(output);
     }
-    return output->descriptor < 0 ? cannot_write(context, path) : GONIO_OK;
+    if (output->descriptor < 0) {
+        return cannot_write(context, path);
+    }
+    if (exists && !special) { /* a file that is replaced keeps who may read it */
+        (void)fchmod(output->descriptor, status.st_mode & 0777);
+    }
+    return GONIO_OK;
 }
 
 gonio_status gonio_i_output_open(gonio_context *context, const char *path, gonio_i_output *output)
@@ -166,7 +270,7 @@ gonio_status gonio_i_output_reserve(gonio_context *context, gonio_i_output *outp
 #ifdef __linux__
     int result = 0;
     do {
-        result = output->temporary != NULL ? fallocate(output->descriptor, 0, 0, size) : 0;
+        result = is_new_file(output) ? fallocate(output->descriptor, 0, 0, size) : 0;
     } while (result != 0 && errno == EINTR);
     if (result != 0 && (errno == ENOSPC || errno == EFBIG || errno == EDQUOT || errno == EIO)) {
         return cannot_write(context, output->path);
@@ -182,7 +286,7 @@ gonio_status gonio_i_output_reserve(gonio_context *context, gonio_i_output *outp
 void gonio_i_output_start_flush(const gonio_i_output *output, off_t offset, off_t size)
 {
 #ifdef __linux__
-    if (output->temporary != NULL) {
+    if (is_new_file(output)) {
         (void)sync_file_range(output->descriptor, offset, size, SYNC_FILE_RANGE_WRITE);
     }
 #else
@@ -194,7 +298,7 @@ void gonio_i_output_start_flush(const gonio_i_output *output, off_t offset, off_
 
 gonio_status gonio_i_output_flush(gonio_context *context, gonio_i_output *output)
 {
-    if (output->temporary != NULL && !output->flushed && fsync(output->descriptor) != 0) {
+    if (is_new_file(output) && !output->flushed && fsync(output->descriptor) != 0) {
         return cannot_write(context, output->path);
     }
     output->flushed = true;
@@ -226,15 +330,18 @@ static gonio_status put_in_place(gonio_context *context, gonio_i_output *output)
 {
     const gonio_status status =
         output->final >= 0 ? copy_to_final(context, output) : gonio_i_output_flush(context, output);
-    if (status == GONIO_OK && output->temporary != NULL &&
-        rename(output->temporary, output->path) != 0) {
+    if (status != GONIO_OK) {
+        return status;
+    }
+    if ((output->nameless && !give_name(output)) ||
+        (output->temporary != NULL && rename(output->temporary, output->path) != 0)) {
         return cannot_write(context, output->path);
     }
-    return status;
+    return GONIO_OK;
 }
 
-gonio_status gonio_i_output_close(gonio_context *context, gonio_i_output *output,
-                                  gonio_status status)
+/* Puts a file in place, or removes it after a failure. */
+static gonio_status settle(gonio_context *context, gonio_i_output *output, gonio_status status)
 {
     if (status == GONIO_OK) {
         status = put_in_place(context, output);
@@ -252,4 +359,71 @@ gonio_status gonio_i_output_close(gonio_context *context, gonio_i_output *output
     free(output->path);
     *output = (gonio_i_output){.descriptor = -1, .final = -1};
     return status;
+}
+
+/* ---- several that appear together ---- */
+
+/* Outputs that are finished and wait for others. */
+struct gonio_i_held {
+    size_t count;
+    gonio_i_output *output;
+};
+
+gonio_status gonio_outputs_hold(gonio_context *context)
+{
+    struct gonio_i_held **held = gonio_i_held_of(context);
+    if (held == NULL || *held != NULL) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            held == NULL ? "outputs are held under a context"
+                                         : "outputs are held already");
+    }
+    *held = gonio_i_allocate(context, 1, sizeof **held);
+    return *held != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
+}
+
+gonio_status gonio_outputs_release(gonio_context *context, gonio_status status)
+{
+    struct gonio_i_held **held = gonio_i_held_of(context);
+    if (held == NULL || *held == NULL) {
+        return status;
+    }
+    for (size_t k = 0; k < (*held)->count; k++) {
+        status = settle(context, &(*held)->output[k], status);
+    }
+    free((*held)->output);
+    free(*held);
+    *held = NULL;
+    return status;
+}
+
+/* Keeps a finished output until the others are; true if it need not be settled now. */
+static bool hold(gonio_context *context, gonio_i_output *output, gonio_status *status)
+{
+    struct gonio_i_held **held = gonio_i_held_of(context);
+    if (held == NULL || *held == NULL || *status != GONIO_OK) {
+        return false;
+    }
+    *status = output->final >= 0 ? GONIO_OK : gonio_i_output_flush(context, output);
+    gonio_i_output *more = *status == GONIO_OK ? reallocarray((*held)->output, (*held)->count + 1,
+                                                              sizeof *(*held)->output)
+                                               : NULL;
+    if (more == NULL) {
+        *status = *status != GONIO_OK ? *status
+                                      : gonio_i_fail(context, GONIO_ERROR_MEMORY,
+                                                     "%s: out of memory", output->path);
+        return false;
+    }
+    (*held)->output = more;
+    more[(*held)->count++] = *output;
+    *output = (gonio_i_output){.descriptor = -1, .final = -1};
+    return true;
+}
+
+gonio_status gonio_i_output_close(gonio_context *context, gonio_i_output *output,
+                                  gonio_status status)
+{
+    bool held = false;
+#pragma omp critical(gonio_held_outputs)
+    held = hold(context, output, &status);
+    return held ? GONIO_OK : settle(context, output, status);
 }

@@ -1,5 +1,6 @@
-/* Output files that appear whole or not at all. A file is written beside the target under another
- * name, then renamed over it. Output to a pipe or to standard output ("/dev/stdout", "-") is
+/* Output files that appear whole or not at all. A file is written in the target's folder without a
+ * name, or under another one where that is not possible, then renamed over the target, whose mode
+ * it keeps. Output to a pipe or to standard output ("/dev/stdout", "-") is
  * written to a temporary file first, because writers seek, and copied when it is whole. */
 #ifndef GONIO_OUTPUT_H
 #define GONIO_OUTPUT_H
@@ -10,9 +11,10 @@
 
 typedef struct gonio_i_output {
     char *path;      /* the target, links resolved */
-    char *temporary; /* the file that is written; NULL if it is not beside the target */
+    char *temporary; /* the file that is written, beside the target; NULL if it has no name */
     int descriptor;  /* of the file that is written */
     int final;       /* where the nameless temporary file is copied to; -1 without one */
+    bool nameless;   /* the file that is written gets a name beside the target at the end */
     bool flushed;    /* all of it has reached the disk */
 } gonio_i_output;
 
@@ -37,7 +39,8 @@ void gonio_i_output_start_flush(const gonio_i_output *output, off_t offset, off_
 gonio_status gonio_i_output_flush(gonio_context *context, gonio_i_output *output);
 
 /* Closes the file. If `status` is GONIO_OK, puts it in place; otherwise removes it. Returns status,
- * or _IO if the last step failed. */
+ * or _IO if the last step failed. While outputs are held (gonio_outputs_hold), a finished one waits
+ * for the others. */
 gonio_status gonio_i_output_close(gonio_context *context, gonio_i_output *output,
                                   gonio_status status);
 

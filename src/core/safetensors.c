@@ -142,6 +142,24 @@ static gonio_status write_header(gonio_context *context, const char *header, gon
     return status;
 }
 
+/* A large array in parts, between which the work may be stopped. */
+static gonio_status write_array(gonio_context *context, const gonio_i_array *array,
+                                gonio_i_output *output)
+{
+    static const size_t most = (size_t)1 << 24;
+    const char *data = array->data;
+    const size_t size = size_of(array);
+    gonio_status status = GONIO_OK;
+    for (size_t at = 0; at < size && status == GONIO_OK; at += most) {
+        const size_t part = size - at < most ? size - at : most;
+        status = gonio_i_output_write(context, output, data + at, part);
+        if (status == GONIO_OK && size > most) {
+            status = gonio_i_progress(context, "writing", (double)(at + part) / (double)size);
+        }
+    }
+    return status;
+}
+
 static gonio_status write_file(gonio_context *context, const char *header,
                                const gonio_i_array *const *arrays, size_t count, const char *path)
 {
@@ -152,7 +170,7 @@ static gonio_status write_file(gonio_context *context, const char *header,
     }
     status = write_header(context, header, &output);
     for (size_t k = 0; k < count && status == GONIO_OK; k++) {
-        status = gonio_i_output_write(context, &output, arrays[k]->data, size_of(arrays[k]));
+        status = write_array(context, arrays[k], &output);
     }
     return gonio_i_output_close(context, &output, status);
 }

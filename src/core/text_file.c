@@ -29,6 +29,27 @@ static bool enlarge(char **text, size_t *room)
     return more != NULL;
 }
 
+/* After a call that failed: GONIO_OK if a signal interrupted it that does not end the work. */
+static gonio_status ask_to_go_on(gonio_context *context, const char *path)
+{
+    if (errno == EINTR) {
+        return gonio_i_progress(context, "reading", 0.0);
+    }
+    return gonio_i_fail(context, GONIO_ERROR_IO, "%s: cannot read: %s", path, strerror(errno));
+}
+
+/* Opens a file; a pipe's writer is waited for. */
+static gonio_status open_to_read(gonio_context *context, const char *path, int *descriptor)
+{
+    gonio_status status = GONIO_OK;
+    *descriptor = open(path, O_RDONLY | O_CLOEXEC);
+    while (*descriptor < 0 && status == GONIO_OK) {
+        status = ask_to_go_on(context, path);
+        *descriptor = status == GONIO_OK ? open(path, O_RDONLY | O_CLOEXEC) : -1;
+    }
+    return status;
+}
+
 /* Reads to the end. The caller owns the text, after an error too. */
 static gonio_status read_descriptor(gonio_context *context, const char *path, int descriptor,
                                     char **text, size_t *size)
@@ -37,12 +58,12 @@ static gonio_status read_descriptor(gonio_context *context, const char *path, in
     *text = malloc(room + 1);
     while (*text != NULL) {
         const ssize_t got = read(descriptor, *text + *size, room - *size);
-        if (got < 0 && errno == EINTR) {
-            continue;
-        }
         if (got < 0) {
-            return gonio_i_fail(context, GONIO_ERROR_IO, "%s: cannot read: %s", path,
-                                strerror(errno));
+            const gonio_status status = ask_to_go_on(context, path);
+            if (status != GONIO_OK) {
+                return status;
+            }
+            continue;
         }
         if (got == 0) {
             (*text)[*size] = '\0';
@@ -75,11 +96,12 @@ gonio_status gonio_i_text_read(gonio_context *context, const char *path, char **
 {
     *text = NULL;
     *size = 0;
-    const int descriptor = open(path, O_RDONLY | O_CLOEXEC);
-    if (descriptor < 0) {
-        return gonio_i_fail(context, GONIO_ERROR_IO, "%s: cannot read: %s", path, strerror(errno));
+    int descriptor = -1;
+    gonio_status status = open_to_read(context, path, &descriptor);
+    if (status != GONIO_OK) {
+        return status;
     }
-    gonio_status status = read_descriptor(context, path, descriptor, text, size);
+    status = read_descriptor(context, path, descriptor, text, size);
     close(descriptor);
     if (status == GONIO_OK && gonio_i_gzip_begins(*text, *size)) {
         status = decompress(context, path, text, size);

@@ -83,10 +83,11 @@ static bool read_one(gonio_readings *readings, size_t reading, const gonio_table
 
 static gonio_status check(gonio_context *context, const gonio_instrument_options *options)
 {
-    if (!(options->noise >= 0.0 && isfinite(options->noise)) ||
-        !(options->floor >= 0.0 && isfinite(options->floor))) {
+    static const double most = 1e6; /* the products of larger numbers would not be finite */
+    if (!(options->noise >= 0.0 && options->noise <= most) ||
+        !(options->floor >= 0.0 && options->floor <= most)) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                            "noise and floor must be finite and not negative");
+                            "noise and floor must be finite and not negative, at most %g", most);
     }
     if (!(options->outliers >= 0.0 && options->outliers <= 1.0)) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "the share of outliers must be 0 to 1");

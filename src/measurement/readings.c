@@ -105,9 +105,12 @@ double gonio_readings_scale(const gonio_readings *readings, size_t channel)
 
 double gonio_i_readings_degrees(const gonio_readings *readings, size_t reading, size_t which)
 {
+    static const double highest =
+        89.9999999999; /* that twelve digits do not round to the horizon */
     double degrees[4];
     gonio_i_pair_to_degrees(&readings->pair[reading], degrees);
-    return readings->given != NULL ? readings->given[reading][which] : degrees[which];
+    const double angle = readings->given != NULL ? readings->given[reading][which] : degrees[which];
+    return which % 2 == 0 ? fmin(angle, highest) : angle;
 }
 
 void gonio_i_value_name(const gonio_readings *readings, size_t channel, bool deviation,

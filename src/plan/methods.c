@@ -57,6 +57,21 @@ void gonio_plan_options_default_of(gonio_plan_options *options, size_t size)
     gonio_i_give(&usual, sizeof usual, options, size);
 }
 
+/* What is wrong whatever the method, also where it does not use it. */
+static gonio_status check_values(gonio_context *context, const gonio_plan_options *options)
+{
+    if (gonio_i_find_start(options->start) == NULL) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "no start is called '%s'",
+                            options->start);
+    }
+    if (!(options->phi_d >= 0.0 && options->phi_d < M_PI)) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "phi_d of %g degrees is outside [0, 180)",
+                            options->phi_d * 180.0 / M_PI);
+    }
+    return GONIO_OK;
+}
+
 /* The given options, with defaults for those that are not set: no more readings than there are
  * candidates. */
 static gonio_status take(gonio_context *context, const gonio_plan_options *asked,
@@ -69,7 +84,7 @@ static gonio_status take(gonio_context *context, const gonio_plan_options *asked
             options->count = options->candidate_count;
         }
     }
-    return status;
+    return status == GONIO_OK ? check_values(context, options) : status;
 }
 
 /* The first that is made for bases with mixtures, or for those without. */
@@ -100,10 +115,6 @@ static gonio_status check_selection(gonio_context *context, const gonio_i_method
                                     const gonio_plan_options *options)
 {
     const size_t n = options->count;
-    if (gonio_i_find_start(options->start) == NULL) {
-        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "no start is called '%s'",
-                            options->start);
-    }
     if (n == 0) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "a plan needs at least 1 reading");
     }
@@ -255,11 +266,6 @@ static gonio_status check_options(gonio_context *context, const gonio_basis_view
                             "%zu components asked for, but the basis has %zu; learn one with more "
                             "(gonio learn --components %zu)",
                             components, basis->components, components);
-    }
-    if (!(options->phi_d >= 0.0 && options->phi_d < M_PI)) {
-        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                            "phi_d of %g degrees is outside [0, 180)",
-                            options->phi_d * 180.0 / M_PI);
     }
     return GONIO_OK;
 }

@@ -42,14 +42,20 @@ bool gonio_i_plan_comments(const gonio_plan *plan, gonio_i_comments *comments)
     return gonio_i_comments_add(comments, "gonio plan") && add_plan_notes(comments, plan);
 }
 
+/* Degrees that rounding does not move to the horizon. */
+static double above_horizon(double theta)
+{
+    return fmin(theta * 180.0 / M_PI, 89.999999999);
+}
+
 static bool add_entry(gonio_i_csv *csv, const gonio_plan_entry *entry)
 {
     const double degrees = 180.0 / M_PI;
     const size_t row = csv->rows;
     return gonio_i_csv_add_row(csv, 0) &&
-           gonio_i_csv_set(csv, row, 0, "%.9f", entry->pair.incident.theta * degrees) &&
+           gonio_i_csv_set(csv, row, 0, "%.9f", above_horizon(entry->pair.incident.theta)) &&
            gonio_i_csv_set(csv, row, 1, "%.9f", entry->pair.incident.phi * degrees) &&
-           gonio_i_csv_set(csv, row, 2, "%.9f", entry->pair.outgoing.theta * degrees) &&
+           gonio_i_csv_set(csv, row, 2, "%.9f", above_horizon(entry->pair.outgoing.theta)) &&
            gonio_i_csv_set(csv, row, 3, "%.9f", entry->pair.outgoing.phi * degrees) &&
            gonio_i_csv_set(csv, row, 4, "%s", gonio_i_planned_channel_name(entry->channel));
 }

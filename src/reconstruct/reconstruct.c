@@ -75,10 +75,13 @@ static const char *method_of_any_channels(void)
 
 /* ---- what a method wants ---- */
 
+/* Squares of larger numbers, and quotients of them, would not be finite. */
+static const double MOST_NOISE = 1e6;
+
 static bool is_noise(const gonio_reconstruct_options *options)
 {
-    return options->noise >= 0.0 && isfinite(options->noise) && options->floor >= 0.0 &&
-           isfinite(options->floor) && options->saturation >= 0.0;
+    return options->noise >= 0.0 && options->noise <= MOST_NOISE && options->floor >= 0.0 &&
+           options->floor <= MOST_NOISE && options->saturation >= 0.0;
 }
 
 static gonio_status check_basis(gonio_context *context, const gonio_i_reconstruct_method *method,
@@ -100,7 +103,8 @@ static gonio_status check_basis(gonio_context *context, const gonio_i_reconstruc
     if (method->wants.noise && !is_noise(options)) {
         return gonio_i_fail(
             context, GONIO_ERROR_ARGUMENT,
-            "noise, floor and saturation must not be negative, and noise and floor must be finite");
+            "noise, floor and saturation must not be negative, and noise and floor at most %g",
+            MOST_NOISE);
     }
     return GONIO_OK;
 }

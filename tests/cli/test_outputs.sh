@@ -116,6 +116,28 @@ expect_fail 2 'soft.gonio is an input' plan b.gonio -n 4 --history soft.gonio -o
 expect_fail 2 'hard.csv is an input' reconstruct b.gonio r.csv -o hard.csv
 expect_fail 2 'b.gonio is an input' reconstruct b.gonio r.csv -o b.gonio
 
+cp p.csv candidates.csv
+for name in candidates.csv ./candidates.csv; do
+    expect_fail 2 "$name is an input" plan b.gonio -n 2 --method random --candidates candidates.csv --history "$name" -o x.csv
+    expect_fail 2 "$name is an input" \
+        reconstruct b.gonio r.csv --predict-at candidates.csv --deviation "$name" -o x.csv
+done
+
+# ---- two outputs ----
+
+expect_fail 2 '--history and -o name the same file' plan b.gonio -n 4 --history ./x.csv -o x.csv
+expect_fail 2 '--history and -o name the same file' plan b.gonio -n 4 --history "$PWD/x.csv" -o x.csv
+expect_fail 2 '--deviation and -o name the same file' reconstruct b.gonio r.csv --deviation ./x.csv -o x.csv
+printf 'old' >both.csv
+ln both.csv both-hard.csv
+expect_fail 2 '--history and -o name the same file' plan b.gonio -n 4 --history both.csv -o both-hard.csv
+# What was there stays where one of them cannot be written.
+expect_fail 1 'nowhere/x.csv: cannot write' plan b.gonio -n 4 --history both.csv -o nowhere/x.csv
+expect_fail 1 'nowhere/x.csv: cannot write' plan b.gonio -n 4 --history new.csv -o nowhere/x.csv
+expect_ok plan b.gonio -n 4 --history both.csv -o both-plan.csv
+expect_true 'both are written' test -s both-plan.csv -a "$(head -c 3 both.csv)" != old
+rm both*
+
 # ---- outputs that exist ----
 
 printf 'old' >target.csv
@@ -131,8 +153,11 @@ no_cache() (
     export HOME=$root/files/m.binary
     exec "$GONIO" "$@"
 )
-runner=no_cache expect_fail 1 'no cache folder for the built-in basis: set XDG_CACHE_HOME' \
-    plan -n 4 -o x.csv
+runner=no_cache run plan --method condition -K 5 -n 5 -o x.csv || failed 'a plan without a cache' "$(cat "$root/work/stderr")"
+expect_true 'no cache is warned of' \
+    grep -q 'warning: no cache folder for the built-in basis, .*: set XDG_CACHE_HOME' "$root/work/stderr"
+expect_true 'and does not end the work' test -s x.csv
+rm x.csv
 expect_fail 1 'm.binary: cannot use this folder' demo -o m.binary
 expect_fail 1 'nowhere/demo: cannot use this folder' demo -o nowhere/demo
 
@@ -149,13 +174,27 @@ interrupted() {
     wait $job
 }
 set -m # so that background jobs take SIGINT
-for signal in INT TERM; do
+for signal in INT TERM HUP; do
     before=$(snapshot)
     interrupted $signal plan b.gonio -n 400 --restarts 1000000 -o x.csv
     code=$?
-    expect_true "an interrupted plan fails" test $code -ne 0
+    expect_true "an interrupted plan ends by SIG$signal" test "$(kill -l $code)" = $signal
     expect_true "an interrupted plan leaves nothing" test "$(snapshot)" = "$before"
 done
+
+# Who waits for a pipe's writer, or for what it writes.
+mkfifo silent
+for command in 'info silent' 'measure silent atlas:oak-sawn -o x.csv'; do
+    # shellcheck disable=SC2086
+    "$GONIO" $command 2>"$root/work/stderr" &
+    job=$!
+    sleep 0.5
+    kill -s INT $job
+    wait $job
+    code=$?
+    expect_true "$command is interrupted" test "$(kill -l $code)" = INT
+done
+rm silent
 
 # Many reconstructions: stopped when the first is there, long before the last.
 mkdir several results
@@ -170,7 +209,7 @@ for signal in INT TERM; do
     code=$?
     count=$(find results -name '*.binary' | wc -l)
     whole=$(find results -name '*.binary' -size 34992012c | wc -l)
-    expect_true "interrupted reconstructions fail" test $code -eq 1
+    expect_true "interrupted reconstructions end by SIG$signal" test "$(kill -l $code)" = $signal
     expect_true "an interrupt takes effect before the last of many" test "$count" -lt 40
     expect_true "interrupted reconstructions are whole or not there" test "$whole" -eq "$count"
     expect_true "and nothing else is left" test "$(ls results | wc -l)" -eq "$count"

@@ -230,12 +230,21 @@ made='reconstruct b.gonio r.csv -o x.binary'
         expect_fail 2 'invalid numeric value' $made $option much
     done
     expect_fail 2 'noise, floor and saturation must not be negative' $made --noise inf
+    expect_fail 2 'noise and floor at most 1e+06' $made --noise 1e308
+    expect_fail 2 'noise and floor at most 1e+06' $made --floor 1e300
     expect_fail 1 'missing.csv: cannot read' $made --predict-at missing.csv
     expect_fail 2 'posterior uses all 64 components' $made --components 10
     expect_fail 1 'nowhere/d.binary' $made --deviation nowhere/d.binary
     expect_fail 1 'nowhere/x.csv' reconstruct b.gonio r.csv --predict-at all.csv \
         --deviation d.binary -o nowhere/x.csv
     expect_fail 2 '--deviation and -o name the same file' $made --deviation x.binary
+    printf 'old' >old.binary
+    expect_fail 1 'nowhere/x.csv' reconstruct b.gonio r.csv --predict-at all.csv \
+        --deviation old.binary -o nowhere/x.csv
+    expect_true 'older deviations stay where the other output fails' test "$(cat old.binary)" = old
+    expect_fail 2 "no start is called 'nonsense'" plan b.gonio -n 2 --start nonsense -o x.csv
+    expect_fail 2 'phi_d of nan degrees' plan b.gonio -n 2 --phi-d nan -o x.csv
+    rm old.binary
     expect_fail 2 'r.csv is an input' $made --deviation r.csv
 }
 expect_fail 2 'is an input' reconstruct b.gonio r.csv --predict-at all.csv -o all.csv

@@ -99,6 +99,7 @@ expect_fail 2 'cannot be negative' measure p.csv atlas:white-linen --noise -1 -o
 expect_fail 2 'cannot be negative' measure p.csv atlas:white-linen --floor -1 -o x.csv
 expect_fail 2 'cannot be negative' measure p.csv atlas:white-linen --noise nan -o x.csv
 expect_fail 2 'must be finite and not negative' measure p.csv atlas:white-linen --noise inf -o x.csv
+expect_fail 2 'must be finite and not negative, at most' measure p.csv atlas:white-linen --floor 1e308 -o x.csv
 expect_fail 2 '4 components asked for, but the basis has 3' \
     reconstruct b.gonio r.csv -K 4 -o x.binary
 expect_fail 2 '--components: -1 is too small' reconstruct b.gonio r.csv -K -1 -o x.binary

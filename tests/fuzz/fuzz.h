@@ -24,6 +24,21 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 size_t LLVMFuzzerMutate(uint8_t *data, size_t size, size_t most);
 size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t size, size_t most, unsigned seed);
 
+/* Has libFuzzer call fuzz_begin() first, so that it is no part of the first input's time. */
+#ifdef FUZZ_RUN
+#define FUZZ_INITIALIZE
+#else
+int LLVMFuzzerInitialize(int *argc, char ***argv);
+#define FUZZ_INITIALIZE                                                                            \
+    int LLVMFuzzerInitialize(int *argc, char ***argv)                                              \
+    {                                                                                              \
+        (void)argc;                                                                                \
+        (void)argv;                                                                                \
+        fuzz_begin();                                                                              \
+        return 0;                                                                                  \
+    }
+#endif
+
 static int errors; /* since the last check of a status */
 
 static inline void check(bool holds, const char *what)

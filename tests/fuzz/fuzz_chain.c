@@ -116,17 +116,25 @@ static void plan_next(gonio_context *context, const gonio_basis *basis,
     gonio_plan_free(&plan);
 }
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+static gonio_basis *basis[BASES];
+
+static void fuzz_begin(void)
 {
-    static gonio_basis *basis[BASES];
-    gonio_context *context = fuzz_context();
-    fuzz_bytes b = {data, size};
-    gonio_reconstruct_options how;
-    gonio_reconstruction *made = NULL;
     if (basis[0] == NULL) {
         basis[0] = small_basis(GONIO_SECTORED, GONIO_SEPARATE, 15, 12);
         basis[1] = small_basis(GONIO_BIVARIATE, GONIO_JOINT, 15, 0);
     }
+}
+
+FUZZ_INITIALIZE
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    gonio_context *context = fuzz_context();
+    fuzz_bytes b = {data, size};
+    gonio_reconstruct_options how;
+    gonio_reconstruction *made = NULL;
+    fuzz_begin();
     const gonio_basis *with = basis[fuzz_byte(&b) % BASES];
     choose(&b, &how);
     gonio_readings *readings = make_readings(context, &b);

@@ -68,6 +68,15 @@ static void show(gonio_context *context, const gonio_i_results *results)
     gonio_i_findings_free(&findings);
 }
 
+static void fuzz_begin(void)
+{
+    if (study.collection.count == 0) {
+        small_study(&study);
+    }
+}
+
+FUZZ_INITIALIZE
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     gonio_context *context = fuzz_context();
@@ -79,9 +88,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         json_decref(all);
         return -1;
     }
-    if (study.collection.count == 0) {
-        small_study(&study);
-    }
+    fuzz_begin();
     bool any = false;
     for (int k = 0; k < KINDS; k++) {
         json_t *json = json_object_get(all, kinds[k].name);

@@ -19,7 +19,7 @@ static inline gonio_status small_slab(void *self, gonio_context *context, int th
     for (int k = 0; k < GONIO_SLAB_BINS; k++) {
         const gonio_bin bin = {theta_h, k / GONIO_PHI_D_BINS, k % GONIO_PHI_D_BINS};
         const bool data =
-            gonio_bin_is_valid(bin) && bin.theta_h % m->step == 0 && bin.theta_d % m->step == 0;
+            bin.theta_h % m->step == 0 && bin.theta_d % m->step == 0 && gonio_bin_is_valid(bin);
         const double lobe = exp(-(double)(theta_h * theta_h) / (m->width * m->width));
         for (int c = 0; c < GONIO_CHANNELS; c++) {
             rho[c * GONIO_SLAB_BINS + k] =

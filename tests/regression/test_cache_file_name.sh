@@ -21,6 +21,15 @@ for page in "$source"/docs/man/*.1; do
 done
 expect_true 'the pages of plan, next, reconstruct and gonio name them' test $pages -ge 7
 
+# A damaged one is made again, and one that cannot be kept is used.
+paper=$(find "$XDG_CACHE_HOME/gonio" -name '*-bivariate.gonio')
+cp "$paper" "$root/work/whole.gonio"
+head -c 5000 "$root/work/whole.gonio" >"$paper"
+run plan --method condition --components 3 -n 5 --restarts 1 -o again.csv
+expect_true 'a damaged cache is warned of' grep -q 'warning: .*-bivariate.gonio: .*; it is made again$' "$root/work/stderr"
+expect_same "$paper" "$root/work/whole.gonio"
+expect_same <(grep -v '^# command' again.csv) <(grep -v '^# command' paper.csv)
+
 if [ -n "${BUILTIN_BASES:-}" ]; then
     rm -rf "$BUILTIN_BASES"
     cp -r "$XDG_CACHE_HOME/gonio" "$BUILTIN_BASES"

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cblas.h>
@@ -317,6 +318,114 @@ static void test_outputs_that_cannot_be(void **state)
     support_remove(folder);
 }
 
+/* The entries of a folder. */
+static int count_entries(const char *folder)
+{
+    int count = 0;
+    DIR *entries = opendir(folder);
+    assert_non_null(entries);
+    while (readdir(entries) != NULL) {
+        count++;
+    }
+    closedir(entries);
+    return count - 2;
+}
+
+static void write_letters(gonio_context *context, const char *path)
+{
+    gonio_i_output output;
+    assert_int_equal(gonio_i_output_open(context, path, &output), GONIO_OK);
+    const gonio_status status = gonio_i_output_write(context, &output, "abc", 3);
+    assert_int_equal(gonio_i_output_close(context, &output, status), GONIO_OK);
+}
+
+/* None is there until all are. */
+static void test_outputs_that_appear_together(void **state)
+{
+    (void)state;
+    char *folder = support_folder();
+    char path[2][512];
+    gonio_context *context = support_context();
+    for (int k = 0; k < 2; k++) {
+        snprintf(path[k], sizeof path[k], "%s/%d", folder, k);
+    }
+    for (int good = 0; good < 2; good++) {
+        assert_int_equal(gonio_outputs_hold(context), GONIO_OK);
+        assert_int_equal(gonio_outputs_hold(context), GONIO_ERROR_ARGUMENT);
+        write_letters(context, path[0]);
+        gonio_context *shared = gonio_i_shared_context_begin(context);
+        write_letters(shared, path[1]);
+        gonio_i_shared_context_end(shared, context);
+        assert_int_not_equal(access(path[0], F_OK), 0);
+        assert_int_not_equal(access(path[1], F_OK), 0);
+        const gonio_status status = good ? GONIO_OK : GONIO_ERROR_DATA;
+        assert_int_equal(gonio_outputs_release(context, status), status);
+        assert_int_equal(count_entries(folder), good ? 2 : 0);
+    }
+    write_letters(context, path[0]); /* held no longer */
+    assert_int_equal(gonio_outputs_release(context, GONIO_ERROR_IO), GONIO_ERROR_IO);
+    assert_int_equal(gonio_outputs_hold(NULL), GONIO_ERROR_ARGUMENT);
+    assert_int_equal(count_entries(folder), 2);
+    gonio_context_free(&context);
+    support_remove(folder);
+}
+
+/* One that cannot be put in place any more takes those after it with it. */
+static void test_held_outputs_without_a_place(void **state)
+{
+    (void)state;
+    char *folder = support_folder();
+    char path[2][512];
+    gonio_context *context = support_context();
+    for (int k = 0; k < 2; k++) {
+        snprintf(path[k], sizeof path[k], "%s/%d", folder, k);
+    }
+    assert_int_equal(gonio_outputs_hold(context), GONIO_OK);
+    write_letters(context, path[0]);
+    write_letters(context, path[1]);
+    assert_int_equal(mkdir(path[0], 0700), 0);
+    assert_int_equal(gonio_outputs_release(context, GONIO_OK), GONIO_ERROR_IO);
+    assert_non_null(strstr(support_message(), "/0: cannot write"));
+    assert_int_equal(count_entries(folder), 1);
+    gonio_context_free(&context);
+    support_remove(folder);
+}
+
+/* Its mode, and a link to it. */
+static void test_what_an_output_replaces_stays(void **state)
+{
+    (void)state;
+    char *folder = support_folder();
+    char path[512];
+    char link[512];
+    struct stat about;
+    snprintf(path, sizeof path, "%s/file", folder);
+    snprintf(link, sizeof link, "%s/link", folder);
+    assert_int_equal(symlink("file", link), 0); /* to what is not there yet */
+    write_letters(NULL, link);
+    assert_int_equal(lstat(link, &about), 0);
+    assert_true(S_ISLNK(about.st_mode));
+    assert_int_equal(chmod(path, 0640), 0);
+    write_letters(NULL, link);
+    assert_int_equal(stat(path, &about), 0);
+    assert_int_equal(about.st_mode & 07777, 0640);
+    assert_int_equal(about.st_size, 3);
+    assert_int_equal(count_entries(folder), 2);
+    support_remove(folder);
+}
+
+static void test_a_long_name(void **state)
+{
+    (void)state;
+    char *folder = support_folder();
+    char path[1024];
+    snprintf(path, sizeof path, "%s/%0250d", folder, 7);
+    write_letters(NULL, path);
+    assert_int_equal(access(path, F_OK), 0);
+    assert_int_equal(count_entries(folder), 1);
+    support_remove(folder);
+}
+
 /* ---- random numbers ---- */
 
 /* The generator's published answers, and those of an independent implementation of the seeding. */
@@ -432,6 +541,10 @@ int main(void)
         cmocka_unit_test(test_names),
         cmocka_unit_test(test_an_output_appears_whole_or_not_at_all),
         cmocka_unit_test(test_outputs_that_cannot_be),
+        cmocka_unit_test(test_outputs_that_appear_together),
+        cmocka_unit_test(test_held_outputs_without_a_place),
+        cmocka_unit_test(test_what_an_output_replaces_stays),
+        cmocka_unit_test(test_a_long_name),
         cmocka_unit_test(test_known_random_numbers),
         cmocka_unit_test(test_moments),
         cmocka_unit_test(test_below_is_unbiased),
