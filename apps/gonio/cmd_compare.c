@@ -336,9 +336,10 @@ int cmd_compare(int argc, const char **argv)
 {
     options o = {0};
     const struct poptOption table[] = {
-        {"verbose", 'v', POPT_ARG_NONE, &o.verbose, 0, "Each channel, and the bins compared", NULL},
+        {"verbose", 'v', POPT_ARG_NONE, &o.verbose, 0,
+         "Also print each channel, and the number of bins", NULL},
         {"leave-out", '\0', POPT_ARG_STRING, &o.leave_out, 0,
-         "Of readings: leave out the directions of this file (those that were used)", "FILE"},
+         "Leave out the directions of these readings, because they were used", "FILE"},
         {"render", '\0', POPT_ARG_NONE, &o.render, 0, "Also render both and compare the renderings",
          NULL},
         TOOL_READINGS_OPTIONS,

@@ -120,7 +120,7 @@ int cmd_convert(int argc, const char **argv)
             "If IN is readings, in any format that gonio reads, OUT becomes CSV (.csv) or BRDF "
             "JSON "
             "(.json, .brdf).\n"
-            "If IN is a basis of an older gonio (HDF5), OUT becomes the same basis in today's "
+            "If IN is a basis of an older gonio (HDF5), OUT becomes the same basis in the present "
             "format.",
         .work = run,
         .options = &o};

@@ -173,7 +173,7 @@ static void add_steps(json_t *object, const gonio_material_view *view, const mat
     json_object_set_new(object, "halves_difference_percent",
                         view->both_halves ? tool_json_number(100.0 * view->halves_difference)
                                           : json_null());
-    json_object_set_new(object, "phi_d_step_at_0", tool_json_number(facts->seam.there));
+    json_object_set_new(object, "phi_d_step_at_0", tool_json_number(facts->seam.across));
     json_object_set_new(object, "phi_d_step_elsewhere", tool_json_number(facts->seam.elsewhere));
 }
 
@@ -266,7 +266,7 @@ static void print_reciprocity(const gonio_material_view *view, const material_fa
     if (tool_seam_shows(&facts->seam)) {
         printf("  seam         ln(1 + rho/s) jumps by %.3f at phi_d = 0, by %.4f elsewhere (mean): "
                "what\n               the values come from is not reciprocal\n",
-               facts->seam.there, facts->seam.elsewhere);
+               facts->seam.across, facts->seam.elsewhere);
     }
 }
 

@@ -178,9 +178,8 @@ int cmd_learn(int argc, const char **argv)
     const struct poptOption table[] = {
         {"output", 'o', POPT_ARG_STRING, &o.output, 0, "The basis file to write", "BASIS"},
         {"components", 'K', POPT_ARG_INT, &o.components, 0,
-         "How many components to keep (default: 300; 45 without mixtures; with --no-mean all; "
-         "never "
-         "more than there are)",
+         "Number of components to keep (default: 300; 45 without mixtures; all with --no-mean; at "
+         "most as many as there are)",
          "K"},
         {"grid", '\0', POPT_ARG_STRING, &o.representation, 0,
          "sectored (theta_h, theta_d, 12 sectors of phi_d; the default), bivariate (no phi_d; the "
@@ -188,20 +187,20 @@ int cmd_learn(int argc, const char **argv)
          "GRID"},
         {"channels", '\0', POPT_ARG_STRING, &o.channels, 0,
          "separate (each colour of a material is a column; the default of the sectored grid) or "
-         "joint (a material is one; the default of the others)",
+         "joint (a material is one column; the default of the other grids)",
          "MODEL"},
         {"mixtures", '\0', POPT_ARG_INT, &o.mixtures, 0,
-         "Columns made up of two measured ones, to learn from besides (default: 1000 on the "
-         "sectored grid, otherwise none)",
+         "Number of computed columns, each a mixture of two measured ones (default: 1000 on the "
+         "sectored grid, otherwise 0)",
          "N"},
-        {"seed", '\0', POPT_ARG_LONG, &o.seed, 0, "Of the mixtures (default: 0)", "N"},
+        {"seed", '\0', POPT_ARG_LONG, &o.seed, 0, "Seed of the mixtures (default: 0)", "N"},
         {"mapping", '\0', POPT_ARG_STRING, &o.mapping, 0,
          "log (the default) or relative (weighted by the cosines; nielsen and frost use it)",
          "MAPPING"},
         {"no-mean", '\0', POPT_ARG_NONE, &o.no_mean, 0,
-         "Do not take the mean material out (matusik needs this)", NULL},
+         "Do not subtract the mean material (matusik needs this)", NULL},
         {"without", '\0', POPT_ARG_STRING, &o.without, 0,
-         "Leave these materials out (for testing on them)", "NAME[,NAME...]"},
+         "Leave these materials out, to test on them", "NAME[,NAME...]"},
         TOOL_OPTIONS};
     const tool_command_line line = {
         .table = table,

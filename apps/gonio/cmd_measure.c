@@ -102,13 +102,13 @@ int cmd_measure(int argc, const char **argv)
          "Additive noise in 1/sr, standard deviation (default: 0)", "VALUE"},
         {"outliers", '\0', POPT_ARG_DOUBLE, &o.outliers, 0,
          "Share of directions read ten times too high or too low (default: 0)", "PERCENT"},
-        {"seed", '\0', POPT_ARG_LONG, &o.seed, 0, "Same seed, same noise (default: 0)", "N"},
+        {"seed", '\0', POPT_ARG_LONG, &o.seed, 0, "Seed of noise and outliers (default: 0)", "N"},
         TOOL_READINGS_OPTIONS,
         TOOL_OPTIONS};
     const tool_command_line line = {
         .table = table,
         .usage = "[OPTION...] PLAN MATERIAL -o READINGS",
-        .text = "MATERIAL is a MERL .binary table, a neural BRDF .h5 or atlas:NAME.\n"
+        .text = "MATERIAL is any material that gonio reads, or readings of a real instrument.\n"
                 "Example: gonio measure plan.csv gold.binary --noise 1 -o readings.csv",
         .work = run,
         .options = &o};

@@ -123,9 +123,8 @@ int cmd_next(int argc, const char **argv)
                  .posterior = posterior_options_default()};
     const struct poptOption table[] = {
         {"output", 'o', POPT_ARG_STRING, &o.output, 0, "The plan to write (CSV)", "PLAN"},
-        PLANNING_OPTIONS(
-            &o.planning, "How many readings to propose (default: 5)",
-            "Say so, and propose nothing, once the expected error (E6) is no more than this"),
+        PLANNING_OPTIONS(&o.planning, "Number of readings to propose (default: 5)",
+                         "If the expected error (E6) is at most this, say so and propose nothing"),
         POSTERIOR_OPTIONS(&o.posterior),
         TOOL_READINGS_OPTIONS,
         TOOL_OPTIONS};

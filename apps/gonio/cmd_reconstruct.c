@@ -399,7 +399,7 @@ static bool check(const tool *t, const options *o, const char *const *inputs, si
         return tool_refuse(t, "--predict-at and --deviation take one READINGS");
     }
     if (!(o->eta > 0.0)) {
-        return tool_refuse(t, "--eta has to be above 0");
+        return tool_refuse(t, "--eta must be above 0");
     }
     return tool_check_output(t, o->output, inputs, count) &&
            tool_check_count(t, "--components", o->components, 0) &&
@@ -467,18 +467,18 @@ int cmd_reconstruct(int argc, const char **argv)
          "OUT"},
         WRITE_OPTIONS(&o.write),
         {"components", 'K', POPT_ARG_INT, &o.components, 0,
-         "Use the first K components (default: as the plan says, or all)", "K"},
+         "Use the first K components (default: as many as the plan is for, or all)", "K"},
         {"method", '\0', POPT_ARG_STRING, &o.method, 0,
          "posterior, least-squares or ridge (default: what the plan was made for, or posterior for "
          "a basis with mixtures and least-squares for others)",
          "METHOD"},
         {"eta", '\0', POPT_ARG_DOUBLE, &o.eta, 0,
-         "How strongly ridge penalises large coefficients (default: 40)", "ETA"},
+         "Weight of the penalty of ridge on large coefficients (default: 40)", "ETA"},
         {"all-channels", '\0', POPT_ARG_NONE, &o.all_channels, 0,
          "Use every channel that was read, not only the planned one", NULL},
         POSTERIOR_OPTIONS(&o.posterior),
         {"deviation", '\0', POPT_ARG_STRING, &o.deviation, 0,
-         "Write the standard deviation of ln(1 + rho/s) too, as a table (posterior)", "FILE"},
+         "Also write the standard deviation of ln(1 + rho/s), as a table (posterior)", "FILE"},
         {"predict-at", '\0', POPT_ARG_STRING, &o.predict_at, 0,
          "Predict readings at the directions of this file, as CSV, in place of a table (posterior)",
          "FILE"},
@@ -494,11 +494,10 @@ int cmd_reconstruct(int argc, const char **argv)
         .table = table,
         .usage = "[OPTION...] [BASIS] READINGS... -o OUT",
         .text = "READINGS is CSV with the columns theta_i_deg, phi_i_deg, theta_o_deg, phi_o_deg, "
-                "R_per_sr, G_per_sr, B_per_sr in any order, and channel if only one was planned.\n"
+                "R_per_sr, G_per_sr, B_per_sr in any order, and a column channel if only one "
+                "channel of each direction was planned.\n"
                 "Without BASIS, the basis of the built-in materials is used. With BASIS, several "
-                "READINGS "
-                "may follow, and "
-                "OUT is a folder.\n"
+                "READINGS may follow; OUT is then a folder.\n"
                 "Example: gonio reconstruct merl.gonio readings.csv -o new.binary",
         .work = run,
         .options = &o};

@@ -150,40 +150,41 @@ int cmd_render(int argc, const char **argv)
          "FILE"},
         {"environment", 'e', POPT_ARG_STRING, &o.environment, 0,
          "studio (the default), sky, furnace, or an .exr or .hdr file", "NAME|FILE"},
-        {"turn", '\0', POPT_ARG_DOUBLE, &o.turn, 0, "Turn the environment to the right", "DEG"},
-        {"show-environment", '\0', POPT_ARG_NONE, &o.show, 0, "Show it behind the object", NULL},
+        {"turn", '\0', POPT_ARG_DOUBLE, &o.turn, 0, "Rotate the environment to the right", "DEG"},
+        {"show-environment", '\0', POPT_ARG_NONE, &o.show, 0,
+         "Show the environment behind the object", NULL},
         {"repair", '\0', POPT_ARG_NONE, &o.repair, 0,
          "Take negative, NaN and infinite pixels of the environment as black", NULL},
         {"light", '\0', POPT_ARG_STRING, &o.light, 0,
-         "Light it by a lamp instead: directional or point", "KIND"},
+         "Use a lamp instead of an environment: directional or point", "KIND"},
         {"light-at", '\0', POPT_ARG_STRING, &o.light_at, 0,
-         "Where the lamp is (default: -30,35; distance 4)", "AZ,EL[,DIST]"},
-        {"view", '\0', POPT_ARG_STRING, &o.view, 0, "From where to look, degrees (default: 0,0)",
-         "AZ,EL"},
+         "Position of the lamp, degrees (default: -30,35; distance 4)", "AZ,EL[,DIST]"},
+        {"view", '\0', POPT_ARG_STRING, &o.view, 0,
+         "Position of the viewer, degrees (default: 0,0)", "AZ,EL"},
         {"fov", '\0', POPT_ARG_DOUBLE, &o.field_of_view, 0,
          "Vertical field of view; 0 for parallel rays (default: 30)", "DEG"},
-        {"size", '\0', POPT_ARG_STRING, &o.size, 0, "Pixels (default: 512; 256 with --compare)",
-         "N|WxH"},
-        {"samples", '\0', POPT_ARG_LONG, &o.samples, 0, "Of each pixel (default: 64)", "N"},
-        {"seed", '\0', POPT_ARG_LONG, &o.seed, 0, "Of the samples (default: 0)", "N"},
-        {"key", '\0', POPT_ARG_DOUBLE, &o.key, 0, "Of the tone mapping: how bright (default: 0.18)",
-         "A"},
+        {"size", '\0', POPT_ARG_STRING, &o.size, 0,
+         "Size in pixels (default: 512; 256 with --compare)", "N|WxH"},
+        {"samples", '\0', POPT_ARG_LONG, &o.samples, 0, "Samples of each pixel (default: 64)", "N"},
+        {"seed", '\0', POPT_ARG_LONG, &o.seed, 0, "Seed of the samples (default: 0)", "N"},
+        {"key", '\0', POPT_ARG_DOUBLE, &o.key, 0,
+         "Brightness of the tone-mapped average (default: 0.18)", "A"},
         {"compare", '\0', POPT_ARG_NONE, &o.compare, 0,
          "A picture of REFERENCE and OTHERs side by side, with errors", NULL},
         {"columns", '\0', POPT_ARG_LONG, &o.columns, 0,
          "Rows of N materials, each with its reference first", "N"},
         {"labels", '\0', POPT_ARG_STRING, &o.labels, 0, "Titles of the columns", "NAME,NAME..."},
         {"differences", '\0', POPT_ARG_NONE, &o.differences, 0,
-         "With Delta E_ITP as pictures below", NULL},
+         "Also draw Delta E_ITP below each row", NULL},
         TOOL_OPTIONS};
     const tool_command_line line = {
         .table = table,
         .usage = "[OPTION...] MATERIAL -o OUT | --compare REFERENCE OTHER... -o OUT",
         .text =
-            "Azimuths are degrees to the right of the viewer's first place, elevations upwards.\n"
-            "Light comes straight from the lamp or the environment; the same seed gives the same "
-            "image."
-            "\nPNG is tone-mapped after Reinhard et al. 2002. Below a comparison: E6, PSNR and "
+            "Azimuths are degrees to the right of the default view, elevations are degrees "
+            "upwards.\n"
+            "Only direct light is computed. The same seed gives the same image.\n"
+            "PNG is tone-mapped after Reinhard et al. 2002. Below a comparison: E6, PSNR and "
             "mean\n"
             "Delta E_ITP. Example: gonio render atlas:gold-polished -e sky --show-environment -o "
             "g.png",

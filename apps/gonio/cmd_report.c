@@ -126,9 +126,9 @@ int cmd_report(int argc, const char **argv)
     const struct poptOption table[] = {
         {"output", 'o', POPT_ARG_STRING, &o.output, 0, "The page to write (HTML)", "PAGE"},
         {"readings", '\0', POPT_ARG_STRING, &o.readings, 0,
-         "Show these directions, a plan's or readings'", "FILE"},
+         "Show the directions of this plan or of these readings", "FILE"},
         {"deviation", '\0', POPT_ARG_STRING, &o.deviation, 0,
-         "Standard deviations of ln(1 + rho/s) of the reconstruction, a MERL table", "FILE"},
+         "Standard deviations of ln(1 + rho/s) of the reconstruction, as a MERL table", "FILE"},
         TOOL_READINGS_OPTIONS,
         TOOL_OPTIONS};
     const tool_command_line line = {

@@ -91,14 +91,15 @@ int cmd_reproduce(int argc, const char **argv)
     options o = {.output = NULL};
     const struct poptOption table[] = {
         {"output", 'o', POPT_ARG_STRING, &o.output, 0,
-         "The folder to write: a new one, or one to go on with", "OUT"},
+         "The folder to write: a new one, or one to resume", "OUT"},
         {"quick", '\0', POPT_ARG_NONE, &o.quick, 0,
          "Fewer splits and plans: about a minute for 100 materials", NULL},
         {"only", '\0', POPT_ARG_STRING, &o.only, 0,
-         "Only these: fig2a, fig2b, fig3a, fig3b, fig4, fig5, fig6, fig7", "NAME[,NAME...]"},
+         "Run only these: fig2a, fig2b, fig3a, fig3b, fig4, fig5, fig6, fig7", "NAME[,NAME...]"},
         {"splits", '\0', POPT_ARG_STRING, &o.splits, 0,
          "Take the splits from this JSON file instead of random ones", "FILE"},
-        {"seed", '\0', POPT_ARG_LONG, &o.seed, 0, "Of splits and plans (default: 0)", "N"},
+        {"seed", '\0', POPT_ARG_LONG, &o.seed, 0, "Seed of random splits and plans (default: 0)",
+         "N"},
         {"skip-bad", '\0', POPT_ARG_NONE, &o.skip_bad, 0, "Leave out materials that cannot be used",
          NULL},
         TOOL_OPTIONS};

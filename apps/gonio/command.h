@@ -13,19 +13,19 @@ typedef struct tool_command {
 
 /* The commands, in the order of the help. */
 #define TOOL_COMMANDS(COMMAND)                                                                     \
-    COMMAND(info, "what a file is: materials, bases, plans, readings, meshes, images")             \
-    COMMAND(convert, "materials and readings to other formats")                                    \
-    COMMAND(learn, "a basis from measured materials")                                              \
-    COMMAND(plan, "where to measure")                                                              \
-    COMMAND(measure, "a simulated instrument reads a known material")                              \
-    COMMAND(reconstruct, "the whole BRDF from a few readings")                                     \
-    COMMAND(next, "where to measure next, given what was read")                                    \
-    COMMAND(compare, "how far BRDFs are from a reference")                                         \
-    COMMAND(report, "a page for a browser: spheres, directions, lobes, errors")                    \
-    COMMAND(render, "a material on a sphere or a mesh, comparison pictures")                       \
-    COMMAND(reproduce, "the paper's experiments on your materials")                                \
-    COMMAND(benchmark, "how well BRDFs are completed from n readings")                             \
-    COMMAND(demo, "the whole chain on a built-in material")
+    COMMAND(info, "describe materials, bases, plans, readings, meshes and images")                 \
+    COMMAND(convert, "convert materials and readings to other formats")                            \
+    COMMAND(learn, "learn a basis from measured materials")                                        \
+    COMMAND(plan, "plan where to measure")                                                         \
+    COMMAND(measure, "simulate an instrument that reads a known material")                         \
+    COMMAND(reconstruct, "reconstruct the whole BRDF from a few readings")                         \
+    COMMAND(next, "plan where to measure next, given the readings so far")                         \
+    COMMAND(compare, "compute errors of BRDFs and readings relative to a reference")               \
+    COMMAND(report, "write a page for a browser: spheres, directions, lobes, errors")              \
+    COMMAND(render, "render a material on a sphere or a mesh, or a comparison picture")            \
+    COMMAND(reproduce, "run the paper's experiments on your materials")                            \
+    COMMAND(benchmark, "compare how well methods complete BRDFs from n readings")                  \
+    COMMAND(demo, "run all steps on a built-in material")
 
 #define TOOL_DECLARE_COMMAND(name, summary) int cmd_##name(int argc, const char **argv);
 TOOL_COMMANDS(TOOL_DECLARE_COMMAND)

@@ -9,11 +9,11 @@ extern const char *tool_as;
 #define TOOL_READINGS_OPTIONS                                                                      \
     {                                                                                              \
         "as", '\0', POPT_ARG_STRING, &tool_as, 0,                                                  \
-            "What the numbers of readings stand for, where it is other than gonio takes them "     \
-            "for: "                                                                                \
+            "Units and conventions of readings, where gonio takes them wrongly: "                  \
             "angles=degrees|radians, values=brdf|factor|percent|cosine|factor-cosine, "            \
             "mirror=180|0, "                                                                       \
-            "wavelengths=nm|um|m, zeros=missing|dark, sample=NUMBER, format=NAME; commas between", \
+            "wavelengths=nm|um|m, zeros=missing|dark, sample=NUMBER, format=NAME; separated by "   \
+            "commas",                                                                              \
             "LIST"                                                                                 \
     }
 

@@ -24,7 +24,7 @@ static void print_help(FILE *stream)
     for (int k = 0; k < COMMANDS; k++) {
         fprintf(stream, "  %-12s %s\n", commands[k].name, commands[k].summary);
     }
-    fputs("\n'gonio COMMAND -h' explains each; 'gonio demo' shows them at work.\n"
+    fputs("\n'gonio COMMAND -h' explains a command. 'gonio demo' runs them in turn.\n"
           "gonio --version prints the version.\n",
           stream);
 }

@@ -25,11 +25,11 @@ typedef struct planning_options {
          POPT_ARG_STRING,                                                                          \
          &(o)->candidates,                                                                         \
          0,                                                                                        \
-         "Choose among the directions of this file (a plan, readings, or scattered readings)",     \
+         "Choose among the directions of this file, a plan or readings",                           \
          "FILE"},                                                                                  \
     {                                                                                              \
         "metric", '\0', POPT_ARG_STRING, &(o)->metric, 0,                                          \
-            "The error that is to be small: e6 (default), cube-root or log-relative", "METRIC"     \
+            "The metric to minimise: e6 (default), cube-root or log-relative", "METRIC"            \
     }
 
 /* Checks the options. Returns false after an error message. `output`: the plan's file. */

@@ -35,11 +35,11 @@ posterior_options posterior_options_default(void);
          POPT_ARG_DOUBLE,                                                                          \
          &(o)->saturation,                                                                         \
          0,                                                                                        \
-         "Readings of this value or more mean at least it, 1/sr (posterior)",                      \
+         "Readings of this value or more, 1/sr, are lower bounds (posterior)",                     \
          "VALUE"},                                                                                 \
     {                                                                                              \
         "no-checks", '\0', POPT_ARG_NONE, &(o)->no_checks, 0,                                      \
-            "Do not look for usual mistakes nor for a dark level (posterior)", NULL                \
+            "Do not look for usual mistakes or a dark level (posterior)", NULL                     \
     }
 
 /* Checks the options. Returns false after an error message. */

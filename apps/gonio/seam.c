@@ -4,7 +4,7 @@
 #include <math.h>
 
 typedef struct sums {
-    double there;
+    double across;
     double elsewhere;
     size_t rows;
 } sums;
@@ -22,7 +22,7 @@ static void add_row(const double *rho, int channel, sums *to)
     for (int p = 1; p < GONIO_PHI_D_BINS; p++) {
         to->elsewhere += fabs(g[p] - g[p - 1]);
     }
-    to->there += fabs(g[0] - g[GONIO_PHI_D_BINS - 1]);
+    to->across += fabs(g[0] - g[GONIO_PHI_D_BINS - 1]);
     to->rows++;
 }
 
@@ -39,10 +39,10 @@ tool_seam tool_find_seam(const gonio_table *table)
         }
     }
     const double rows = all.rows > 0 ? (double)all.rows : 1.0;
-    return (tool_seam){all.there / rows, all.elsewhere / (rows * (GONIO_PHI_D_BINS - 1))};
+    return (tool_seam){all.across / rows, all.elsewhere / (rows * (GONIO_PHI_D_BINS - 1))};
 }
 
 bool tool_seam_shows(const tool_seam *seam)
 {
-    return seam->there > 0.005 && seam->there > 5.0 * seam->elsewhere;
+    return seam->across > 0.005 && seam->across > 5.0 * seam->elsewhere;
 }

@@ -8,7 +8,7 @@
  * same as 0, so the last bin and the first are neighbours too. A table made from a BRDF that is not
  * reciprocal jumps there. */
 typedef struct tool_seam {
-    double there;     /* between the last bin and the first; 0 without data */
+    double across;    /* between the last bin and the first; 0 without data */
     double elsewhere; /* between the others */
 } tool_seam;
 

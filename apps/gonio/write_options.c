@@ -56,12 +56,12 @@ bool write_options_check(const tool *t, const write_options *options, gonio_writ
         return false;
     }
     if (options->illuminant != NULL && find_illuminant(options->illuminant) == ILLUMINANTS) {
-        return tool_refuse(t, "--illuminant %s: E, D65 or A", options->illuminant);
+        return tool_refuse(t, "--illuminant: '%s' is none of E, D65, A", options->illuminant);
     }
     if (options->steps != NULL && !read_steps(options->steps, step)) {
-        return tool_refuse(t,
-                           "--steps %s: give three steps of 0.1 to 90 degrees, for example 10,5,10",
-                           options->steps);
+        return tool_refuse(
+            t, "--steps: '%s' is not three steps of 0.1 to 90 degrees, for example 10,5,10",
+            options->steps);
     }
     how->theta_i_step = step[0] * M_PI / 180.0;
     how->theta_o_step = step[1] * M_PI / 180.0;

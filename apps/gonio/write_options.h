@@ -16,7 +16,7 @@ typedef struct write_options {
      POPT_ARG_STRING,                                                                              \
      &(options)->format,                                                                           \
      0,                                                                                            \
-     "merl, rgl, table, klems, zemax or csv (default: as OUT's extension says: .bsdf is rgl, .h5 " \
+     "merl, rgl, table, klems, zemax or csv (default: by OUT's extension: .bsdf is rgl, .h5 "      \
      "table, .xml klems, .csv csv, all else merl)",                                                \
      "FORMAT"},                                                                                    \
         {"illuminant",                                                                             \
@@ -24,7 +24,7 @@ typedef struct write_options {
          POPT_ARG_STRING,                                                                          \
          &(options)->illuminant,                                                                   \
          0,                                                                                        \
-         "What colours of spectra are seen under: E, D65 or A (default: E, equal energy)",         \
+         "Light for the colours of spectra: E, D65 or A (default: E, equal energy)",               \
          "NAME"},                                                                                  \
     {                                                                                              \
         "steps", '\0', POPT_ARG_STRING, &(options)->steps, 0,                                      \

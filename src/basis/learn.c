@@ -95,8 +95,9 @@ static gonio_status check_subset(gonio_context *context, const gonio_database_vi
 {
     for (size_t k = 0; options->subset != NULL && k < options->subset_count; k++) {
         if (options->subset[k] >= view->materials) {
-            return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "material %zu of a database of %zu",
-                                options->subset[k], view->materials);
+            return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                                "material %zu is outside a database of %zu", options->subset[k],
+                                view->materials);
         }
     }
     return GONIO_OK;
@@ -110,7 +111,7 @@ static gonio_status choose_components(gonio_context *context, size_t columns,
     const size_t most = options->without_mean ? columns : columns - 1;
     if (columns < 2) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                            "a basis needs at least 2 materials, there is %zu", columns);
+                            "a basis needs at least 2 materials, not %zu", columns);
     }
     if (asked > most) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,

@@ -9,7 +9,6 @@ gonio_status gonio_i_take(gonio_context *context, const char *type, const char *
     }
     size_t claimed;
     memcpy(&claimed, given, sizeof claimed);
-    return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                        "a %s that says it is of %zu bytes was not initialised: %s", type, claimed,
-                        remedy);
+    return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "a %s of %zu bytes was not initialised: %s",
+                        type, claimed, remedy);
 }

@@ -70,9 +70,10 @@ static gonio_status check_names(gonio_context *context, const gonio_database *da
     gonio_status status = GONIO_OK;
     for (size_t k = 1; k < database->materials && status == GONIO_OK; k++) {
         if (strcmp(sorted[k - 1], sorted[k]) == 0) {
-            status = gonio_i_fail(context, GONIO_ERROR_DATA,
-                                  "two materials are called '%s': give each once, under one name",
-                                  sorted[k]);
+            status = gonio_i_fail(
+                context, GONIO_ERROR_DATA,
+                "two materials are called '%s'; give each material once, under a name of its own",
+                sorted[k]);
         }
     }
     free(sorted);

@@ -185,7 +185,7 @@ void gonio_i_note_colours(gonio_context *context, const char *name, const double
         return;
     }
     if (count == 1) {
-        gonio_i_note(context, "%s: colours cannot be known from %g nm alone; they are grey", name,
+        gonio_i_note(context, "%s: %g nm alone does not determine colours; they are grey", name,
                      wavelength[0]);
     } else {
         gonio_i_note(context,

@@ -105,10 +105,9 @@ static gonio_status fill_wavelengths(gonio_context *context, const gonio_reading
 {
     return interpolate(readings, others, value) > 0
                ? GONIO_OK
-               : gonio_i_fail(
-                     context, GONIO_ERROR_MISMATCH,
-                     "%s and %s were read at wavelengths of which none is among the other's",
-                     others->path, readings->path);
+               : gonio_i_fail(context, GONIO_ERROR_MISMATCH,
+                              "no wavelength of %s is within those of %s", others->path,
+                              readings->path);
 }
 
 /* ---- channels without a value ---- */
@@ -285,8 +284,8 @@ gonio_status gonio_readings_share_channels(gonio_context *context, gonio_reading
     }
     if (!can_be_colours(a) || !can_be_colours(b)) {
         return gonio_i_fail(context, GONIO_ERROR_MISMATCH,
-                            "%s has %zu channels, %s has %zu, without wavelengths that would tell "
-                            "which are the same",
+                            "%s has %zu channels, %s has %zu; without wavelengths they cannot be "
+                            "matched",
                             a->path, a->channels, b->path, b->channels);
     }
     const gonio_status status = make_colours(context, a);

@@ -48,10 +48,11 @@ static gonio_status refuse_wavelength(const gonio_i_import *in, double wavelengt
 {
     const char *unit = unit_of_light(wavelength);
     return unit != NULL && in->how.wavelengths <= GONIO_NANOMETRES
-               ? gonio_i_fail(in->context, GONIO_ERROR_FORMAT,
-                              "%s: a wavelength of %g nm is no light; is it in %s? Give nm, or use "
-                              "--as wavelengths=%s",
-                              in->readings->path, wavelength, unit, unit)
+               ? gonio_i_fail(
+                     in->context, GONIO_ERROR_FORMAT,
+                     "%s: a wavelength of %g nm is not light; is it in %s? Give nm, or use "
+                     "--as wavelengths=%s",
+                     in->readings->path, wavelength, unit, unit)
                : gonio_i_fail(in->context, GONIO_ERROR_FORMAT,
                               "%s: %g is not a wavelength of light", in->readings->path,
                               wavelength);
@@ -131,7 +132,7 @@ static gonio_status refuse_angle(const gonio_i_import *in, const gonio_i_row *ro
                                                             "angles=degrees"
                                                           : "";
     return gonio_i_fail(in->context, isfinite(number) ? GONIO_ERROR_DATA : GONIO_ERROR_FORMAT,
-                        "%s:%zu: %s = %.7g is no such angle in %s%s", in->readings->path, row->line,
+                        "%s:%zu: %s = %.7g is impossible in %s%s", in->readings->path, row->line,
                         names[which], number, radians ? "radians" : "degrees", advice);
 }
 

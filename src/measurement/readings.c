@@ -139,7 +139,7 @@ static gonio_status check_wavelength(gonio_context *context, const char *path, d
     return wavelength >= gonio_i_least_wavelength
                ? GONIO_OK
                : gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                              "%s: a wavelength of %g nm is no light; give nanometres", path,
+                              "%s: a wavelength of %g nm is not light; give nanometres", path,
                               wavelength);
 }
 

@@ -32,8 +32,9 @@ static gonio_status take_planned(gonio_context *context, gonio_readings *r, size
 {
     r->planned[k] = planned;
     if (planned != GONIO_ALL_CHANNELS && !(planned >= 0 && (size_t)planned < r->channels)) {
-        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "%s:%zu: channel %d of %zu channels",
-                            r->path, k + 1, planned, r->channels);
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "%s:%zu: channel %d is outside %zu channels", r->path, k + 1, planned,
+                            r->channels);
     }
     return GONIO_OK;
 }
@@ -237,7 +238,7 @@ gonio_status gonio_readings_set_value(gonio_context *context, gonio_readings *re
 {
     if (reading >= readings->count || channel >= readings->channels) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                            "%s: reading %zu, channel %zu of %zu readings in %zu channels",
+                            "%s: reading %zu, channel %zu is outside %zu readings in %zu channels",
                             readings->path, reading, channel, readings->count, readings->channels);
     }
     gonio_readings_options strict;

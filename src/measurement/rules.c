@@ -22,7 +22,7 @@ const char *gonio_i_angle_problem(int which, double degrees, gonio_status *statu
         return "is negative: give 0 to 90, and turn phi by 180";
     }
     if (polar && degrees >= 90.0) {
-        return "is at or below the horizon: theta is less than 90";
+        return "is at or below the horizon: give a theta below 90";
     }
     if (!polar && fabs(degrees) > 360.0) {
         return "is outside -360 to 360 degrees";
@@ -43,7 +43,7 @@ const char *gonio_i_value_problem(double value, const gonio_readings_options *op
         return "is larger than any BRDF (leave the cell empty where nothing was read)";
     }
     if (value < 0.0 && !options->negative_to_zero) {
-        return "is negative: a dark level too high? --negative-to-zero takes it as 0";
+        return "is negative (a dark level that is too high?): --negative-to-zero takes it as 0";
     }
     *status = GONIO_OK;
     return NULL;
@@ -53,7 +53,7 @@ const char *gonio_i_deviation_problem(double deviation, gonio_status *status)
 {
     *status = GONIO_ERROR_DATA;
     if (!isfinite(deviation) || deviation < 0.0 || deviation > MOST_VALUE) {
-        return "is no standard deviation: a finite number from 0, in 1/sr";
+        return "is not a standard deviation: give a finite number from 0 on, in 1/sr";
     }
     *status = GONIO_OK;
     return NULL;

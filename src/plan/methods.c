@@ -201,8 +201,9 @@ gonio_status gonio_plan_select(gonio_context *context, const double *vectors, si
                               method->name);
     }
     if (status == GONIO_OK && (components == 0 || components > leading)) {
-        status = gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "%zu components of rows that have %zu",
-                              components, leading);
+        status =
+            gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                         "%zu components requested, but the rows have %zu", components, leading);
     }
     return status == GONIO_OK ? select_rows(method, &problem, &options, chosen, report) : status;
 }

@@ -137,8 +137,8 @@ static gonio_status check_chosen(gonio_context *context, size_t rows, const size
 {
     for (size_t j = 0; j < count; j++) {
         if (chosen[j] >= rows) {
-            return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "row %zu of %zu rows", chosen[j],
-                                rows);
+            return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                                "row %zu is outside a matrix of %zu rows", chosen[j], rows);
         }
     }
     return GONIO_OK;
@@ -179,8 +179,8 @@ gonio_status gonio_condition_number(gonio_context *context, const double *vector
         return status;
     }
     if (components == 0 || components > leading) {
-        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "%zu components of rows that have %zu",
-                            components, leading);
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "%zu components requested, but the rows have %zu", components, leading);
     }
     return condition_of(context, vectors, leading, components, chosen, count, condition_number);
 }

@@ -147,8 +147,8 @@ gonio_status gonio_i_reconstruct_check_rows(gonio_context *context, const gonio_
     const size_t all = gonio_basis_describe(basis)->rows;
     for (size_t k = 0; k < count; k++) {
         if (rows[k] >= all) {
-            return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "row %zu of a basis of %zu rows",
-                                rows[k], all);
+            return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                                "row %zu is outside a basis of %zu rows", rows[k], all);
         }
     }
     return count > 0 ? GONIO_OK
@@ -178,7 +178,7 @@ static gonio_status begin(gonio_context *context, const gonio_basis *basis,
         return GONIO_ERROR_ARGUMENT;
     }
     if (!(task->eta > 0.0 && isfinite(task->eta))) {
-        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "eta has to be a number above 0, not %g",
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "eta must be above 0, not %g",
                             task->eta);
     }
     return GONIO_OK;

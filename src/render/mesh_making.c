@@ -79,7 +79,7 @@ gonio_status gonio_i_mesh_add_triangle(gonio_i_mesh_making *making, const uint32
     for (int k = 0; k < 3; k++) {
         if (corner[k] >= mesh->corners) {
             return gonio_i_fail(making->context, GONIO_ERROR_FORMAT,
-                                "%s: a face names a corner that is not there", making->path);
+                                "%s: a face names a corner that does not exist", making->path);
         }
     }
     if (!has_area(mesh->position + 3 * (size_t)corner[0], mesh->position + 3 * (size_t)corner[1],

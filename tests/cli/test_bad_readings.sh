@@ -88,8 +88,8 @@ angle() { # THETA_I PHI_I THETA_O PHI_O PART
     table angle.csv "$header" "$first" "$1,$2,$3,$4,R,1,1,1"
     every_reader 1 "angle.csv:12: $5" angle.csv
 }
-angle 181 0 20 0 'theta_i = 181 is no such angle in degrees'
-angle 20 0 -200.5 0 'theta_o = -200.5 is no such angle in degrees'
+angle 181 0 20 0 'theta_i = 181 is impossible in degrees'
+angle 20 0 -200.5 0 'theta_o = -200.5 is impossible in degrees'
 angle ten 0 20 0 "theta_i_deg 'ten' is not a finite number"
 angle 10deg 0 20 0 "theta_i_deg '10deg' is not a finite number"
 angle '' 0 20 0 "theta_i_deg '' is not a finite number"
@@ -126,8 +126,8 @@ value() { # CHANNEL R PART
     table value.csv "$header" "$first" "11,0,20,0,$1,$2,1,1"
     every_reader 1 "value.csv:12: $3" value.csv
 }
-value red 1 "channel 'red' is no channel: R, G, B or all"
-value 0 1 "channel '0' is no channel"
+value red 1 "channel 'red' is not a channel: R, G, B or all"
+value 0 1 "channel '0' is not a channel"
 value R bright "R_per_sr 'bright' is not a finite number (leave the cell empty"
 value R inf "R_per_sr 'inf' is not a finite number"
 value R 1e999 "R_per_sr '1e999' is not a finite number"

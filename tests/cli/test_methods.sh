@@ -60,9 +60,9 @@ expect_fail 1 'no usable reading in R to determine 3 coefficients from' \
 
 expect_fail 2 "no reconstruction method is called 'lasso'" \
     reconstruct relative.gonio free.csv --method lasso -o x.binary
-expect_fail 2 '--eta has to be above 0' reconstruct relative.gonio free.csv --eta 0 -o x.binary
-expect_fail 2 '--eta has to be above 0' reconstruct relative.gonio free.csv --eta nan -o x.binary
-expect_fail 2 'eta has to be a number above 0' \
+expect_fail 2 '--eta must be above 0' reconstruct relative.gonio free.csv --eta 0 -o x.binary
+expect_fail 2 '--eta must be above 0' reconstruct relative.gonio free.csv --eta nan -o x.binary
+expect_fail 2 'eta must be above 0' \
     reconstruct relative.gonio free.csv --method ridge --eta inf -o x.binary
 
 finish

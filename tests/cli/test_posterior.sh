@@ -130,8 +130,8 @@ expect_output '"anisotropic": false' info --json paint.bsdf
 expect_output 'valid bins   1096216 of 1096216' info deviation.binary
 expect_ok convert paint.bsdf --illuminant A paint.xml
 expect_output 'BSDF-XML Reflection Front, LBNL/Klems Full, 145 x 145 patches, CIE X, Y, Z' info paint.xml
-expect_fail 2 '--illuminant F11: E, D65 or A' convert paint.bsdf --illuminant F11 x.xml
-expect_fail 2 '--steps 10,5: give three steps' convert paint.bsdf --steps 10,5 x.csv
+expect_fail 2 "--illuminant: 'F11' is none of E, D65, A" convert paint.bsdf --illuminant F11 x.xml
+expect_fail 2 "--steps: '10,5' is not three steps" convert paint.bsdf --steps 10,5 x.csv
 expect_fail 2 "--format: 'exr' is none of merl, rgl," convert paint.bsdf --format exr x.exr
 rm paint.bsdf paint.xml deviation.binary
 expect_output 'from 40 readings in 3 channels' reconstruct b.gonio paint.brdf -o paint.binary

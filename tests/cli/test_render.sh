@@ -101,7 +101,7 @@ mesh 1 'its header does not end' 'ply\nformat ascii 1.0\nelement vertex 3\n'
 mesh 1 'it is cut short' 'ply\nformat ascii 1.0\nelement vertex 99999999999\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n'
 mesh 1 "bad.mesh:3: cannot be read as PLY: 'element vertex many'" 'ply\nformat ascii 1.0\nelement vertex many\n'
 mesh 1 'is not finite' 'ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\nnan 2 3\n'
-mesh 1 'names a corner that is not there' 'ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_index\nend_header\n1 2 3\n3 0 0 7\n'
+mesh 1 'names a corner that does not exist' 'ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_index\nend_header\n1 2 3\n3 0 0 7\n'
 # shellcheck disable=SC2086
 {
     expect_fail 1 'missing.ply: cannot read: No such file' $r -m missing.ply -o x.png

@@ -78,8 +78,8 @@ static void test_what_ridge_refuses(void **state)
         const char *message;
     } cases[] = {
         {{.size = size, .method = "lasso"}, "no reconstruction method is called 'lasso'"},
-        {{.size = size, .method = "ridge", .eta = -1.0}, "eta has to be a number above 0"},
-        {{.size = size, .method = "ridge", .eta = INFINITY}, "eta has to be a number above 0"},
+        {{.size = size, .method = "ridge", .eta = -1.0}, "eta must be above 0"},
+        {{.size = size, .method = "ridge", .eta = INFINITY}, "eta must be above 0"},
         {{.size = size, .method = "ridge", .components = 13},
          "13 components asked for, but the basis has 12"},
     };

@@ -356,7 +356,7 @@ static void test_bad_files(void **state)
          "1 rows where NUM_POINTS says 2"},
         {"VARS theta_i,phi_i,theta_s,phi_s,R\n0,0,0.1,0\n", GONIO_ERROR_FORMAT,
          ":2: a row of 5 numbers"},
-        {"VARS theta_i,phi_i,theta_s,phi_s,4nm\n0,0,0.1,0,1\n", GONIO_ERROR_FORMAT, "no light"},
+        {"VARS theta_i,phi_i,theta_s,phi_s,4nm\n0,0,0.1,0,1\n", GONIO_ERROR_FORMAT, "not light"},
         {"Table_BSDF_Data\nx\n300 0.55 30 0 0.2\n", GONIO_ERROR_FORMAT, ":3: 5 numbers"},
         {"Table_BSDF_Data\nx\n", GONIO_ERROR_DATA, "no readings in it"},
         {ZEMAX_HEADER "DataBegin\nTIS 0.1\n1 2\n1 3\n1 4\nTIS 0.2\n5 6\n", GONIO_ERROR_FORMAT,

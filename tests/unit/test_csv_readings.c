@@ -185,16 +185,16 @@ static void test_what_is_refused(void **state)
     } cases[] = {
         {"voltage", "0.5", "no column of values: 'voltage' is not understood"},
         {"remark", "wet", "a plan that was not measured yet?"},
-        {"0.633nm_per_sr", "0.5", "0.633 nm is no light; is it in um? Give nm"},
-        {"0.55", "0.5", "0.55 nm is no light; is it in um?"},
-        {"1,2", "0.5,1", "1 nm is no light"},
+        {"0.633nm_per_sr", "0.5", "0.633 nm is not light; is it in um? Give nm"},
+        {"0.55", "0.5", "0.55 nm is not light; is it in um?"},
+        {"1,2", "0.5,1", "1 nm is not light"},
         {"R_per_sr,550nm_per_sr", "1,1", "colours (R_per_sr) and of wavelengths (550nm_per_sr)"},
         {"550nm,550.0 nm", "1,1", "two columns of 550 nm, '550nm' and '550.0 nm'"},
         {"red_per_sr,R_per_sr", "1,1", "two columns of R, 'red_per_sr' and 'R_per_sr'"},
         {"brdf,bsdf", "1,1", "two columns of values, 'brdf' and 'bsdf'"},
         {"R_percent,G_per_sr", "1,1", "'R_percent' and 'G_per_sr' differ in their unit"},
         {"brdf R (%),brdf G (1/sr),brdf B (%)", "1,1,1", "differ in their unit"},
-        {"brdf,sd", "0.5,-1", "sd '-1' is no standard deviation"},
+        {"brdf,sd", "0.5,-1", "sd '-1' is not a standard deviation"},
     };
     gonio_context *context = support_context();
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
@@ -377,9 +377,9 @@ static void test_bad_lines_for_each_wavelength(void **state)
     } cases[] = {
         {ANGLES ",wavelength,brdf\n1,0,2,0,550,1\n1,0,2,0,500,1\n1,0,2,0,550,1\n",
          "r.csv:4: the same directions and channel as line 2"},
-        {ANGLES ",wavelength,brdf\n1,0,2,0,,1\n", "r.csv:2: wavelength '' is no wavelength"},
-        {ANGLES ",wavelength,brdf\n1,0,2,0,-5,1\n", "r.csv:2: wavelength '-5' is no wavelength"},
-        {ANGLES ",wavelength,brdf\n1,0,2,0,0.55,1\n", "0.55 nm is no light; is it in um?"},
+        {ANGLES ",wavelength,brdf\n1,0,2,0,,1\n", "r.csv:2: wavelength '' is not a wavelength"},
+        {ANGLES ",wavelength,brdf\n1,0,2,0,-5,1\n", "r.csv:2: wavelength '-5' is not a wavelength"},
+        {ANGLES ",wavelength,brdf\n1,0,2,0,0.55,1\n", "0.55 nm is not light; is it in um?"},
         {ANGLES ",wavelength,brdf\n", "no lines below the column names"},
         {ANGLES ",wavelength\n1,0,2,0,550\n", "'wavelength' is not understood"},
     };

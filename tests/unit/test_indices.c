@@ -102,7 +102,7 @@ static void test_materials_that_a_database_does_not_have(void **state)
         .size = sizeof options, .subset = subset, .subset_count = 3};
     gonio_basis *basis = NULL;
     assert_refused(gonio_basis_learn(f->context, f->database, &options, &basis),
-                   GONIO_ERROR_ARGUMENT, "material 3 of a database of 3");
+                   GONIO_ERROR_ARGUMENT, "material 3 is outside a database of 3");
     assert_null(basis);
 }
 
@@ -135,11 +135,11 @@ static void test_rows_of_a_matrix(void **state)
     gonio_plan_options_default(&options);
     options.count = 1;
     assert_refused(gonio_condition_number(f->context, vectors, 2, 2, 2, rows, 2, &condition),
-                   GONIO_ERROR_ARGUMENT, "row 2 of 2 rows");
+                   GONIO_ERROR_ARGUMENT, "row 2 is outside a matrix of 2 rows");
     assert_refused(gonio_condition_number(f->context, vectors, 2, 2, 3, rows, 1, &condition),
-                   GONIO_ERROR_ARGUMENT, "3 components of rows that have 2");
+                   GONIO_ERROR_ARGUMENT, "3 components requested, but the rows have 2");
     assert_refused(gonio_plan_select(f->context, vectors, 2, 2, 3, &options, chosen, &report),
-                   GONIO_ERROR_ARGUMENT, "3 components of rows that have 2");
+                   GONIO_ERROR_ARGUMENT, "3 components requested, but the rows have 2");
     assert_true(condition == -1.0 && chosen[0] == 9);
 }
 
@@ -154,15 +154,15 @@ static void test_rows_to_reconstruct_from(void **state)
     gonio_reconstruction *made = NULL;
     assert_int_equal(gonio_material_open(f->context, made_paths[0], &gold), GONIO_OK);
     assert_refused(gonio_reconstruct_rows(f->context, f->joint, 1, rows, 2, b, &made),
-                   GONIO_ERROR_ARGUMENT, "of a basis of");
+                   GONIO_ERROR_ARGUMENT, "outside a basis of");
     assert_refused(gonio_reconstruct_rows_with(f->context, f->joint, NULL, rows, 2, b, &made),
-                   GONIO_ERROR_ARGUMENT, "of a basis of");
+                   GONIO_ERROR_ARGUMENT, "outside a basis of");
     assert_refused(gonio_reconstruct_rows(f->context, f->joint, 1, rows, 0, b, &made),
                    GONIO_ERROR_ARGUMENT, "no rows");
     assert_refused(gonio_material_rows(f->context, f->joint, gold, rows, 2, read),
-                   GONIO_ERROR_ARGUMENT, "of a basis of");
+                   GONIO_ERROR_ARGUMENT, "outside a basis of");
     assert_refused(gonio_reconstruct_material(f->context, f->joint, gold, rows, 2, NULL, &material),
-                   GONIO_ERROR_ARGUMENT, "of a basis of");
+                   GONIO_ERROR_ARGUMENT, "outside a basis of");
     assert_true(made == NULL && material == NULL && read[0] == -1.0);
     gonio_material_free(&gold);
 }
@@ -187,7 +187,7 @@ static void test_plans_of_other_bases(void **state)
     gonio_readings *readings = NULL;
     plan->entries[1].channel = GONIO_CHANNELS;
     assert_refused(gonio_readings_create_from_plan(f->context, plan, &readings),
-                   GONIO_ERROR_ARGUMENT, "channel 3 of 3");
+                   GONIO_ERROR_ARGUMENT, "channel 3 is outside 3");
     assert_null(readings);
     gonio_plan_free(&plan);
 }

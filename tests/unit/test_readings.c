@@ -250,7 +250,7 @@ static void test_what_arrays_may_not_hold(void **state)
          "-1 is not a wavelength"},
         {{size, 2, 2, two_pairs, planned, NULL, good, NULL},
          GONIO_ERROR_ARGUMENT,
-         "channel 2 of 2"},
+         "channel 2 is outside 2"},
         {{size, 2, 2, two_pairs, NULL, waves, dark, NULL},
          GONIO_ERROR_DATA,
          "500nm_per_sr '-2' is negative"},
@@ -467,7 +467,7 @@ static void test_columns_that_are_not_understood(void **state)
                                    "R_deviation_per_sr\n10,0,20,0,1,-2\n",
                                    NULL, &r),
                      GONIO_ERROR_DATA);
-    assert_non_null(strstr(support_message(), ":2: R_deviation_per_sr '-2' is no standard"));
+    assert_non_null(strstr(support_message(), ":2: R_deviation_per_sr '-2' is not a standard"));
     support_remove(folder);
     /* A column named like a value of its own is another column beside colours. */
     r = read_text("theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,value_per_sr,G_per_sr,"

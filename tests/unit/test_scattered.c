@@ -72,7 +72,7 @@ static void test_bad_files(void **state)
         {"2\n-400 500\n0.1 0.2 0.3 0.4 1 2\n", GONIO_ERROR_FORMAT, "-400 is not a wavelength"},
         {"2\n400 400\n0.1 0.2 0.3 0.4 1 2\n", GONIO_ERROR_FORMAT, "400 nm occurs twice"},
         {"2\n0.4 0.5\n0.1 0.2 0.3 0.4 1 2\n", GONIO_ERROR_FORMAT,
-         "a wavelength of 0.4 nm is no light; is it in um?"},
+         "a wavelength of 0.4 nm is not light; is it in um?"},
         {"0\n0.1 0.2 0.3 0.4\n", GONIO_ERROR_FORMAT, "0 wavelengths; 1 to 4096"},
         {"99999999999999999999\n400\n", GONIO_ERROR_FORMAT, "wavelengths; 1 to 4096"},
         {"4097\n400\n", GONIO_ERROR_FORMAT, "4097 wavelengths; 1 to 4096"},
@@ -80,8 +80,8 @@ static void test_bad_files(void **state)
         {"2\n400 500\n1.6 0.2 0.3 0.4 1 2\n", GONIO_ERROR_DATA,
          "none of the 1 rows is a reading above the horizon"},
         {"2\n400 500\n45 0.2 0.3 0.4 1 2\n", GONIO_ERROR_DATA,
-         ":3: theta_i = 45 is no such angle in radians; these look like degrees"},
-        {"2\n400 500\n0.1 50 0.3 0.4 1 2\n", GONIO_ERROR_DATA, ":3: phi_i = 50 is no such angle"},
+         ":3: theta_i = 45 is impossible in radians; these look like degrees"},
+        {"2\n400 500\n0.1 50 0.3 0.4 1 2\n", GONIO_ERROR_DATA, ":3: phi_i = 50 is impossible"},
     };
     assert_bad_files("bad.brdf", cases, sizeof cases / sizeof *cases);
 }

@@ -105,7 +105,7 @@ static gonio_status take_planned(const csv_source *s, size_t column, gonio_i_row
     row->planned = channel_of(s->readings, cell);
     return row->planned != NO_CHANNEL
                ? GONIO_OK
-               : bad_cell(s, column, GONIO_ERROR_FORMAT, "is no channel: R, G, B or all");
+               : bad_cell(s, column, GONIO_ERROR_FORMAT, "is not a channel: R, G, B or all");
 }
 
 static gonio_status take_value(const csv_source *s, size_t column, size_t channel)
@@ -138,7 +138,7 @@ static gonio_status take_wavelength(csv_source *s, size_t column)
     s->wavelength = number_of(s, column);
     return s->wavelength > 0.0 && isfinite(s->wavelength)
                ? GONIO_OK
-               : bad_cell(s, column, GONIO_ERROR_FORMAT, "is no wavelength");
+               : bad_cell(s, column, GONIO_ERROR_FORMAT, "is not a wavelength");
 }
 
 /* Takes a cell. Values come before deviations (csv_columns.h). */

@@ -32,8 +32,8 @@ static gonio_status agree(const finder *f, const char *what, const char *key, si
 {
     if (unit != 0 && *stated != 0 && unit != *stated) {
         return gonio_i_fail(f->r->context, GONIO_ERROR_FORMAT,
-                            "%s: the %s of columns '%s' and '%s' differ in their unit; give one, "
-                            "or say which by --as %s=...",
+                            "%s: the %s of columns '%s' and '%s' differ in their unit; give one "
+                            "unit, or state it by --as %s=...",
                             f->r->path, what, f->r->name[*by], f->r->name[k], key);
     }
     *by = unit != 0 ? k : *by;

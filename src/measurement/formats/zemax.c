@@ -57,8 +57,8 @@ static gonio_status read_count(gonio_i_numbers *n, const char *name, size_t *cou
     *count = number >= 1.0 && number <= MOST_ANGLES ? (size_t)number : 0;
     if (status == GONIO_OK && (*count == 0 || (double)*count != number || *count > room)) {
         return gonio_i_fail(n->context, GONIO_ERROR_FORMAT,
-                            "%s:%zu: %s %g: a number of angles from 1 to %d is expected, and the "
-                            "angles behind it",
+                            "%s:%zu: %s %g: a number of angles from 1 to %d is expected, "
+                            "followed by the angles",
                             n->path, n->line, name, number, MOST_ANGLES);
     }
     return status;
@@ -154,7 +154,7 @@ static gonio_status read_word(gonio_i_numbers *n, const char *word, grid *g)
             return g->planes == 0
                        ? read_axis(n, k, &g->axis[k])
                        : gonio_i_fail(n->context, GONIO_ERROR_FORMAT,
-                                      "%s:%zu: %s behind the values", n->path, n->line, word);
+                                      "%s:%zu: %s is after the values", n->path, n->line, word);
         }
     }
     if (strcasecmp(word, "ScatterType") == 0) {
