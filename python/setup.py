@@ -21,6 +21,10 @@ sys.path.insert(0, str(HERE))
 import bundle  # noqa: E402
 
 
+if not (ROOT / "include/gonio/status.h").exists():
+    raise SystemExit("the package is built in gonio's source tree: the C library is above its folder")
+
+
 def version():
     text = (ROOT / "include/gonio/status.h").read_text()
     return ".".join(re.search(rf"GONIO_VERSION_{part} (\d+)", text)[1] for part in ("MAJOR", "MINOR", "PATCH"))

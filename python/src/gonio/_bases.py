@@ -58,6 +58,13 @@ def learn(materials: Iterable[Any], *, grid: str = "sectored", channels: Optiona
     -------
     Basis
 
+    Raises
+    ------
+    ArgumentError
+        No materials, or more components than they span.
+    DataError
+        A material without data, two of the same name, materials that span too few dimensions.
+
     Source: ``gonio/basis.h`` (gonio_learn).
     """
     used = [as_material(m) for m in materials]
@@ -105,7 +112,10 @@ class Basis:
 
     @classmethod
     def load(cls, path: Path) -> "Basis":
-        """Reads a basis file, which is checked. The components stay in the file, which is mapped."""
+        """Reads a basis file, which is checked. The components stay in the file, which is mapped.
+
+        Raises FileError and FormatError.
+        """
         handle = _calls.made("basis", lib.gonio_basis_read, _calls.encoded(path))
         return cls._of(handle, os.path.abspath(os.fspath(path)))
 
@@ -229,6 +239,11 @@ class Basis:
         -------
         Plan
             In the order of reading by the default method: the first readings are a good plan too.
+
+        Raises
+        ------
+        ArgumentError
+            An unknown method or metric, more readings than there are rows, a method that needs another kind of basis.
 
         Source: ``gonio/plan.h`` (gonio_plan_create).
         """

@@ -98,6 +98,9 @@ class Material:
     illuminant : {"E", "D65", "A"}
         What the colours of spectra are seen under, in `to_numpy`, `albedo`, renderings and files of colours.
 
+    Raises FileError for a file that is missing or unreadable, FormatError for one that is damaged or no material,
+    ArgumentError for an unknown name and for wrong shapes, DataError for a table without data.
+
     Materials never change: copies are the same object, and threads may share them. Pickling keeps the path of a file,
     not its content; an array or function is pickled with the material.
 
@@ -226,6 +229,11 @@ class Material:
         ndarray, (..., channels)
             1/sr. NaN where the material has no data. From the source itself if it can evaluate, otherwise by trilinear
             interpolation of its table.
+
+        Raises
+        ------
+        ArgumentError
+            Shapes that do not broadcast, vectors that are not finite or have no length, directions below the horizon.
         """
         mode = below or ("zero" if cosine else "raise")
         if mode not in ("raise", "zero", "nan"):
@@ -310,6 +318,13 @@ class Material:
             One of `formats`; by default that of the path's extension, or a MERL table.
         theta_i_step, theta_o_step, phi_step : float
             Steps of directions on a grid (csv, zemax), radians; 0 for the format's usual ones.
+
+        Raises
+        ------
+        ArgumentError
+            No such format, or something that the format cannot hold.
+        FileError
+            The file cannot be written.
         """
         name = ffi.NULL if format is None else ffi.new("char[]", format.encode())
         how = _calls.options("write", format=name, theta_i_step=theta_i_step, theta_o_step=theta_o_step,

@@ -58,6 +58,9 @@ class Readings:
     negative_to_zero : bool
         Take values below zero as 0, rather than refuse them.
 
+    Raises ArgumentError for shapes that do not fit, DataError for values that are negative or infinite and for directions
+    that were read twice.
+
     They never change and can be pickled, without the comments of their file.
 
     Source: ``gonio/measurement.h``.
@@ -110,6 +113,13 @@ class Readings:
             False: a plan will do.
         average_repeats, negative_to_zero : bool
             As of `Readings`.
+
+        Raises
+        ------
+        FormatError, DataError
+            The message names the line.
+        FileError
+            The file is missing or unreadable.
         """
         how = _calls.options("readings", values_needed=values_needed, average_repeats=average_repeats,
                              negative_to_zero=negative_to_zero)

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import statistics
 import threading
-from typing import Any, Optional, Tuple, Union
+from typing import Any, Literal, Optional, Tuple, Union, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -55,6 +55,15 @@ def reconstruct(basis: Any, readings: Readings, *, noise: float = 0.01, floor: f
     Returns
     -------
     Reconstruction
+
+    Raises
+    ------
+    UndeterminedError
+        Fewer independent readings than components, by other methods than the posterior.
+    MismatchError
+        The readings were planned with another basis.
+    DataError
+        A planned channel was not read, or there are no values.
 
     Source: ``gonio/reconstruct.h`` (gonio_reconstruct).
     """
@@ -207,6 +216,12 @@ class Reconstruction:
         return f"<gonio.Reconstruction: {len(self.readings)} directions, {self.channels} channels{error}>"
 
     # -- values --
+
+    @overload
+    def predict(self, wi: npt.ArrayLike, wo: npt.ArrayLike, *, return_std: Literal[False] = False) -> Array: ...
+
+    @overload
+    def predict(self, wi: npt.ArrayLike, wo: npt.ArrayLike, *, return_std: Literal[True]) -> Tuple[Array, Array]: ...
 
     def predict(self, wi: npt.ArrayLike, wo: npt.ArrayLike, *, return_std: bool = False
                 ) -> Union[Array, Tuple[Array, Array]]:

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import inspect
-from typing import Any, Optional, Tuple, Union
+from typing import Any, Literal, Optional, Tuple, Union, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -123,6 +123,13 @@ class Regressor:
         Returns
         -------
         The regressor itself.
+
+        Raises
+        ------
+        ArgumentError
+            Shapes or types that do not fit, directions that are none or below the horizon.
+        DataError
+            Values that are negative or infinite, directions that were read twice, no value at all.
         """
         wi, wo = split(directions)
         readings = Readings(wi, wo, values, noise=noise, wavelengths=self.wavelengths,
@@ -149,6 +156,15 @@ class Regressor:
             raise NotFittedError("this Regressor was not fitted: call fit(directions, values) first")
         return self.reconstruction_
 
+    @overload
+    def predict(self, wi: Any, wo: Any = None, return_std: Literal[False] = False) -> Array: ...
+
+    @overload
+    def predict(self, wi: Any, wo: Any = None, *, return_std: Literal[True]) -> Tuple[Array, Array]: ...
+
+    @overload
+    def predict(self, wi: Any, wo: Any, return_std: Literal[True]) -> Tuple[Array, Array]: ...
+
     def predict(self, wi: Any, wo: Any = None, return_std: bool = False) -> Union[Array, Tuple[Array, Array]]:
         """The BRDF at any directions.
 
@@ -173,7 +189,7 @@ class Regressor:
             value, std = made.predict(light, viewer, return_std=True)
             return (value[..., 0], std[..., 0]) if single else (value, std)
         value = made.predict(light, viewer)
-        return value[..., 0] if single else value  # type: ignore[call-overload,no-any-return]
+        return value[..., 0] if single else value
 
     def interval(self, wi: Any, wo: Any = None, level: float = 0.95) -> Tuple[Array, Array]:
         """The interval that holds a value with probability `level`: low and high, 1/sr, as `Reconstruction.interval`."""

@@ -64,6 +64,15 @@ def render(material: Any, *, width: int = 512, height: int = 512, samples: int =
         Linear R, G, B (primaries of BT.709), multiplied by A, and A, the share of the pixel that shows something; top
         row first. A view of the library's memory.
 
+    Raises
+    ------
+    ArgumentError
+        Sizes, a lamp or a view that are none; a library that was built without the renderer.
+    DataError
+        A material without data, a mesh without extent, an environment that is black or has pixels without a value.
+    FileError, FormatError
+        Of the mesh and the environment.
+
     Source: ``gonio/render.h`` (gonio_render).
     """
     if lamp not in LAMPS:

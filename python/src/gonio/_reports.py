@@ -56,7 +56,12 @@ def report(material: Any, reconstruction: Any = None, *, readings: Optional[Read
     -------
     Report
 
-    Source: ``gonio/page.h`` (gonio_page_write). The library has it only if it was built with Node.js.
+    Raises
+    ------
+    FileError
+        The library was built without the page, for which Node.js is needed.
+
+    Source: ``gonio/page.h`` (gonio_page_write).
     """
     shown = reconstruction if reconstruction is not None else material
     if isinstance(shown, Reconstruction):
