@@ -1,4 +1,4 @@
-/* The paper's experiments on a database of one's own: see reproduce.h. */
+/* The paper's experiments on the user's database: see reproduce.h. */
 #include "reproduce.h"
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-/* The experiments of Ali et al. on a database of one's own, as figures, tables and a page that sets
- * them beside the paper's. */
+/* The experiments of Ali et al. on the user's database: figures, tables and a page that compares
+ * them with the paper's. */
 #ifndef GONIO_REPRODUCE_H
 #define GONIO_REPRODUCE_H
 
@@ -33,13 +33,13 @@ const char *gonio_experiment_name(int index);
  *   results.json    the same numbers for programs
  *   figures/        data, gnuplot script and pictures
  *   tables/         all raw numbers as CSV: per split, material, and cell of the grid
- *   run.json, pieces/  what is finished: a run that was stopped goes on there, to the same bytes
+ *   run.json, pieces/  finished work: a run that was stopped resumes there, to the same bytes
  * The results do not depend on the number of threads or processes. All processes of a group call
  * this with the same arguments and a folder that all see.
  *
- * Memory: about 4 MB a material, and 10 MB a thread; while a method of the full grid is compared
- * (fig3b, fig5, not in a quick run), 3 GB for 100 materials, since that is done one at a time, and
- * 1.3 GB of scratch space in $TMPDIR or /tmp.
+ * Memory: about 4 MB a material and 10 MB a thread. Methods of the full grid (fig3b, fig5, not in a
+ * quick run) are compared one at a time; they take 3 GB for 100 materials, and 1.3 GB of scratch
+ * space in $TMPDIR or /tmp.
  *
  * Errors: _ARGUMENT for an unknown experiment, fewer than 4 materials, or a folder that is not
  * empty; _DATA for materials that cannot be used, all of them named, and splits that do not fit;

@@ -18,9 +18,9 @@ extern "C" {
 
 typedef struct gonio_readings gonio_readings;
 
-/* ---- what the numbers of a file stand for ---- */
+/* ---- units and conventions of files ---- */
 
-/* Every choice is 0 for "as the file says, or as its format has it". */
+/* Every choice is 0 for "as the file or its format states". */
 enum { GONIO_AS_STATED = 0 };
 typedef enum gonio_angle_unit { GONIO_DEGREES = 1, GONIO_RADIANS } gonio_angle_unit;
 typedef enum gonio_value_kind {
@@ -31,8 +31,8 @@ typedef enum gonio_value_kind {
     GONIO_VALUE_FACTOR_COSINE /* pi f cos theta_o */
 } gonio_value_kind;
 typedef enum gonio_mirror_azimuth {
-    GONIO_MIRROR_180 = 1, /* phi_o = phi_i + 180 degrees is the mirror's side, as in gonio */
-    GONIO_MIRROR_0        /* phi_o = phi_i is */
+    GONIO_MIRROR_180 = 1, /* the mirror direction is at phi_o = phi_i + 180 degrees, as in gonio */
+    GONIO_MIRROR_0        /* the mirror direction is at phi_o = phi_i */
 } gonio_mirror_azimuth;
 typedef enum gonio_wavelength_unit {
     GONIO_NANOMETRES = 1,
@@ -40,11 +40,11 @@ typedef enum gonio_wavelength_unit {
     GONIO_METRES
 } gonio_wavelength_unit;
 typedef enum gonio_zero_meaning {
-    GONIO_ZEROS_MISSING = 1, /* 0 stands where nothing was measured */
+    GONIO_ZEROS_MISSING = 1, /* 0 means that nothing was measured */
     GONIO_ZEROS_DARK         /* 0 is a value */
 } gonio_zero_meaning;
 
-/* A convention; zero-initialised it changes nothing. */
+/* A convention. If it is zero-initialised, it changes nothing. */
 typedef struct gonio_convention {
     const char
         *format;     /* the word of a format (gonio_readings_format_word); NULL: judged by content
@@ -54,13 +54,13 @@ typedef struct gonio_convention {
     int mirror;      /* gonio_mirror_azimuth */
     int wavelengths; /* gonio_wavelength_unit */
     int zeros;       /* gonio_zero_meaning */
-    int sample;      /* of a file of several samples: the number of one; 0: the first */
+    int sample;      /* number of the sample in a file of several; 0: the first */
 } gonio_convention;
 
-/* A convention from text: "angles=radians,values=factor,mirror=0". Keys and words: angles=degrees,
- * radians; values=brdf, factor, percent, cosine, factor-cosine; mirror=180, 0; wavelengths=nm, um,
- * m; zeros=missing, dark; sample=NUMBER; format=WORD. What the text does not name stays as it is.
- * Errors: _ARGUMENT for a key or word that there is not; the message names those that there are. */
+/* Reads a convention from text: "angles=radians,values=factor,mirror=0". Keys and words:
+ * angles=degrees, radians; values=brdf, factor, percent, cosine, factor-cosine; mirror=180, 0;
+ * wavelengths=nm, um, m; zeros=missing, dark; sample=NUMBER; format=WORD. Fields that the text does
+ * not name stay. Errors: _ARGUMENT for an unknown key or word; the message lists the known ones. */
 GONIO_API gonio_status gonio_convention_parse(gonio_context *context, const char *text,
                                               gonio_convention *convention);
 
@@ -70,15 +70,14 @@ GONIO_API const char *gonio_readings_format_word(int index);
 
 typedef struct gonio_readings_options {
     size_t size;           /* of this struct, which gonio_readings_options_default sets */
-    bool values_needed;    /* of files: false: a plan will do */
+    bool values_needed;    /* of files; false: a plan without values is accepted */
     bool average_repeats;  /* a direction read more than once in the same channel: true to accept
                             * (least squares averages it), false to refuse */
     bool negative_to_zero; /* a reading below zero: true to take it as 0, false to refuse */
-    gonio_convention as;   /* of files: what their numbers stand for, where it is other than they
-                            * say */
+    gonio_convention as;   /* of files: units and conventions other than the stated ones */
 } gonio_readings_options;
 
-/* Values needed, repeats and negative readings refused. */
+/* Values are needed. Repeats and negative readings are refused. */
 GONIO_API void gonio_readings_options_default_of(gonio_readings_options *options, size_t size);
 static inline void gonio_readings_options_default(gonio_readings_options *options)
 {
@@ -87,13 +86,13 @@ static inline void gonio_readings_options_default(gonio_readings_options *option
 
 /* ---- from arrays ---- */
 
-/* What readings are made of; all arrays stay the caller's. */
+/* The arrays of readings. All of them stay the caller's. */
 typedef struct gonio_readings_arrays {
     size_t size;              /* sizeof(gonio_readings_arrays) */
     size_t count;             /* readings, at least 1 */
     size_t channels;          /* 3 without wavelengths: R, G, B; at least 1 */
     const gonio_pair *pair;   /* [count], radians: theta in [0, pi/2), phi in [-2 pi, 2 pi] */
-    const int *planned;       /* [count], the channel to be read there: 0 .. channels - 1, or
+    const int *planned;       /* [count], the planned channel: 0 .. channels - 1, or
                                * GONIO_ALL_CHANNELS; NULL: all */
     const double *wavelength; /* [channels], nm, 100 to 1e6, no two the same; NULL: colours or
                                * unnamed channels */
@@ -103,17 +102,16 @@ typedef struct gonio_readings_arrays {
 } gonio_readings_arrays;
 
 /* Makes readings from arrays. options may be NULL (values_needed does not count). Messages call
- * them "readings", and reading k its line k + 1. Errors: _ARGUMENT (no readings or channels, a
- * planned channel that there is not, wavelengths that are no light or the same twice); _DATA as of
- * files; _MEMORY. */
+ * them "readings" and reading k line k + 1. Errors: _ARGUMENT (no readings or channels, an unknown
+ * planned channel, impossible or equal wavelengths); _DATA as for files; _MEMORY. */
 GONIO_API gonio_status gonio_readings_create(gonio_context *context,
                                              const gonio_readings_arrays *arrays,
                                              const gonio_readings_options *options,
                                              gonio_readings **readings);
 
-/* The directions of a plan as readings of R, G, B without values; they state the plan's basis,
- * components and method as its file does. Repeats are accepted. Errors: _ARGUMENT for a plan
- * without entries; _MEMORY. */
+/* Makes readings of R, G, B without values at the directions of a plan. They state the plan's
+ * basis, components and method, as its file does. Repeats are accepted. Errors: _ARGUMENT for a
+ * plan without entries; _MEMORY. */
 GONIO_API gonio_status gonio_readings_create_from_plan(gonio_context *context,
                                                        const gonio_plan *plan,
                                                        gonio_readings **readings);
@@ -124,10 +122,11 @@ GONIO_API gonio_status gonio_readings_copy(gonio_context *context, const gonio_r
 
 GONIO_API void gonio_readings_free(gonio_readings **readings);
 
-/* ---- what is in them ---- */
+/* ---- contents ---- */
 
-/* Belongs to the readings, as do the pointers in it, and follows their changes: those to values,
- * deviations and wavelengths last until values or deviations are set. */
+/* What readings hold. The view and its pointers belong to the readings and follow their changes.
+ * The pointers to values, deviations and wavelengths are valid until values or deviations are set.
+ */
 typedef struct gonio_readings_view {
     size_t count;
     size_t channels;
@@ -137,13 +136,13 @@ typedef struct gonio_readings_view {
     const double *value;      /* [count][channels], 1/sr; NaN where nothing was read */
     const double *deviation; /* [count][channels], 1/sr, NaN where not known; NULL: none is known */
     const size_t *line;      /* [count], of the file, for messages */
-    const char *path;        /* where they were read from, for messages */
+    const char *path;        /* the file that they were read from, for messages */
     uint64_t basis;          /* fingerprint of the basis the plan was made for; 0: not stated */
     size_t components;       /* K of the plan; 0: not stated */
     const char *method;      /* of the plan; "": not stated */
-    size_t notes;            /* messages of the file's reader: */
+    size_t notes;            /* number of messages of the file's reader, */
     const char *const *note; /* [notes] */
-    size_t below_zero;       /* values of the file that were below zero and taken as 0 */
+    size_t below_zero;       /* number of values of the file below zero, which were taken as 0 */
 } gonio_readings_view;
 
 GONIO_API const gonio_readings_view *gonio_readings_describe(const gonio_readings *readings);
@@ -151,17 +150,17 @@ GONIO_API const gonio_readings_view *gonio_readings_describe(const gonio_reading
 /* Whether the channels are R, G, B: three without wavelengths. */
 GONIO_API bool gonio_readings_are_colours(const gonio_readings *readings);
 
-/* One value (NaN if it was not read or there is no such reading or channel), and the scale s of log
- * space of a channel: gonio_log_scale of a colour, 1/1500 1/sr of any other channel. */
+/* One value: NaN if it was not read, or if the reading or channel does not exist. And the scale s
+ * of a channel in log space: gonio_log_scale for a colour, 1/1500 1/sr for any other channel. */
 GONIO_API double gonio_readings_value(const gonio_readings *readings, size_t reading,
                                       size_t channel);
 GONIO_API double gonio_readings_scale(const gonio_readings *readings, size_t channel);
 
-/* ---- changing them ---- */
+/* ---- changes ---- */
 
 /* Replaces channels and all values: value[count][channels] as in gonio_readings_arrays, NULL for
- * nothing read; deviations are dropped. options may be NULL; only negative_to_zero counts. Errors:
- * as gonio_readings_create; the readings are as before then. */
+ * nothing read. Deviations are dropped. options may be NULL; only negative_to_zero counts. Errors:
+ * as gonio_readings_create; the readings then stay as they are. */
 GONIO_API gonio_status gonio_readings_set_values(gonio_context *context, gonio_readings *readings,
                                                  size_t channels, const double *wavelength,
                                                  const double *value,
@@ -183,19 +182,20 @@ GONIO_API gonio_status gonio_readings_set_deviations(gonio_context *context,
 /* Reads a file of any format that gonio knows. The format is recognised by content:
  *
  * CSV (docs/plan-and-readings.md): `#` comment lines, a line of column names in any order, then a
- * line a reading. theta_i_deg, phi_i_deg, theta_o_deg, phi_o_deg and at least one of R_per_sr,
- * G_per_sr, B_per_sr are needed, or columns named by wavelength (400nm_per_sr); channel (R, G, B or
- * all) says what the plan meant to read there. A plan is such a file without values. Commas,
- * semicolons or tabs, any line ends, UTF-8 or UTF-16, comments, empty lines are understood, and
- * other usual names and units; other columns and comments are kept and written again. A note says
- * what columns that are not named so were taken for, and which hold numbers and are not read.
+ * line for each reading. Needed are theta_i_deg, phi_i_deg, theta_o_deg, phi_o_deg and at least one
+ * of R_per_sr, G_per_sr, B_per_sr or a column named by wavelength (400nm_per_sr). The column
+ * channel (R, G, B or all) is the planned channel. A plan is such a file without values. Cells are
+ * separated by commas, semicolons or tabs. Any line ends, UTF-8 or UTF-16, empty lines, and other
+ * usual names and units are understood. Other columns and comments are kept and written again. A
+ * note says what columns with other names were taken for, and which columns of numbers are not
+ * read.
  *
- * Scattered readings as text, as Cornell's laboratory and pbrt have them: `#` comments, the number
- * of wavelengths, the wavelengths in nm, then for each reading theta_i, phi_i, theta_o, phi_o in
- * radians and a value in 1/sr for each wavelength, with line breaks anywhere.
+ * Scattered readings as text, in the format of Cornell's laboratory and pbrt: `#` comments, the
+ * number of wavelengths, the wavelengths in nm, then for each reading theta_i, phi_i, theta_o,
+ * phi_o in radians and a value in 1/sr for each wavelength, with line breaks anywhere.
  *
- * Angles: theta in (-90, 90) degrees, below zero with 180 degrees added to phi; rows at or below
- * the horizon are left out, and a note counts them. phi is any number. options may be NULL.
+ * theta is in (-90, 90) degrees; if it is below zero, 180 degrees are added to phi. phi is any
+ * number. Rows at or below the horizon are left out, and a note counts them. options may be NULL.
  * *readings is the caller's. Errors: _IO, _FORMAT (not such a file, missing columns, not a number),
  * _DATA (angles out of range, repeats, negative or non-finite values, no readings); the message
  * names the line. */
@@ -203,43 +203,42 @@ GONIO_API gonio_status gonio_readings_read(gonio_context *context, const char *p
                                            const gonio_readings_options *options,
                                            gonio_readings **readings);
 
-/* Writes readings: as BRDF JSON if the path ends in .json or .brdf, otherwise as CSV, with the
- * other columns of the CSV file that they came from; and with the comments of their file. JSON
- * keeps every digit, CSV 10 of values. command may be NULL. Whole or not at all. Errors: _IO,
- * _MEMORY. */
+/* Writes readings with the comments of their file: as BRDF JSON if the path ends in .json or .brdf,
+ * otherwise as CSV, with the other columns of the CSV file that they came from. JSON keeps every
+ * digit, CSV 10 digits of values. command may be NULL. The file appears whole or not at all.
+ * Errors: _IO, _MEMORY. */
 GONIO_API gonio_status gonio_readings_write(gonio_context *context, const gonio_readings *readings,
                                             const char *command, const char *path);
 
-/* ---- readings of other readings ---- */
+/* ---- two sets of readings ---- */
 
-/* Which readings have the directions of one in `others`: same[count]. Errors: _MEMORY. */
+/* Finds the readings whose directions occur in `others`: same[count]. Errors: _MEMORY. */
 GONIO_API gonio_status gonio_readings_find(gonio_context *context, const gonio_readings *readings,
                                            const gonio_readings *others, bool *same);
 
-/* Takes the values of a plan's directions from readings of the same material at more directions: of
- * the nearest reading that is at the same directions to 1e-4 radians; if there is none, of one at
- * the same directions turned about the normal; or else of one at the reciprocal directions. What
- * was read more than once there is averaged, with a note. Errors: _DATA if nothing was read at a
- * direction; _MEMORY. */
+/* Looks up the values of a plan's directions in readings of the same material at more directions. A
+ * direction gets the nearest reading within 1e-4 radians. If there is none, it gets one whose
+ * directions are rotated about the normal, otherwise one at the reciprocal directions. Repeats are
+ * averaged, with a note. Errors: _DATA if a direction was not read; _MEMORY. */
 GONIO_API gonio_status gonio_readings_look_up(gonio_context *context, gonio_readings *plan,
                                               const gonio_readings *known);
 
-/* Replaces what was read more than once, at the same angles and in the same channel, by its mean in
- * each of these readings, with a note. Errors: _MEMORY. */
+/* Replaces each value that was read more than once, at the same angles and in the same channel, by
+ * the mean of these values, with a note. Errors: _MEMORY. */
 GONIO_API gonio_status gonio_readings_average_repeats(gonio_context *context,
                                                       gonio_readings *readings);
 
-/* Drops channels in which nothing was read, with a note that names them. Of R, G, B those that stay
- * become channels without wavelengths: one of them is grey in a table. Readings without any value
- * stay as they are. Errors: _MEMORY. */
+/* Drops channels in which nothing was read, with a note that names them. If some of R, G, B are
+ * dropped, the others become channels without wavelengths; a single one is grey in a table.
+ * Readings without any value stay as they are. Errors: _MEMORY. */
 GONIO_API gonio_status gonio_readings_drop_empty_channels(gonio_context *context,
                                                           gonio_readings *readings);
 
-/* Brings two readings into channels that can be compared. Spectra: b at the wavelengths of a,
- * linear between its own, NaN beyond them. If they are of different kinds, both as colours: spectra
- * under equal energy, a single channel as grey. Deviations are dropped where values change. Errors:
- * _MISMATCH (no wavelength in common; several channels that are neither colours nor wavelengths),
- * _MEMORY. */
+/* Converts two sets of readings to common channels. If both are spectra, b is interpolated at the
+ * wavelengths of a, with NaN outside its range. If they are of different kinds, both become
+ * colours: spectra under equal energy, a single channel as grey. Deviations are dropped where
+ * values change. Errors: _MISMATCH (no common range of wavelengths; several channels that are
+ * neither colours nor wavelengths), _MEMORY. */
 GONIO_API gonio_status gonio_readings_share_channels(gonio_context *context, gonio_readings *a,
                                                      gonio_readings *b);
 
@@ -254,26 +253,26 @@ typedef struct gonio_instrument_options {
                       * small */
 } gonio_instrument_options;
 
-/* No noise. */
+/* The default has no noise. */
 GONIO_API void gonio_instrument_options_default_of(gonio_instrument_options *options, size_t size);
 static inline void gonio_instrument_options_default(gonio_instrument_options *options)
 {
     gonio_instrument_options_default_of(options, sizeof *options);
 }
 
-/* The simulated instrument: reads a known material at the directions of `readings` (a plan). R, G,
- * B become rho (1 + noise z) + floor z', clamped at 0, where z and z' are standard normal and
- * independent. A direction that occurs several times is read once. Where the material has no data
- * around a direction, nothing is read (NaN), and a note says how often. options may be NULL.
- * Errors: _DATA if it has data around none of the directions; _ARGUMENT for negative noise. */
+/* Reads a known material at the directions of `readings` (a plan). R, G, B become rho (1 + noise z)
+ * + floor z', clamped at 0, where z and z' are standard normal and independent. A direction that
+ * occurs several times is read once. If the material has no data around a direction, nothing is
+ * read (NaN); a note counts these directions. options may be NULL. Errors: _DATA if there are no
+ * data around any of the directions; _ARGUMENT for negative noise. */
 GONIO_API gonio_status gonio_measure(gonio_context *context, gonio_readings *readings,
                                      const gonio_table *table,
                                      const gonio_instrument_options *options);
 
 /* The same for any material. A material that can be evaluated at any directions is read in its own
- * channels, which become those of the readings; a channel without data at a direction is not read.
- * Otherwise, and if the plan names colours that the material lacks, its table is read. Errors: as
- * above, those of the material. */
+ * channels, which become those of the readings. A channel without data at a direction is not read.
+ * Other materials are read from their table, and so is a material without the colours that the plan
+ * names. Errors: as gonio_measure, those of the material. */
 GONIO_API gonio_status gonio_measure_material(gonio_context *context, gonio_readings *readings,
                                               const gonio_material *material,
                                               const gonio_instrument_options *options);

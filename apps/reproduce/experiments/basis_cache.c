@@ -17,7 +17,7 @@ static bool is_matrix(const gonio_database *database, const gonio_database_optio
            view->mapping == how->mapping;
 }
 
-/* Whether the basis in the cache, which is of its matrix, was learned in that way. */
+/* Whether the basis in the cache was learned with these options. */
 static bool is_basis(const gonio_i_basis_cache *cache, const gonio_basis_options *options)
 {
     if (cache->basis == NULL) {

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- reading one, and what is wrong with it ---- */
+/* ---- reading a material and its faults ---- */
 
 typedef struct candidate {
     gonio_i_digest *digest;
@@ -32,7 +32,7 @@ static gonio_status open_and_digest(gonio_context *context, const char *path, ca
     return status;
 }
 
-/* A material that cannot be used is no failure yet. */
+/* Reads a material. One that cannot be used is not an error here. */
 static gonio_status read_candidate(const char *path, candidate *c)
 {
     const gonio_context_options options = {
@@ -75,7 +75,7 @@ static gonio_status read_candidates(gonio_context *context, const char *const *p
     return result;
 }
 
-/* ---- which can be used ---- */
+/* ---- refusing materials ---- */
 
 static void find_twin(const char *const *paths, candidate *candidates, size_t index)
 {
@@ -100,7 +100,7 @@ static size_t count_faults(const candidate *candidates, size_t count)
     return faults;
 }
 
-/* All of them in one message. */
+/* Refuses the materials with faults, all in one message. */
 static gonio_status refuse(gonio_context *context, const candidate *candidates, size_t count,
                            size_t faults)
 {
@@ -145,7 +145,7 @@ static gonio_status judge(gonio_context *context, const char *const *paths, size
 
 /* ---- the collection ---- */
 
-/* Moves those without fault into the collection. */
+/* Moves the materials without faults into the collection. */
 static gonio_status take(gonio_context *context, const char *const *paths, size_t count,
                          candidate *candidates, gonio_i_collection *c)
 {

@@ -132,7 +132,9 @@ static gonio_status record_start(gonio_context *context, const gonio_basis *basi
     return GONIO_OK;
 }
 
-/* Each start is a plan of its own, since of several a plan keeps the rows of the best. */
+/* Each start is a plan of its own, because a plan of several starts keeps the rows of the best
+ * only.
+ */
 gonio_status gonio_i_compute_convergence(const gonio_i_study *study, gonio_context *context,
                                          const gonio_i_piece *p, json_t *result)
 {
@@ -266,7 +268,7 @@ gonio_status gonio_i_compute_method(const gonio_i_study *study, gonio_context *c
 
 /* ---- Fig. 5 ---- */
 
-/* One chosen size, and with the last of them all samples too. */
+/* Tests one chosen size; with the last one, all samples too. */
 static gonio_status test_size(gonio_context *context, const gonio_i_study *study,
                               const size_t *others, size_t material, size_t chosen,
                               double *condition, gonio_error *errors)
@@ -327,7 +329,7 @@ gonio_status gonio_i_compute_left_out(const gonio_i_study *study, gonio_context 
     return status;
 }
 
-/* The method that the paper quotes beside its own. */
+/* Computes the errors of the method that the paper compares with. */
 gonio_status gonio_i_compute_quoted(const gonio_i_study *study, gonio_context *context,
                                     const gonio_i_piece *p, json_t *result)
 {

@@ -1,4 +1,4 @@
-/* The computation of each kind of piece: the numbers of the experiments. */
+/* The computations of the experiments, for each kind of piece (checkpoint.h). */
 #ifndef GONIO_REPRODUCE_COMPUTATIONS_H
 #define GONIO_REPRODUCE_COMPUTATIONS_H
 

@@ -15,9 +15,9 @@ typedef struct plan_of_work {
     gonio_i_piece *pieces; /* [count] */
 } plan_of_work;
 
-/* ---- costs: seconds, roughly ---- */
+/* ---- costs, roughly in seconds ---- */
 
-/* A plan's, as measured for K = 5 .. 60 and L = 10 .. 200. */
+/* The cost of a plan, as measured for K = 5 .. 60 and L = 10 .. 200. */
 static double plan_cost(size_t components, size_t samples)
 {
     const double k = (double)components;
@@ -319,8 +319,8 @@ void gonio_i_results_free(gonio_i_results *results)
     *results = (gonio_i_results){0};
 }
 
-/* [split][index] of one kind, from the flat list in the order of the pieces; [index] where there
- * are no splits, and one result where there is one. */
+/* Nests the results of one kind, a flat list in the order of the pieces: [split][index]. Without
+ * splits it is [index]; a single result is not in an array. */
 static json_t *nest(const gonio_i_study *study, int k, json_t **flat)
 {
     const size_t indices = indices_of(study, k);

@@ -5,15 +5,15 @@
 #include "../run/checkpoint.h"
 #include "setup.h"
 
-/* What the errors of a left-out material are of. */
+/* The series of errors of a left-out material. */
 enum {
     GONIO_I_ALL_SAMPLES = GONIO_I_CHOSEN, /* after the chosen sizes */
     GONIO_I_BIVARIATE_ITSELF,
     GONIO_I_LEFT_OUT_SERIES
 };
 
-/* The results, as the pieces leave them; NULL for experiments that are not wanted. Errors are
- * arrays [E6, cube root, log-relative]; what is not finite is null. */
+/* The results of the pieces; NULL for experiments that are not run. Errors are arrays [E6, cube
+ * root, log-relative]. Numbers that are not finite are null. */
 typedef struct gonio_i_results {
     /* {"all": [variances], "splits": [[variances], ...]} */
     json_t *spectrum;
@@ -35,7 +35,7 @@ typedef struct gonio_i_results {
     json_t *lit;
 } gonio_i_results;
 
-/* Runs the pieces that are missing, all experiments in one go. The results are to be freed in any
+/* Runs the missing pieces of all experiments together. The results are to be freed in any
  * case. Errors: those of gonio_i_checkpoint_run. */
 gonio_status gonio_i_run_experiments(gonio_context *context, const gonio_i_study *study,
                                      const gonio_i_checkpoint *checkpoint,

@@ -4,7 +4,7 @@
 
 #include "methods.h"
 
-/* A basis of some materials, and others to test it on. */
+/* A basis of some materials, and other materials to test it on. */
 typedef struct gonio_i_trial {
     const gonio_i_collection *collection;
     const size_t *test; /* [tests] materials */
@@ -29,24 +29,26 @@ gonio_status gonio_i_trial_rows(gonio_context *context, const gonio_i_trial *tri
 gonio_status gonio_i_trial_all_rows(gonio_context *context, const gonio_i_trial *trial,
                                     gonio_error *errors);
 
-/* Plans and then the above; `condition` is the plan's condition number. */
+/* Plans, then reconstructs as gonio_i_trial_rows. `condition`: the plan's condition number. */
 gonio_status gonio_i_trial_plan(gonio_context *context, const gonio_i_trial *trial,
                                 const char *method, size_t samples, uint64_t seed,
                                 double *condition, gonio_error *errors);
 
-/* errors[split->test_count] of a method on a split; by tables for all but the paper's basis. */
+/* errors[split->test_count] of a method on a split, by whole tables unless the basis is the
+ * paper's.
+ */
 gonio_status gonio_i_trial_method(gonio_context *context, const gonio_i_collection *collection,
                                   const gonio_i_method_entry *method, gonio_i_size size,
                                   const gonio_i_split *split, uint64_t seed, double *condition,
                                   gonio_error *errors);
 
-/* Who looks at a test material and what a method made of it; an error ends the trial. */
+/* A callback that gets each test material and its reconstruction. An error ends the trial. */
 typedef struct gonio_i_viewer {
     gonio_status (*show)(void *user, const gonio_material *original, const gonio_material *made);
     void *user;
 } gonio_i_viewer;
 
-/* gonio_i_trial_tables of which every material is shown. */
+/* gonio_i_trial_tables with a callback for each material. */
 gonio_status gonio_i_trial_seen(gonio_context *context, const gonio_i_collection *collection,
                                 const gonio_i_method_entry *method, gonio_i_size size,
                                 const gonio_i_split *split, uint64_t seed,

@@ -13,7 +13,7 @@ typedef struct trial {
     const gonio_i_viewer *viewer; /* NULL for none */
 } trial;
 
-/* ---- a material that was read, to be looked at more than once ---- */
+/* ---- a material in memory ---- */
 
 static gonio_status read_table(void *self, gonio_context *context, int theta_h, double *rho)
 {
@@ -52,7 +52,8 @@ static gonio_status load(gonio_context *context, const char *path, gonio_materia
 
 /* ---- one material ---- */
 
-/* From noise-free readings of the plan's rows, all of which are cells where it has data. */
+/* Reconstructs a material from noise-free readings of the plan's rows. It has data in all of them.
+ */
 static gonio_status reconstruct(const trial *t, const gonio_material *material,
                                 gonio_reconstruction **made)
 {
@@ -110,7 +111,7 @@ static gonio_status test_material(const trial *t, const char *path, gonio_error 
 
 /* ---- all of a trial ---- */
 
-/* From the materials of the split alone, in the method's representation. */
+/* Learns from the materials of the split, in the method's representation. */
 static gonio_status learn(gonio_context *context, const gonio_i_collection *collection,
                           const gonio_i_method_entry *method, gonio_i_size size,
                           const gonio_i_split *split, const gonio_basis **basis)

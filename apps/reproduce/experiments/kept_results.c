@@ -1,4 +1,4 @@
-/* Whether a result that was kept in a file is one of its kind: see kept_results.h. */
+/* Checks of results that were read from files: see kept_results.h. */
 #include "kept_results.h"
 
 #include <math.h>
@@ -9,7 +9,7 @@ enum { ANY_LENGTH = 0, PIXEL_DIGITS = 32 };
 
 /* ---- one value ---- */
 
-/* What a value may be. `limit` has a meaning of its own for each. */
+/* A check of a value. The meaning of `limit` depends on the check. */
 typedef bool fits(const json_t *value, size_t limit);
 
 static bool is_number(const json_t *value, size_t limit)
@@ -18,7 +18,7 @@ static bool is_number(const json_t *value, size_t limit)
     return json_is_number(value);
 }
 
-/* null stands for what is not finite. */
+/* null is a number that is not finite. */
 static bool is_number_or_null(const json_t *value, size_t limit)
 {
     return json_is_null(value) || is_number(value, limit);

@@ -1,12 +1,12 @@
-/* Whether a result that was kept in a file is one of its kind. A file with a right checksum may
- * still say anything, as may the folder that somebody else hands over. */
+/* Checks of results that were read from files. A file with a right checksum may still have any
+ * content, because the folder may come from somebody else. */
 #ifndef GONIO_REPRODUCE_KEPT_RESULTS_H
 #define GONIO_REPRODUCE_KEPT_RESULTS_H
 
 #include "computations.h"
 
-/* True for a result as the computation of the same name leaves it, every number in its range;
- * otherwise writes what is wrong to complaint [GONIO_I_COMPLAINT]. */
+/* True if a result has the form that the computation of the same name makes, with every number in
+ * its range. Otherwise complaint [GONIO_I_COMPLAINT] says what is wrong. */
 typedef bool gonio_i_accept(const gonio_i_study *study, const gonio_i_piece *p,
                             const json_t *result, char *complaint);
 
@@ -18,7 +18,7 @@ gonio_i_accept gonio_i_accept_method;
 gonio_i_accept gonio_i_accept_left_out;
 gonio_i_accept gonio_i_accept_quoted;
 
-/* The same of a rendering, whose images have `side` pixels each way. */
+/* The same for a rendering, whose images have side x side pixels. */
 bool gonio_i_accept_images(const json_t *result, int side, char *complaint);
 
 #endif

@@ -6,12 +6,12 @@
     .representation = GONIO_BIVARIATE, .channels = GONIO_JOINT, .mapping = GONIO_LOG,              \
     .plan = (plan_method), .chosen = (index)
 
-/* That of Nielsen et al., with directions of which every channel is read. */
+/* The representation of Nielsen et al.; every channel of a direction is read. */
 #define RELATIVE(plan_method, count)                                                               \
     .representation = GONIO_FULL, .channels = GONIO_SEPARATE, .mapping = GONIO_LOG_RELATIVE,       \
     .plan = (plan_method), .chosen = GONIO_I_OWN_SIZE, .size = {count, count}
 
-/* Those of the full grid last. */
+/* The methods. Those of the full grid are last. */
 static const gonio_i_method_entry methods[] = {
     {.name = "condition-80", .label = "condition number", PAPER("condition", 0)},
     {.name = "condition-120", .label = "condition number", PAPER("condition", 1)},
@@ -48,14 +48,14 @@ const gonio_i_method_entry *gonio_i_method_at(size_t index)
     return &methods[index];
 }
 
-/* As many components as so many materials surely have. (Separate channels are columns of their own,
- * but those of grey materials are copies of each other.) */
+/* The number of components that a basis of this many materials has at least. Separate channels are
+ * columns of their own, but those of grey materials are copies of each other. */
 static size_t most_components(const gonio_i_method_entry *method, size_t materials)
 {
     return method->without_mean ? materials : materials - 1;
 }
 
-/* The size of its own for a basis of so many materials. */
+/* The method's own size for a basis of this many materials. */
 static gonio_i_size own_size(const gonio_i_method_entry *method, size_t materials)
 {
     gonio_i_size size = method->size;

@@ -9,26 +9,25 @@ enum { GONIO_I_OWN_SIZE = -1 };
 typedef struct gonio_i_method_entry {
     const char *name;  /* for files and programs */
     const char *label; /* for people */
-    /* What it learns from, and how. */
+    /* The basis that it learns. */
     gonio_representation representation;
     gonio_channel_model channels;
     gonio_mapping mapping;
     int chosen; /* the size is the study's chosen[]; or GONIO_I_OWN_SIZE */
     bool without_mean;
-    bool quoted;       /* its errors for single materials are quoted by the paper; for one method */
-    const char *plan;  /* gonio_plan_method_name; reconstructed by what belongs to it */
+    bool quoted;       /* the paper quotes its errors for single materials; one method only */
+    const char *plan;  /* gonio_plan_method_name; the reconstruction follows from it */
     gonio_i_size size; /* then; 0 components: as many as materials */
 } gonio_i_method_entry;
 
-/* How many of them a study compares: a quick one none that learns on the full grid. */
+/* The number of methods that a study compares: a quick one has none of the full grid. */
 size_t gonio_i_methods(const gonio_i_study *study);
 const gonio_i_method_entry *gonio_i_method_at(size_t index);
 
-/* K and L of a method, no more than the materials of a split allow. */
+/* K and L of a method, at most what the materials of a split allow. */
 gonio_i_size gonio_i_method_size(const gonio_i_study *study, const gonio_i_method_entry *method);
 
-/* The method that the paper quotes beside its own, and its size for a basis of so many materials.
- */
+/* The method that the paper compares with, and its size for a basis of this many materials. */
 const gonio_i_method_entry *gonio_i_quoted_method(void);
 gonio_i_size gonio_i_quoted_size(size_t materials);
 

@@ -22,19 +22,19 @@ enum {
 
 /* ---- which pictures ---- */
 
-/* The paper's materials; where it says only "a plastic", "rubber", "maple", one of them. */
+/* The paper's materials. Where it says only "a plastic", "rubber" or "maple", one of these. */
 static const char *const fig6_materials[] = {"gold-paint",  "red-plastic", "yellow-phenolic",
                                              "red-fabric",  "blue-rubber", "colonial-maple-223",
                                              "green-latex", "pink-fabric", NULL};
 static const char *const fig7_materials[] = {"red-metallic-paint", "green-acrylic", "blue-rubber",
                                              NULL};
 
-/* Columns but the first, by the names of methods.c. */
+/* The columns after the first, by the names in methods.c. */
 static const char *const fig6_methods[] = {"condition-170", "condition-120", "condition-80",
                                            "random-80",     "matusik-800",   NULL};
 static const char *const fig7_methods[] = {"condition-80", NULL};
 
-/* NULL: the lamp. Each material under each. */
+/* The lights of each material. NULL: the lamp. */
 static const char *const fig6_lights[] = {NULL};
 static const char *const fig7_lights[] = {"studio", "sky"};
 
@@ -58,7 +58,7 @@ static size_t find_methods(const gonio_i_study *study, const char *const *names,
     return count;
 }
 
-/* Other databases have other names: their first materials stand in. */
+/* Finds the materials. A database with other names gets its first materials. */
 static size_t find_materials(const gonio_i_study *study, const char *const *names, size_t *material)
 {
     size_t count = 0;
@@ -118,7 +118,7 @@ double gonio_i_rendering_cost(const gonio_i_study *study, gonio_i_experiment exp
     return l.method[index % l.columns]->representation == GONIO_FULL ? 130.0 : 3.0;
 }
 
-/* Of the pictures, in pixels. */
+/* The side of the renderings, pixels. */
 static int side_of(const gonio_i_study *study)
 {
     return study->quick ? QUICK_SIDE : SIDE;
@@ -185,7 +185,7 @@ static gonio_status keep(const showing *s, const gonio_reference *reference,
     return status;
 }
 
-/* Renders a material and what was made of it. */
+/* Renders a material and its reconstruction. */
 static gonio_status show(void *user, const gonio_material *original, const gonio_material *made)
 {
     const showing *s = user;

@@ -1,5 +1,5 @@
-/* Fig. 6 and Fig. 7: renderings of materials beside what is made of them from few readings, each
- * from a basis of all others. */
+/* Fig. 6 and Fig. 7: renderings of materials and of their reconstructions from few readings, each
+ * with a basis of all other materials. */
 #ifndef GONIO_REPRODUCE_RENDERINGS_H
 #define GONIO_REPRODUCE_RENDERINGS_H
 
@@ -7,8 +7,8 @@
 
 #include "computations.h"
 
-/* The pieces of an experiment (GONIO_I_RENDERED or GONIO_I_LIT): one for each row and column of its
- * picture but the first. */
+/* The number of pieces of an experiment (GONIO_I_RENDERED or GONIO_I_LIT): one for each row and
+ * each column after the first of its picture. */
 size_t gonio_i_renderings(const gonio_i_study *study, gonio_i_experiment experiment);
 char *gonio_i_rendering_name(const gonio_i_study *study, gonio_i_experiment experiment,
                              size_t index);
@@ -20,12 +20,12 @@ double gonio_i_rendering_cost(const gonio_i_study *study, gonio_i_experiment exp
 gonio_status gonio_i_compute_rendering(const gonio_i_study *study, gonio_context *context,
                                        gonio_i_experiment experiment, size_t index, json_t *result);
 
-/* Whether a result that was kept is such a one; see kept_results.h. */
+/* Checks a result that was read from a file; see kept_results.h. */
 bool gonio_i_accept_rendering(const gonio_i_study *study, const gonio_i_piece *p,
                               const json_t *result, char *complaint);
 
-/* The picture fig6.png or fig7.png in a folder; a library without the renderer draws none. `pieces`
- * is the array of results. */
+/* Draws fig6.png or fig7.png in a folder; a library without the renderer draws none. `pieces`: the
+ * array of results. */
 gonio_status gonio_i_draw_renderings(gonio_context *context, const gonio_i_study *study,
                                      gonio_i_experiment experiment, const json_t *pieces,
                                      const char *folder);

@@ -30,7 +30,7 @@ void gonio_reproduce_options_default(gonio_reproduce_options *options)
 
 /* ---- which experiments ---- */
 
-/* Whether this library can: pictures need the renderer. */
+/* Whether this library can run an experiment: pictures need the renderer. */
 static bool can_run(int experiment)
 {
 #ifdef GONIO_WITHOUT_RENDER
@@ -125,7 +125,7 @@ static void choose_sizes(gonio_i_study *study)
     choose_grid(study, most);
 }
 
-/* What the paper says of a material; -1 if nothing. */
+/* The index of the paper's quote on a material; -1 if there is none. */
 static int find_quote(const char *name)
 {
     for (int q = 0; q < GONIO_I_QUOTED; q++) {
@@ -136,7 +136,8 @@ static int find_quote(const char *name)
     return -1;
 }
 
-/* All; of a quick run, some that are spread over all and those that the paper quotes. */
+/* Chooses the left-out materials: all, or in a quick run some evenly spaced ones and those that the
+ * paper quotes. */
 static gonio_status choose_left_out(gonio_context *context, gonio_i_study *study)
 {
     const size_t count = study->collection.count;

@@ -23,9 +23,9 @@ typedef struct gonio_i_size {
 } gonio_i_size;
 
 enum {
-    GONIO_I_CHOSEN = 3,        /* sizes that the paper settles on */
+    GONIO_I_CHOSEN = 3,        /* sizes that the paper chooses */
     GONIO_I_MOST_GRID = 32,    /* lines of the grid, either way */
-    GONIO_I_STARTS = 5,        /* of plans that are shown; those of the errors have one */
+    GONIO_I_STARTS = 5,        /* of plans that are shown; plans for errors have one */
     GONIO_I_QUOTED = 4,        /* materials whose errors the paper quotes */
     GONIO_I_QUICK_SPLITS = 2,  /* of a quick run */
     GONIO_I_QUICK_LEFT_OUT = 4 /* the same, besides the quoted materials */
@@ -49,7 +49,7 @@ typedef struct gonio_i_study {
         size_t material;
         size_t left_out;      /* the same, in left_out */
         int quote;            /* in gonio_i_quoted_materials */
-    } quoted[GONIO_I_QUOTED]; /* left out for the quoted method too, which a quick run does not */
+    } quoted[GONIO_I_QUOTED]; /* left out for the quoted method too; none in a quick run */
 } gonio_i_study;
 
 /* The sizes of the paper, and what it quotes: a material, its E6 by Matusik et al. with 800 samples

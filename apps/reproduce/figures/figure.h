@@ -1,15 +1,15 @@
-/* Figures by gnuplot. Each is FOLDER/NAME.csv, the data with a line of column names and units, and
- * NAME.gp, a script that `gnuplot NAME.gp`, run in that folder, turns into NAME.svg, .pdf and .png,
- * and that people may restyle. All appear whole or not at all; the same data give the same bytes.
+/* Figures by gnuplot. A figure is FOLDER/NAME.csv, the data with a line of column names and units,
+ * and a script NAME.gp. `gnuplot NAME.gp` in that folder makes NAME.svg, .pdf and .png; people may
+ * edit the script. All files appear whole or not at all. The same data give the same bytes.
  *
- * Text (names, titles, units) is UTF-8 and may hold anything: it is shown as it is, but for control
- * characters, bytes that are not UTF-8 and straight quotes, which become typographic. Numbers that
- * are not finite are missing values. Colours are those of Okabe and Ito (2008), which the
- * colour-blind tell apart; markers and dashes differ too.
+ * Text (names, titles, units) is UTF-8 with any content. It is shown as it is, except for control
+ * characters, bytes that are not UTF-8, and straight quotes, which become typographic ones. Numbers
+ * that are not finite are missing values. Colours are those of Okabe and Ito (2008), which
+ * colour-blind people can distinguish; markers and dashes differ too.
  *
  * Errors of all: _ARGUMENT for a file name with other characters than letters, digits, '-' and '_',
  * or nothing to show; _DATA for values that a logarithmic axis cannot show; _IO, also if gnuplot
- * fails, with its message; _MEMORY. Where there is no gnuplot, a note says how to draw later. */
+ * fails, with its message; _MEMORY. Without gnuplot, a note says how to draw later. */
 #ifndef GONIO_REPRODUCE_FIGURE_H
 #define GONIO_REPRODUCE_FIGURE_H
 
@@ -17,10 +17,10 @@
 
 #include "core/core.h"
 
-/* Where figures go. */
+/* The folder of figures. */
 typedef struct gonio_i_figures {
-    const char *folder; /* made if it is not there; its parent must be */
-    bool undrawn;       /* set where there is no gnuplot: data and scripts only */
+    const char *folder; /* created if necessary; its parent must exist */
+    bool undrawn;       /* set if there is no gnuplot: only data and scripts are written */
 } gonio_i_figures;
 
 typedef struct gonio_i_axis {
@@ -43,7 +43,7 @@ typedef struct gonio_i_curve {
     size_t count;
     const double *x, *y;      /* [count] */
     const double *low, *high; /* [count]; the interval of each point, or NULL */
-    bool faint;               /* thin and grey: one of many that are not told apart */
+    bool faint;               /* thin and grey: one of many similar curves */
 } gonio_i_curve;
 
 typedef struct gonio_i_curves {

@@ -1,4 +1,4 @@
-/* A figure in the making: see figure_writer.h. */
+/* Writing a figure: see figure_writer.h. */
 #include "figure_writer.h"
 
 #include <ctype.h>
@@ -35,9 +35,9 @@ static char *tidy(const char *text)
     return copy;
 }
 
-/* In single quotes gnuplot looks for nothing but a quote: no commands in `backquotes`, no escapes.
- * Its own way to write a quote in there fails at the beginning, so that a typographic one stands
- * for it. */
+/* Puts text in single quotes, in which gnuplot interprets only a quote: no commands in
+ * `backquotes`, no escapes. gnuplot's own way to write a quote fails at the beginning of a text, so
+ * a typographic quote replaces it. */
 static void put_literal(FILE *script, const char *text, bool is_format)
 {
     fputc('\'', script);
@@ -91,7 +91,7 @@ void gonio_i_put_cell(FILE *data, const char *text)
     free(line);
 }
 
-/* In as few digits as read back exactly. */
+/* Prints a number in the fewest digits that read back exactly. */
 void gonio_i_put_number(FILE *data, double value)
 {
     char text[32];
@@ -226,7 +226,7 @@ static void release(gonio_i_figure_output *output)
     *output = (gonio_i_figure_output){0};
 }
 
-/* Whether all that was put into the texts is there. */
+/* Closes the texts. Returns whether they are complete. */
 static bool close_texts(gonio_i_figure_output *output)
 {
     FILE *const streams[] = {output->data, output->script};
@@ -298,7 +298,7 @@ static const char *const endings[] = {"csv", "gp", "svg", "pdf", "png"};
 
 enum { TEXTS = 2, FILES = sizeof endings / sizeof *endings };
 
-/* Puts the first `count` files from the folder where they were made into place. */
+/* Moves the first `count` files from the folder where they were made to their places. */
 static gonio_status put_in_place(const gonio_i_figure_output *output, const char *from,
                                  const char *to, int count)
 {
@@ -343,8 +343,8 @@ static gonio_status write_texts(const gonio_i_figure_output *output, const char 
     return status;
 }
 
-/* The day in a PDF file becomes the beginning of time, as some versions of cairo do not heed
- * SOURCE_DATE_EPOCH; in as many letters, so that the file's table of places stays right. */
+/* Replaces the date in a PDF file by 1970, because some versions of cairo ignore SOURCE_DATE_EPOCH.
+ * The length stays, so that the file's table of offsets stays right. */
 static void forget_day(char *pdf, size_t size)
 {
     static const char key[] = "/CreationDate (D:";

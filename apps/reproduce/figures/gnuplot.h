@@ -4,9 +4,9 @@
 
 #include "core/core.h"
 
-/* Runs `gnuplot SCRIPT` in a folder, by no shell and with nobody's settings. What it says becomes a
- * warning or, if it fails, the error. `*found` tells whether there is a gnuplot on PATH; it is no
- * error if not. Errors: _IO. */
+/* Runs `gnuplot SCRIPT` in a folder, without a shell and without user settings. Its messages become
+ * a warning or, if it fails, the error. *found: whether there is a gnuplot on PATH; it is no error
+ * if there is none. Errors: _IO. */
 gonio_status gonio_i_gnuplot(gonio_context *context, const char *folder, const char *script,
                              bool *found);
 

@@ -1,4 +1,4 @@
-/* What the paper says, what was found, and whether they agree: computed, by rules that are told. */
+/* The paper's claims, the results, and whether they agree, by stated rules. */
 #ifndef GONIO_REPRODUCE_CLAIMS_H
 #define GONIO_REPRODUCE_CLAIMS_H
 

@@ -1,4 +1,4 @@
-/* The page that sets the findings beside the paper's, and the same for programs. */
+/* The page that compares the results with the paper's, and the same for programs. */
 #ifndef GONIO_REPRODUCE_MARKDOWN_H
 #define GONIO_REPRODUCE_MARKDOWN_H
 

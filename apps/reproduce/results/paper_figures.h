@@ -1,4 +1,4 @@
-/* The paper's figures, drawn from what the experiments found. */
+/* The paper's figures, drawn from the results of the experiments. */
 #ifndef GONIO_REPRODUCE_PAPER_FIGURES_H
 #define GONIO_REPRODUCE_PAPER_FIGURES_H
 

@@ -1,4 +1,4 @@
-/* Means of what was found: see summary.h. */
+/* The means of the results: see summary.h. */
 #include "summary.h"
 
 #include <math.h>

@@ -1,12 +1,12 @@
-/* The means of what the experiments found. */
+/* The means of the experiments' results. */
 #ifndef GONIO_REPRODUCE_SUMMARY_H
 #define GONIO_REPRODUCE_SUMMARY_H
 
 #include "../experiments/experiments.h"
 #include "../experiments/methods.h"
 
-/* Arrays are NULL for experiments that are not wanted. Means are over a split's test materials and
- * then over the splits; NaN where something in them is missing. */
+/* Arrays are NULL for experiments that are not run. Means are over a split's test materials and
+ * then over the splits; NaN if a value is missing. */
 typedef struct gonio_i_findings {
     gonio_error *bivariate; /* [materials] */
     gonio_error bivariate_mean;

@@ -19,7 +19,7 @@ struct gonio_i_checkpoint {
     int lock;     /* of rank 0; -1 for none */
 };
 
-/* What reads back as it was: 17 digits give a double exactly. */
+/* The format of results. 17 digits represent a double exactly. */
 enum { EXACT = JSON_COMPACT | JSON_ENCODE_ANY | JSON_REAL_PRECISION(17) };
 
 static void put_hash(char hash[17], const char *text)
@@ -39,7 +39,8 @@ typedef struct job {
 
 static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.";
 
-/* Other names than these could not be files everywhere; they get a hash to stay different. */
+/* Whether a name can be a file's everywhere. Other names get a hash, so that they stay different.
+ */
 static bool is_plain(const char *name)
 {
     const size_t length = strlen(name);
@@ -61,7 +62,7 @@ static char *path_of(const gonio_i_checkpoint *checkpoint, const char *name)
     return gonio_i_format("%s/%s-%s.json", checkpoint->folder, readable, hash);
 }
 
-/* What a piece's file must hold; NULL when out of memory or for text that is not UTF-8. */
+/* The content of a piece's file; NULL when out of memory or for text that is not UTF-8. */
 static char *text_of(const gonio_i_checkpoint *checkpoint, const char *name, const json_t *result)
 {
     char checksum[17];
@@ -96,7 +97,8 @@ static gonio_status write_piece(gonio_context *context, const gonio_i_checkpoint
     return status;
 }
 
-/* The result in a file of `length` bytes if it is, to the byte, what would be written for it. */
+/* The result in a file of `length` bytes, if the file has exactly the bytes that would be written
+ * for the result; otherwise NULL. */
 static json_t *believe(const gonio_i_checkpoint *checkpoint, const char *name, const char *text,
                        size_t length)
 {
@@ -112,7 +114,7 @@ static json_t *believe(const gonio_i_checkpoint *checkpoint, const char *name, c
     return result;
 }
 
-/* The result in a piece's file; NULL, with a warning, if it is not to be believed. */
+/* The result in a piece's file; NULL, with a warning, if the file is damaged or another's. */
 static json_t *read_result(gonio_context *context, const gonio_i_checkpoint *checkpoint,
                            const char *name, const char *path, FILE *file)
 {
@@ -127,8 +129,8 @@ static json_t *read_result(gonio_context *context, const gonio_i_checkpoint *che
     return result;
 }
 
-/* Checks what a piece says, which anybody can write with a right checksum. Releases what is
- * refused. */
+/* Checks a result, because anybody can write one with a right checksum. Releases a refused result.
+ */
 static gonio_status accept(gonio_context *context, const gonio_i_work *work, size_t piece,
                            const char *path, json_t **result)
 {
@@ -145,7 +147,7 @@ static gonio_status accept(gonio_context *context, const gonio_i_work *work, siz
                         path, complaint);
 }
 
-/* A finished piece's result; NULL where there is none. Errors: _FORMAT, _MEMORY. */
+/* A finished piece's result; NULL if it is not finished. Errors: _FORMAT, _MEMORY. */
 static gonio_status read_piece(gonio_context *context, const gonio_i_checkpoint *checkpoint,
                                const gonio_i_work *work, const job *j, json_t **result)
 {
@@ -164,7 +166,7 @@ static gonio_status read_piece(gonio_context *context, const gonio_i_checkpoint 
     return status;
 }
 
-/* ---- which pieces there are to do ---- */
+/* ---- the pieces to do ---- */
 
 typedef struct run {
     gonio_context *context;
@@ -173,7 +175,7 @@ typedef struct run {
     job *job; /* [work->count], the expensive ones first */
     job **todo;
     size_t count;      /* of todo */
-    double cost, done; /* of todo: all, finished */
+    double cost, done; /* of todo: of all pieces, of the finished ones */
     bool occupied;     /* by a piece of which there is one at a time */
     gonio_status status;
 } run;
@@ -216,8 +218,8 @@ static gonio_status list_jobs(run *r)
     return GONIO_OK;
 }
 
-/* Gives each piece, the expensive ones first, to the rank with the least to do (Graham 1969), so
- * that every rank knows all shares; adds those of this rank that are not finished. */
+/* Gives each piece, the expensive ones first, to the rank with the least to do (Graham 1969). Every
+ * rank computes all shares. Lists the pieces of this rank. */
 static gonio_status share_out(run *r)
 {
     const process_group *group = &r->checkpoint->group;
@@ -239,7 +241,7 @@ static gonio_status share_out(run *r)
     return GONIO_OK;
 }
 
-/* Leaves the unfinished ones. Errors: those of read_piece. */
+/* Drops finished pieces from the list. Errors: those of read_piece. */
 static gonio_status drop_finished(run *r)
 {
     size_t left = 0;
@@ -264,7 +266,7 @@ static gonio_status drop_finished(run *r)
     return GONIO_OK;
 }
 
-/* ---- doing them ---- */
+/* ---- doing the pieces ---- */
 
 static gonio_status do_job(const run *r, gonio_context *shared, const job *j)
 {
@@ -283,7 +285,7 @@ static gonio_status do_job(const run *r, gonio_context *shared, const job *j)
     return status;
 }
 
-/* The share of the cost that is done, which 1 is told of only when all ranks have finished. */
+/* Reports the share of the cost that is done. 1 is reported only when all ranks have finished. */
 static gonio_status tell(run *r, gonio_context *shared)
 {
     return gonio_i_progress(shared, r->work->title, 0.999 * r->done / r->cost);
@@ -304,8 +306,8 @@ static void note_end(run *r, gonio_context *shared, const job *j, gonio_status s
     }
 }
 
-/* The next piece for a thread; NULL if there is none. What is left of those of which there is one
- * at a time falls to the thread that is doing one. */
+/* The next piece for a thread; NULL if there is none. Pieces that run one at a time are left to the
+ * thread that runs one of them. */
 static const job *next_job(run *r)
 {
     job *next = NULL;
@@ -335,7 +337,7 @@ static gonio_status do_jobs(run *r, int threads)
     return r->status;
 }
 
-/* ---- together ---- */
+/* ---- all ranks ---- */
 
 static gonio_status wait_for_all(gonio_context *context, const process_group *group)
 {
@@ -414,7 +416,7 @@ gonio_status gonio_i_checkpoint_run(gonio_context *context, const gonio_i_checkp
     if (checkpoint->group.rank == 0) {
         return run_pieces(context, checkpoint, work, threads, results);
     }
-    /* Of several, rank 0 alone tells its progress. */
+    /* Only rank 0 reports its progress. */
     char name[32];
     gonio_context *silent = NULL;
     snprintf(name, sizeof name, "rank %d", checkpoint->group.rank);
@@ -428,7 +430,7 @@ gonio_status gonio_i_checkpoint_run(gonio_context *context, const gonio_i_checkp
 
 /* ---- the folder ---- */
 
-/* What a killed run was writing. */
+/* Removes the unfinished files of a killed run. */
 static void remove_parts(const char *folder)
 {
     DIR *entries = opendir(folder);

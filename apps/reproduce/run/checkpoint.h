@@ -1,12 +1,12 @@
-/* Long work cut into independent pieces, of which each finished one is kept in a file, so that a
- * run that was stopped goes on where it was and ends with the same bytes.
+/* Long work in independent pieces. Each finished piece is kept in a file, so that a run that was
+ * stopped resumes there and ends with the same bytes.
  *
  * A run's folder holds
- *   run.json           its identity: gonio's version and what the caller says (options, materials
- *                      with fingerprints ...); a folder with another identity is refused
+ *   run.json           its identity: gonio's version and the caller's data (options, materials with
+ *                      fingerprints ...); a folder with another identity is refused
  *   pieces/NAME.json   a finished piece: its name, the run, a checksum, the result
- * Pieces run side by side on the context's threads, one thread each, the expensive ones first; a
- * group's ranks share them out by cost. The results do not depend on any of that. */
+ * Pieces run in parallel on the context's threads, one thread each, the expensive ones first. The
+ * ranks of a group share them by cost. The results do not depend on this. */
 #ifndef GONIO_REPRODUCE_CHECKPOINT_H
 #define GONIO_REPRODUCE_CHECKPOINT_H
 
@@ -17,7 +17,7 @@
 
 typedef struct gonio_i_checkpoint gonio_i_checkpoint;
 
-enum { GONIO_I_COMPLAINT = 128 }; /* bytes for what is wrong with a result */
+enum { GONIO_I_COMPLAINT = 128 }; /* bytes of a text that says what is wrong with a result */
 
 typedef struct gonio_i_work {
     const char *title; /* for the progress; must last as long as the context */
@@ -31,8 +31,8 @@ typedef struct gonio_i_work {
     /* Computes a piece under a context of one thread: a new JSON object or array. It must depend on
      * the run's identity and the piece's name alone. */
     gonio_status (*compute)(void *user, gonio_context *context, size_t piece, json_t **result);
-    /* Whether a result that was kept is one of this piece. If not, writes what is wrong with it to
-     * complaint [GONIO_I_COMPLAINT]. NULL accepts any. */
+    /* Whether a result from a file belongs to this piece. If not, complaint [GONIO_I_COMPLAINT]
+     * says what is wrong. NULL accepts any result. */
     bool (*accept)(void *user, size_t piece, const json_t *result, char *complaint);
     /* Whether a process does this piece only while it does no other such piece, because they need
      * much memory. NULL if there are none. */
