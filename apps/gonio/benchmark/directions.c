@@ -84,20 +84,27 @@ static gonio_status make_plan(gonio_context *context, const benchmark_setting *s
     return gonio_plan_create(context, basis, &options, plan);
 }
 
+/* Without a plan for an n that the method cannot plan for with this basis, which is silent. */
 static gonio_status plan_published(gonio_context *context, const benchmark_setting *setting,
                                    const gonio_basis *basis, const char *method, json_t *plans)
 {
-    gonio_status status = GONIO_OK;
+    gonio_context *silent = NULL;
+    const gonio_context_options quiet = {.size = sizeof quiet, .threads = 1};
+    gonio_status status = gonio_context_create(&silent, &quiet);
     for (size_t i = 0; i < setting->sizes && status == GONIO_OK; i++) {
         char key[32];
         gonio_plan *plan = NULL;
         snprintf(key, sizeof key, "%zu", setting->size[i]);
-        status = make_plan(context, setting, basis, method, NULL, 0, setting->size[i], &plan);
+        status = make_plan(silent, setting, basis, method, NULL, 0, setting->size[i], &plan);
         if (status == GONIO_OK) {
             json_object_set_new(plans, key, pairs_json(plan));
+        } else if (status == GONIO_ERROR_ARGUMENT || status == GONIO_ERROR_DATA) {
+            status = GONIO_OK;
         }
         gonio_plan_free(&plan);
+        status = status == GONIO_OK ? gonio_i_progress(context, "a plan", 0.5) : status;
     }
+    gonio_context_free(&silent);
     return status;
 }
 

@@ -11,8 +11,7 @@
  * of 90 degrees. s = AZIMUTH sqrt theta_h theta_d, so that phi_d counts for nothing where it means
  * nothing; twice phi_d, so that a pair and its reciprocal are the same place. */
 enum { PLACE = 4 };
-static const double AZIMUTH = 0.5;
-static const double HEIGHT = 1.0; /* weight of theta_d against sqrt theta_h */
+static const double AZIMUTH = 0.25;
 
 typedef struct made {
     size_t count, channels;
@@ -37,7 +36,7 @@ static void place_of(gonio_pair pair, double place[PLACE])
     const double d = at.theta_d / M_PI_2;
     const double s = AZIMUTH * h * d;
     place[0] = h;
-    place[1] = HEIGHT * d;
+    place[1] = d;
     place[2] = s * cos(2.0 * at.phi_d);
     place[3] = s * sin(2.0 * at.phi_d);
 }

@@ -44,12 +44,80 @@ gonio_status benchmark_candidates(gonio_context *context, const benchmark_settin
 
 /* ---- opening ---- */
 
+/* A material is read in its own colours if it evaluates them itself, otherwise by way of its table.
+ */
+static bool evaluates_colours(const gonio_material *material)
+{
+    const gonio_material_view *view = gonio_material_describe(material);
+    return view->evaluated && view->wavelength == NULL && view->channels == GONIO_CHANNELS;
+}
+
+/* The bins of a slab: their pairs and the reciprocal ones in turn, and which they are. */
+static size_t list_pairs(int slab, gonio_pair *pair, int32_t *bin)
+{
+    size_t count = 0;
+    for (int32_t k = 0; k < GONIO_SLAB_BINS; k++) {
+        const int32_t index = slab * GONIO_SLAB_BINS + k;
+        if (gonio_bin_is_valid(gonio_bin_from_index(index))) {
+            const gonio_pair p =
+                gonio_pair_from_half_difference(gonio_bin_centre(gonio_bin_from_index(index)));
+            pair[2 * count] = p;
+            pair[2 * count + 1] = (gonio_pair){p.outgoing, p.incident};
+            bin[count++] = index;
+        }
+    }
+    return count;
+}
+
+/* Clears the bits of channels in which the material has no data on either side of a pair: a
+ * conversion to R, G, B has made them negative. */
+static void clear_missing(const double *value, const int32_t *bin, size_t count,
+                          unsigned char *measured)
+{
+    for (size_t k = 0; k < 2 * count * GONIO_CHANNELS; k++) {
+        if (isnan(value[k])) {
+            const unsigned bit = 1U << k % GONIO_CHANNELS;
+            measured[bin[k / (size_t)(2 * GONIO_CHANNELS)]] &= (unsigned char)~bit;
+        }
+    }
+}
+
+static gonio_status find_measured(gonio_context *context, benchmark_sample *sample)
+{
+    enum { ALL = (1 << GONIO_CHANNELS) - 1, PAIRS = 2 * GONIO_SLAB_BINS };
+    sample->measured = gonio_i_allocate(context, GONIO_BINS, 1);
+    gonio_pair *pair = gonio_i_allocate(context, PAIRS, sizeof *pair);
+    int32_t *bin = gonio_i_allocate(context, GONIO_SLAB_BINS, sizeof *bin);
+    double *value = gonio_i_allocate(context, (size_t)PAIRS * GONIO_CHANNELS, sizeof *value);
+    const bool room = sample->measured != NULL && pair != NULL && bin != NULL && value != NULL;
+    gonio_status status = room ? GONIO_OK : GONIO_ERROR_MEMORY;
+    if (room) {
+        memset(sample->measured, ALL, GONIO_BINS);
+    }
+    for (int slab = 0;
+         slab < GONIO_THETA_H_BINS && status == GONIO_OK && evaluates_colours(sample->material);
+         slab++) {
+        const size_t count = list_pairs(slab, pair, bin);
+        status = gonio_material_evaluate(context, sample->material, pair, 2 * count, value);
+        if (status == GONIO_OK) {
+            clear_missing(value, bin, count, sample->measured);
+        }
+    }
+    free(pair);
+    free(bin);
+    free(value);
+    return status;
+}
+
 static gonio_status open_table(gonio_context *context, const benchmark_pairs *shared,
                                benchmark_sample *sample)
 {
     gonio_status status = gonio_material_open(context, sample->subject->path, &sample->material);
     if (status == GONIO_OK) {
         status = gonio_table_load(context, sample->material, &sample->table);
+    }
+    if (status == GONIO_OK) {
+        status = find_measured(context, sample);
     }
     sample->candidate = shared->pair;
     sample->candidates = shared->count;
@@ -171,6 +239,7 @@ void benchmark_sample_free(benchmark_sample *sample)
     gonio_material_free(&sample->material);
     gonio_readings_free(&sample->known);
     free(sample->own);
+    free(sample->measured);
     *sample = (benchmark_sample){0};
 }
 
@@ -244,7 +313,6 @@ static gonio_status drop_empty(gonio_context *context, gonio_readings **readings
     return status;
 }
 
-/* Colours that the material evaluates itself are read as they are, others by way of its table. */
 static gonio_status measure(gonio_context *context, const benchmark_setting *setting,
                             const benchmark_sample *sample, gonio_readings *readings)
 {
@@ -253,8 +321,7 @@ static gonio_status measure(gonio_context *context, const benchmark_setting *set
                                                  .floor = setting->floor,
                                                  .seed = setting->seed,
                                                  .outliers = setting->outliers};
-    const gonio_material_view *view = gonio_material_describe(sample->material);
-    return view->evaluated && view->wavelength == NULL && view->channels == GONIO_CHANNELS
+    return evaluates_colours(sample->material)
                ? gonio_measure_material(context, readings, sample->material, &instrument)
                : gonio_measure(context, readings, sample->table, &instrument);
 }

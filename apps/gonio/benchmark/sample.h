@@ -15,6 +15,8 @@ typedef struct benchmark_sample {
     const benchmark_subject *subject;
     gonio_material *material;    /* of a table; NULL of scattered readings, */
     gonio_table *table;          /* as is this */
+    unsigned char *measured;     /* of a table, [GONIO_BINS]: a bit for each channel that it was
+                                  * measured in at the bin's centre and its reciprocal */
     gonio_readings *known;       /* of scattered readings; NULL of a table */
     const gonio_pair *candidate; /* [candidates]: what can be read; none: anything */
     size_t candidates;

@@ -160,17 +160,6 @@ typedef struct slab_values {
     double *reference, *other, *cosines, *terms; /* terms: [2][bins] */
 } slab_values;
 
-/* Whether a table was measured in a channel of a bin. */
-static bool is_measured(const double *rho, size_t bin, int channel)
-{
-    const double own = rho[(size_t)channel * GONIO_SLAB_BINS + bin];
-    double most = 0.0;
-    for (int c = 0; c < GONIO_CHANNELS; c++) {
-        most = fmax(most, rho[(size_t)c * GONIO_SLAB_BINS + bin]);
-    }
-    return own > 0.0 || (own == 0.0 && most == 0.0);
-}
-
 /* c_i c_o of each bin of a slab; -1 beyond the reach and below the horizon. */
 static void find_cosines(int theta_h, double reach, double *cosines)
 {
@@ -185,14 +174,16 @@ static void find_cosines(int theta_h, double reach, double *cosines)
     }
 }
 
-static void add_channel(const double *known, const whole *w, const double *cosines, size_t slab,
-                        int channel, slab_values *v, sums *s)
+static void add_channel(const benchmark_sample *sample, const whole *w, const double *cosines,
+                        size_t slab, int channel, slab_values *v, sums *s)
 {
     const size_t plane = slab * GONIO_SLAB_VALUES + (size_t)channel * GONIO_SLAB_BINS;
+    const double *known = gonio_table_values(sample->table);
+    const unsigned char *measured = sample->measured + slab * GONIO_SLAB_BINS;
     size_t count = 0;
     for (size_t k = 0; k < GONIO_SLAB_BINS; k++) {
-        if (cosines[k] >= 0.0 && w->value[plane + k] >= 0.0 &&
-            is_measured(known + slab * GONIO_SLAB_VALUES, k, channel)) {
+        if (cosines[k] >= 0.0 && w->value[plane + k] >= 0.0 && known[plane + k] >= 0.0 &&
+            (measured[k] >> channel & 1) != 0) {
             v->reference[count] = known[plane + k];
             v->other[count] = w->value[plane + k];
             v->cosines[count++] = cosines[k];
@@ -210,7 +201,6 @@ static void add_channel(const double *known, const whole *w, const double *cosin
 static gonio_status compare_whole(gonio_context *context, const benchmark_sample *sample,
                                   double reach, const whole *w, benchmark_score *score)
 {
-    const double *known = gonio_table_values(sample->table);
     double *room = gonio_i_allocate(context, (size_t)6 * GONIO_SLAB_BINS, sizeof *room);
     if (room == NULL) {
         return GONIO_ERROR_MEMORY;
@@ -222,7 +212,7 @@ static gonio_status compare_whole(gonio_context *context, const benchmark_sample
     for (int slab = 0; slab < GONIO_THETA_H_BINS; slab++) {
         find_cosines(slab, reach, cosines);
         for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
-            add_channel(known, w, cosines, (size_t)slab, channel, &v, &s);
+            add_channel(sample, w, cosines, (size_t)slab, channel, &v, &s);
         }
     }
     free(room);

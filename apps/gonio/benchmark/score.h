@@ -13,9 +13,9 @@ typedef struct benchmark_score {
 } benchmark_score;
 
 /* Of a table: over the grid's bins with data in it, both polar angles at the centre below the
- * reach. A channel that is 0 where another is not counts as not measured: a conversion to R, G, B
- * has made it negative. The whole BRDF, as a material, is in *whole, the caller's, which keeps a
- * copy. Errors: those of the completion; _DATA if there is nothing to compare. */
+ * reach, in the channels in which it was measured there (sample.h). The whole BRDF, as a material,
+ * is in *whole, the caller's, which keeps a copy. Errors: those of the completion; _DATA if there
+ * is nothing to compare. */
 gonio_status benchmark_score_table(gonio_context *context, const benchmark_sample *sample,
                                    double reach, const benchmark_completion *completion,
                                    benchmark_score *score, gonio_material **whole);
