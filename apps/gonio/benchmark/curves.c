@@ -48,12 +48,24 @@ static size_t gather(const benchmark_summary *summary, const char *set, curve_po
     return count;
 }
 
+bool benchmark_has_curves(const benchmark_summary *summary)
+{
+    bool several = false;
+    for (size_t k = 1; k < summary->count; k++) {
+        several = several || summary->mean[k].n != summary->mean[0].n;
+    }
+    return several;
+}
+
 static gonio_status draw(gonio_context *context, gonio_i_figures *figures,
                          const benchmark_summary *summary, size_t number, curve_points *points)
 {
     char name[32];
     gonio_i_curve curves[MOST_CURVES];
     const size_t count = gather(summary, summary->set[number], points);
+    if (!benchmark_has_curves(summary)) {
+        return GONIO_OK;
+    }
     for (size_t k = 0; k < count; k++) {
         curves[k] = (gonio_i_curve){
             .name = points[k].name, .count = points[k].count, .x = points[k].x, .y = points[k].y};

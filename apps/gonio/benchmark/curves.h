@@ -4,6 +4,9 @@
 
 #include "summary.h"
 
+/* Whether there is more than one n, without which there are no curves. */
+bool benchmark_has_curves(const benchmark_summary *summary);
+
 /* figures/e6-K.png and its data, K the place of the set from 1. Errors: those of figure.h. */
 gonio_status benchmark_draw_curves(gonio_context *context, const benchmark_summary *summary,
                                    const char *folder);

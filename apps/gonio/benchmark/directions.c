@@ -137,6 +137,45 @@ gonio_status benchmark_plan(gonio_context *context, const benchmark_setting *set
     return status;
 }
 
+static bool is_pair(const json_t *pair)
+{
+    bool fine = json_array_size(pair) == 4;
+    for (size_t k = 0; k < 4 && fine; k++) {
+        const json_t *angle = json_array_get(pair, k);
+        const double most = k % 2 == 0 ? M_PI_2 : 2.0 * M_PI;
+        fine = json_is_number(angle) && json_number_value(angle) >= 0.0 &&
+               json_number_value(angle) <= most;
+    }
+    return fine;
+}
+
+static bool is_list_of_pairs(const json_t *list)
+{
+    bool fine = json_is_array(list);
+    for (size_t k = 0; k < json_array_size(list) && fine; k++) {
+        fine = is_pair(json_array_get(list, k));
+    }
+    return fine;
+}
+
+bool benchmark_plan_accept(const benchmark_directions *ways, const json_t *plan, char *complaint,
+                           size_t size)
+{
+    bool fine = ways->own_methods ? json_is_object(plan) : is_list_of_pairs(plan);
+    const char *key = NULL;
+    json_t *list = NULL;
+    if (ways->own_methods) {
+        json_object_foreach((json_t *)plan, key, list)
+        {
+            fine = fine && is_list_of_pairs(list);
+        }
+    }
+    if (!fine) {
+        snprintf(complaint, size, "it is no list of pairs of directions");
+    }
+    return fine;
+}
+
 static gonio_status choose_published(gonio_context *context, const benchmark_choosing *with,
                                      size_t n, benchmark_pairs *chosen)
 {

@@ -41,4 +41,8 @@ gonio_status benchmark_plan(gonio_context *context, const benchmark_setting *set
                             benchmark_bases *bases, const benchmark_directions *ways,
                             const benchmark_pairs *candidates, json_t **plan);
 
+/* Whether JSON from a file has the form of such a plan. If not, complaint[size] says so. */
+bool benchmark_plan_accept(const benchmark_directions *ways, const json_t *plan, char *complaint,
+                           size_t size);
+
 #endif

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/random.h"
+#include "directions.h"
 #include "core/core.h"
 
 enum { LEAST_TABLES = 4, FOLD_STREAM = 2000 };
@@ -47,6 +48,49 @@ static gonio_status no_memory(gonio_context *context)
 }
 
 /* ---- one for all ---- */
+
+static bool same_kind(const gonio_plan_basis *a, const gonio_plan_basis *b)
+{
+    return a->representation == b->representation && a->channels == b->channels &&
+           a->mapping == b->mapping && a->without_mean == b->without_mean &&
+           a->mixtures == b->mixtures;
+}
+
+/* Reads a basis file, which must be of the kind that a planning method is meant for. */
+static gonio_status read_kind(gonio_context *context, const char *path, const char *method,
+                              gonio_basis **basis)
+{
+    const gonio_status status = gonio_basis_read(context, path, basis);
+    if (status != GONIO_OK) {
+        return status;
+    }
+    const gonio_basis_view *view = gonio_basis_describe(*basis);
+    const gonio_plan_basis is = {view->representation, view->channels, view->mapping,
+                                 view->without_mean, view->mixtures > 0};
+    if (!same_kind(&is, gonio_plan_method_basis(method))) {
+        gonio_basis_free(basis);
+        return gonio_i_fail(context, GONIO_ERROR_MISMATCH,
+                            "%s: %s needs another kind of basis: give --learn a folder of "
+                            "materials",
+                            path, method);
+    }
+    return GONIO_OK;
+}
+
+/* Whether a basis that is given suits all that is asked for. */
+static gonio_status check_given(gonio_context *context, const benchmark_setting *setting)
+{
+    gonio_status status = GONIO_OK;
+    for (size_t k = 0; k < setting->direction_count && status == GONIO_OK; k++) {
+        const benchmark_directions *ways = benchmark_directions_at(setting->directions[k]);
+        gonio_basis *basis = NULL;
+        status =
+            read_kind(context, setting->basis,
+                      ways->plan_method != NULL ? ways->plan_method : "expected-error", &basis);
+        gonio_basis_free(&basis);
+    }
+    return status;
+}
 
 static gonio_status give_all(gonio_context *context, const benchmark_setting *setting,
                              const benchmark_subjects *subjects, benchmark_lessons *lessons)
@@ -267,7 +311,8 @@ gonio_status benchmark_lessons_make(gonio_context *context, const benchmark_sett
 {
     *lessons = (benchmark_lessons){0};
     if (setting->basis != NULL || setting->learn_count > 0) {
-        return give_all(context, setting, subjects, lessons);
+        const gonio_status fits = setting->basis != NULL ? check_given(context, setting) : GONIO_OK;
+        return fits == GONIO_OK ? give_all(context, setting, subjects, lessons) : fits;
     }
     const gonio_status status = setting->splits != NULL
                                     ? give_splits(context, setting, subjects, lessons)
@@ -311,13 +356,6 @@ void benchmark_bases_free(benchmark_bases *bases)
     bases->count = 0;
 }
 
-static bool same_kind(const gonio_plan_basis *a, const gonio_plan_basis *b)
-{
-    return a->representation == b->representation && a->channels == b->channels &&
-           a->mapping == b->mapping && a->without_mean == b->without_mean &&
-           a->mixtures == b->mixtures;
-}
-
 static gonio_status learn(gonio_context *context, const benchmark_bases *bases,
                           const gonio_plan_basis *kind, gonio_basis **basis)
 {
@@ -336,28 +374,6 @@ static gonio_status learn(gonio_context *context, const benchmark_bases *bases,
     return gonio_learn(context, lesson->path, lesson->count, &recipe, basis);
 }
 
-/* Reads the lesson's own basis, which must be of the kind. */
-static gonio_status read_given(gonio_context *context, const benchmark_bases *bases,
-                               const gonio_plan_basis *kind, const char *method,
-                               gonio_basis **basis)
-{
-    const gonio_status status = gonio_basis_read(context, bases->lesson->basis, basis);
-    if (status != GONIO_OK) {
-        return status;
-    }
-    const gonio_basis_view *view = gonio_basis_describe(*basis);
-    const gonio_plan_basis is = {view->representation, view->channels, view->mapping,
-                                 view->without_mean, view->mixtures > 0};
-    if (!same_kind(&is, kind)) {
-        gonio_basis_free(basis);
-        return gonio_i_fail(
-            context, GONIO_ERROR_MISMATCH,
-            "%s: %s needs another kind of basis: give --learn a folder of materials",
-            bases->lesson->basis, method);
-    }
-    return GONIO_OK;
-}
-
 static gonio_status find_or_make(gonio_context *context, benchmark_bases *bases, const char *method,
                                  const gonio_basis **basis)
 {
@@ -370,7 +386,7 @@ static gonio_status find_or_make(gonio_context *context, benchmark_bases *bases,
     }
     gonio_basis *made = NULL;
     const gonio_status status = bases->lesson->basis != NULL
-                                    ? read_given(context, bases, kind, method, &made)
+                                    ? read_kind(context, bases->lesson->basis, method, &made)
                                     : learn(context, bases, kind, &made);
     if (status == GONIO_OK) {
         bases->basis[bases->count] = made;

@@ -31,7 +31,8 @@ typedef struct benchmark_completion {
 typedef struct benchmark_method {
     const char *name;
     const char *summary;
-    bool simple; /* what others have to be better than */
+    bool simple;  /* what others have to be better than */
+    bool learned; /* needs a basis */
     /* Errors: _UNDETERMINED, _DATA, _NUMERICAL, _MISMATCH where the method cannot do it; others end
      * the run. */
     gonio_status (*complete)(gonio_context *context, const benchmark_task *task,

@@ -259,7 +259,10 @@ static void put_subjects(const page *p, const char *set)
 static void put_set(const page *p, size_t number)
 {
     const char *set = p->summary->set[number];
-    fprintf(p->f, "\n## %s\n\n![E6 against directions](figures/e6-%zu.png)\n\n", set, number + 1);
+    fprintf(p->f, "\n## %s\n\n", set);
+    if (benchmark_has_curves(p->summary)) {
+        fprintf(p->f, "![E6 against directions](figures/e6-%zu.png)\n\n", number + 1);
+    }
     fputs("Mean E6 % / cube-root error % / log-relative error, by directions read:\n", p->f);
     put_table(p, set, any_mean, put_errors);
     fputs("\nTrue over expected E6, share within a factor of 2 in per cent, correlation of their "

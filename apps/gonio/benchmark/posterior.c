@@ -180,8 +180,12 @@ static gonio_status complete_published(gonio_context *context, const benchmark_t
     return GONIO_OK;
 }
 
-const benchmark_method benchmark_posterior = {
-    .name = "posterior", .summary = "gonio reconstruct without options", .complete = complete};
+const benchmark_method benchmark_posterior = {.name = "posterior",
+                                              .summary = "gonio reconstruct without options",
+                                              .learned = true,
+                                              .complete = complete};
 
-const benchmark_method benchmark_published = {
-    .name = "published", .summary = "that of the directions", .complete = complete_published};
+const benchmark_method benchmark_published = {.name = "published",
+                                              .summary = "that of the directions",
+                                              .learned = true,
+                                              .complete = complete_published};

@@ -103,6 +103,13 @@ static gonio_status compute_plan(void *user, gonio_context *context, size_t k, j
                           w->candidates, result);
 }
 
+static bool accept_plan(void *user, size_t k, const json_t *result, char *complaint)
+{
+    const work *w = user;
+    return benchmark_plan_accept(benchmark_directions_at(w->planned[k]), result, complaint,
+                                 GONIO_I_COMPLAINT);
+}
+
 static bool has_tables(const work *w)
 {
     bool any = false;
@@ -163,6 +170,13 @@ static gonio_status compute_trial(void *user, gonio_context *context, size_t k, 
                                    .plan = plan_for(w, p),
                                    .bases = &w->bases};
     return benchmark_trial_run(context, &trial, result);
+}
+
+static bool accept_trial(void *user, size_t k, const json_t *result, char *complaint)
+{
+    (void)user;
+    (void)k;
+    return benchmark_rows_accept(result, complaint, GONIO_I_COMPLAINT);
 }
 
 /* Seconds, roughly. */
@@ -272,7 +286,8 @@ static gonio_status run_trials(gonio_context *context, work *w,
                                  .user = w,
                                  .name = name_trial,
                                  .cost = cost_trial,
-                                 .compute = compute_trial};
+                                 .compute = compute_trial,
+                                 .accept = accept_trial};
     json_t **results = gonio_i_allocate(context, w->pieces + 1, sizeof(json_t *));
     gonio_status status = results != NULL
                               ? gonio_i_checkpoint_run(context, checkpoint, &trials, results)
@@ -291,8 +306,12 @@ static gonio_status run_lesson(gonio_context *context, work *w,
                                const gonio_i_checkpoint *checkpoint, benchmark_rows *rows)
 {
     list_plans(w);
-    const gonio_i_work plans = {
-        .title = "plans", .count = w->plans, .user = w, .name = name_plan, .compute = compute_plan};
+    const gonio_i_work plans = {.title = "plans",
+                                .count = w->plans,
+                                .user = w,
+                                .name = name_plan,
+                                .compute = compute_plan,
+                                .accept = accept_plan};
     gonio_status status = list_trials(context, w);
     if (status == GONIO_OK && w->plans > 0) {
         status = gonio_i_checkpoint_run(context, checkpoint, &plans, w->plan);

@@ -2,6 +2,7 @@
 #include "trial.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
 
@@ -81,16 +82,16 @@ static void add_row(const state *s, size_t n, const char *method, size_t read,
                   number(seconds)));
 }
 
-static gonio_status judge(state *s, const benchmark_task *task, size_t n,
+static gonio_status judge(state *s, gonio_context *context, const benchmark_task *task, size_t n,
                           const benchmark_completion *completion, benchmark_score *score,
                           gonio_image_error *image)
 {
     gonio_material *whole = NULL;
     if (s->sample.known != NULL) {
-        return benchmark_score_readings(s->silent, &s->sample, task->readings, completion, score);
+        return benchmark_score_readings(context, &s->sample, task->readings, completion, score);
     }
-    gonio_status status = benchmark_score_table(s->silent, &s->sample, task->setting->reach,
-                                                completion, score, &whole);
+    gonio_status status =
+        benchmark_score_table(context, &s->sample, task->setting->reach, completion, score, &whole);
     if (status == GONIO_OK && is_rendered(s, n)) {
         status = compare_rendered(s, whole, image);
     }
@@ -122,7 +123,7 @@ static gonio_status try_method(state *s, const benchmark_task *task, size_t n,
     const double seconds = seconds_now() - start;
     const double expected = completion.expected;
     if (status == GONIO_OK) {
-        status = judge(s, task, n, &completion, &score, &image);
+        status = judge(s, context, task, n, &completion, &score, &image);
     }
     benchmark_completion_free(&completion);
     if (status == GONIO_OK || (is_excused(status) && !loud)) {
@@ -142,19 +143,30 @@ static gonio_status find_basis(state *s, const gonio_basis **basis)
                            basis);
 }
 
+/* The reconstruction that published directions are made for. */
+static gonio_status try_published(state *s, size_t n, benchmark_task *task)
+{
+    const gonio_status status = find_basis(s, &task->basis);
+    task->method = gonio_plan_method_reconstruction(s->trial->ways->plan_method);
+    return status == GONIO_OK ? try_method(s, task, n, &benchmark_published, task->method) : status;
+}
+
 static gonio_status try_methods(state *s, size_t n, const gonio_readings *readings)
 {
-    const benchmark_directions *ways = s->trial->ways;
     const benchmark_setting *setting = s->trial->setting;
     benchmark_task task = {.setting = setting, .readings = readings};
-    gonio_status status = find_basis(s, &task.basis);
-    if (status == GONIO_OK && ways->own_methods) {
-        task.method = gonio_plan_method_reconstruction(ways->plan_method);
-        return try_method(s, &task, n, &benchmark_published, task.method);
+    gonio_status status = GONIO_OK;
+    if (s->trial->ways->own_methods) {
+        return try_published(s, n, &task);
     }
     for (size_t k = 0; k < setting->method_count && status == GONIO_OK; k++) {
         const benchmark_method *method = benchmark_method_at(setting->method[k]);
-        status = try_method(s, &task, n, method, method->name);
+        if (method->learned) {
+            status = find_basis(s, &task.basis);
+        }
+        if (status == GONIO_OK) {
+            status = try_method(s, &task, n, method, method->name);
+        }
     }
     return status;
 }
@@ -218,4 +230,53 @@ gonio_status benchmark_trial_run(gonio_context *context, const benchmark_trial *
     free(s.chosen.pair);
     gonio_context_free(&s.silent);
     return status;
+}
+
+/* ---- rows from a file ---- */
+
+static bool is_number(const json_t *value)
+{
+    return json_is_number(value) || json_is_null(value);
+}
+
+static bool is_count(const json_t *value)
+{
+    return json_is_integer(value) && json_integer_value(value) >= 0;
+}
+
+/* NULL if a row is fine; otherwise the name of what is not. */
+static const char *find_fault(const json_t *row)
+{
+    static const char *const counts[] = {"n", "read", "values"};
+    static const char *const numbers[] = {"inside", "expected",    "expected_here",
+                                          "psnr",   "delta_e_itp", "seconds"};
+    const json_t *errors = json_object_get(row, "errors");
+    for (size_t k = 0; k < sizeof counts / sizeof *counts; k++) {
+        if (!is_count(json_object_get(row, counts[k]))) {
+            return counts[k];
+        }
+    }
+    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) {
+        if (!is_number(json_object_get(row, numbers[k]))) {
+            return numbers[k];
+        }
+    }
+    for (size_t m = 0; gonio_metric_describe((int)m) != NULL; m++) {
+        if (!is_number(json_array_get(errors, m))) {
+            return "errors";
+        }
+    }
+    return json_is_string(json_object_get(row, "method")) ? NULL : "method";
+}
+
+bool benchmark_rows_accept(const json_t *rows, char *complaint, size_t size)
+{
+    const char *fault = json_is_array(rows) ? NULL : "the list";
+    for (size_t k = 0; k < json_array_size(rows) && fault == NULL; k++) {
+        fault = find_fault(json_array_get(rows, k));
+    }
+    if (fault != NULL) {
+        snprintf(complaint, size, "%s of a trial is not as it should be", fault);
+    }
+    return fault == NULL;
 }

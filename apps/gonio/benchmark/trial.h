@@ -26,4 +26,7 @@ typedef struct benchmark_trial {
 gonio_status benchmark_trial_run(gonio_context *context, const benchmark_trial *trial,
                                  json_t **rows);
 
+/* Whether JSON from a file has the form of rows. If not, complaint[size] says what is wrong. */
+bool benchmark_rows_accept(const json_t *rows, char *complaint, size_t size);
+
 #endif
