@@ -24,35 +24,37 @@ static bool is_plain(const char *word)
     return *word != '\0' && word[strspn(word, plain)] == '\0';
 }
 
-/* The command line as typed, quoted where the shell would need it. */
+/* Appends a word in quotes as the shell has them, on one line. Returns the end. */
+static char *quote(const char *word, char *end)
+{
+    *end++ = '\'';
+    for (const char *c = word; *c != '\0'; c++) {
+        if (*c == '\'') {
+            end = stpcpy(end, "'\\''");
+        } else {
+            *end++ = (char)(*c == '\n' || *c == '\r' ? ' ' : *c);
+        }
+    }
+    *end++ = '\'';
+    return end;
+}
+
+/* The command line as typed, quoted where the shell would need it. NULL: out of memory. */
 static char *join(int argc, const char **argv)
 {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *stream = open_memstream(&text, &size);
-    if (stream == NULL) {
-        return NULL;
-    }
-    fputs("gonio", stream);
+    enum { QUOTED = 4 /* bytes that a quoted one takes */ };
+    size_t room = sizeof "gonio";
     for (int k = 0; k < argc; k++) {
-        if (is_plain(argv[k])) {
-            fprintf(stream, " %s", argv[k]);
-            continue;
-        }
-        fputs(" '", stream);
-        for (const char *c = argv[k]; *c != '\0'; c++) {
-            if (*c == '\'') {
-                fputs("'\\''", stream);
-            } else {
-                fputc(*c == '\n' || *c == '\r' ? ' ' : *c, stream);
-            }
-        }
-        fputc('\'', stream);
+        room += QUOTED * strlen(argv[k]) + sizeof " ''";
     }
-    const bool whole = ferror(stream) == 0;
-    if (fclose(stream) != 0 || !whole) {
-        free(text);
-        return NULL;
+    char *text = malloc(room);
+    char *end = text != NULL ? stpcpy(text, "gonio") : NULL;
+    for (int k = 0; end != NULL && k < argc; k++) {
+        *end++ = ' ';
+        end = is_plain(argv[k]) ? stpcpy(end, argv[k]) : quote(argv[k], end);
+    }
+    if (end != NULL) {
+        *end = '\0';
     }
     return text;
 }

@@ -23,7 +23,7 @@ int tool_print_json(const tool *t, json_t *json);
  * at first) instead of printing it. The caller releases it. NULL: print again. */
 void tool_keep_json(json_t **kept);
 
-/* From now on tool_print_json fails where memory for JSON was missing. */
+/* From now on the program ends, with a message, where memory for JSON is missing. */
 void tool_watch_json_memory(void);
 
 #endif

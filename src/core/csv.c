@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "csv_reader.h"
+#include "memory_stream.h"
 #include "number.h"
 #include "output.h"
 #include "text_encoding.h"
@@ -259,13 +260,12 @@ gonio_status gonio_i_csv_write(gonio_context *context, const gonio_i_csv *csv, c
 {
     char *text = NULL;
     size_t size = 0;
-    FILE *stream = open_memstream(&text, &size);
+    FILE *stream = gonio_i_memory_stream(&text, &size);
     if (stream == NULL) {
         return gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", path);
     }
     print_table(stream, csv);
-    const bool whole = ferror(stream) == 0;
-    if (fclose(stream) != 0 || !whole) {
+    if (fclose(stream) != 0) {
         free(text);
         return gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", path);
     }

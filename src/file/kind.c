@@ -11,6 +11,7 @@
 #include "../material/formats/format.h"
 #include "../measurement/formats/format.h"
 #include "../render/file_formats.h"
+#include "../core/memory_stream.h"
 
 typedef struct kind_row {
     gonio_kind kind;
@@ -171,7 +172,7 @@ static char *explain(unsigned wanted, gonio_kind kind, const char *format)
 {
     char *text = NULL;
     size_t size = 0;
-    FILE *stream = open_memstream(&text, &size);
+    FILE *stream = gonio_i_memory_stream(&text, &size);
     if (stream == NULL) {
         return NULL;
     }
@@ -180,7 +181,10 @@ static char *explain(unsigned wanted, gonio_kind kind, const char *format)
     } else {
         print_other(stream, wanted, row_of(kind), format);
     }
-    fclose(stream);
+    if (fclose(stream) != 0) {
+        free(text);
+        return NULL;
+    }
     return text;
 }
 

@@ -1,12 +1,13 @@
 /* A text that is printed to memory and then written whole: see text_output.h. */
 #include "text_output.h"
+#include "../core/memory_stream.h"
 
 #include <stdlib.h>
 
 gonio_status gonio_i_text_open(gonio_context *context, gonio_i_text_output *output)
 {
     *output = (gonio_i_text_output){0};
-    output->stream = open_memstream(&output->text, &output->size);
+    output->stream = gonio_i_memory_stream(&output->text, &output->size);
     if (output->stream == NULL || !gonio_i_plain_numbers_begin(&output->plain)) {
         if (output->stream != NULL) {
             fclose(output->stream);

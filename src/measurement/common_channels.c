@@ -7,6 +7,7 @@
 
 #include "../material/colour.h"
 #include "readings.h"
+#include "../core/memory_stream.h"
 
 /* ---- as colours ---- */
 
@@ -142,7 +143,7 @@ static gonio_status note_dropped(gonio_context *context, gonio_readings *reading
     size_t size = 0;
     size_t next = 0;
     const char *separator = "";
-    FILE *stream = open_memstream(&text, &size);
+    FILE *stream = gonio_i_memory_stream(&text, &size);
     if (stream == NULL) {
         return gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", readings->path);
     }
@@ -156,7 +157,10 @@ static gonio_status note_dropped(gonio_context *context, gonio_readings *reading
         fprintf(stream, "%s%s", separator, name);
         separator = ", ";
     }
-    fclose(stream);
+    if (fclose(stream) != 0) {
+        free(text);
+        return gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", readings->path);
+    }
     const bool grey = gonio_readings_are_colours(readings) && count == 1;
     gonio_i_note(context, "%s: nothing was read in %s: left out%s", readings->path, text,
                  grey ? "; what was read becomes a single channel, grey in tables of colours" : "");

@@ -8,6 +8,7 @@
 #include "convention.h"
 #include "horizon.h"
 #include "rules.h"
+#include "../core/memory_stream.h"
 
 enum { DIGITS = 9 };
 
@@ -359,7 +360,7 @@ static gonio_status write_note(gonio_i_import *in)
 {
     char *text = NULL;
     size_t size = 0;
-    FILE *stream = open_memstream(&text, &size);
+    FILE *stream = gonio_i_memory_stream(&text, &size);
     if (stream == NULL) {
         return gonio_i_fail(in->context, GONIO_ERROR_MEMORY, "%s: out of memory",
                             in->readings->path);
@@ -368,8 +369,10 @@ static gonio_status write_note(gonio_i_import *in)
     gonio_i_convention_print(&in->how, stream);
     fprintf(stream, "; %zu reading%s", in->readings->count, in->readings->count > 1 ? "s" : "");
     print_left_out(in, stream);
-    fclose(stream);
-    const gonio_status status = gonio_i_readings_note(in->context, in->readings, "%s", text);
+    const gonio_status status = fclose(stream) == 0
+                                    ? gonio_i_readings_note(in->context, in->readings, "%s", text)
+                                    : gonio_i_fail(in->context, GONIO_ERROR_MEMORY,
+                                                   "%s: out of memory", in->readings->path);
     free(text);
     return status;
 }

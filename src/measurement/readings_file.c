@@ -12,6 +12,7 @@
 #include "../core/text_encoding.h"
 #include "../core/text_file.h"
 #include "formats/format.h"
+#include "../core/memory_stream.h"
 
 #define ROW(name) &gonio_i_readings_##name,
 static const gonio_i_readings_format *const formats[] = {GONIO_I_READINGS_FORMATS(ROW)};
@@ -163,7 +164,7 @@ static gonio_status print_text(gonio_context *context, const gonio_readings *rea
                                const char *command, const char *path, char **text, size_t *size)
 {
     gonio_i_plain_numbers plain;
-    FILE *stream = open_memstream(text, size);
+    FILE *stream = gonio_i_memory_stream(text, size);
     const bool ready = stream != NULL && gonio_i_plain_numbers_begin(&plain);
     gonio_status status = GONIO_ERROR_MEMORY;
     if (ready) {

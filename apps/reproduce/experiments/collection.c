@@ -1,5 +1,6 @@
 /* The materials that experiments run on: see collection.h. */
 #include "collection.h"
+#include "core/memory_stream.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -106,7 +107,7 @@ static gonio_status refuse(gonio_context *context, const candidate *candidates, 
 {
     char *text = NULL;
     size_t size = 0;
-    FILE *stream = open_memstream(&text, &size);
+    FILE *stream = gonio_i_memory_stream(&text, &size);
     if (stream == NULL) {
         return gonio_i_fail(context, GONIO_ERROR_MEMORY, "out of memory");
     }
@@ -115,10 +116,12 @@ static gonio_status refuse(gonio_context *context, const candidate *candidates, 
             fprintf(stream, "; %s", candidates[k].fault);
         }
     }
-    fclose(stream);
-    const gonio_status status = gonio_i_fail(
-        context, GONIO_ERROR_DATA,
-        "%zu of %zu materials cannot be used (--skip-bad leaves them out)%s", faults, count, text);
+    const gonio_status status =
+        fclose(stream) != 0
+            ? gonio_i_fail(context, GONIO_ERROR_MEMORY, "out of memory")
+            : gonio_i_fail(context, GONIO_ERROR_DATA,
+                           "%zu of %zu materials cannot be used (--skip-bad leaves them out)%s",
+                           faults, count, text);
     free(text);
     return status;
 }

@@ -16,6 +16,7 @@
 
 #include "gnuplot.h"
 #include "../run/run_folder.h"
+#include "core/memory_stream.h"
 
 /* ---- text ---- */
 
@@ -246,8 +247,8 @@ gonio_status gonio_i_figure_output_begin(gonio_context *context, const char *nam
                             "a figure's name is of letters, digits, '-' and '_', not '%s'", name);
     }
     *output = (gonio_i_figure_output){.context = context, .name = name};
-    output->data = open_memstream(&output->data_text, &output->data_size);
-    output->script = open_memstream(&output->script_text, &output->script_size);
+    output->data = gonio_i_memory_stream(&output->data_text, &output->data_size);
+    output->script = gonio_i_memory_stream(&output->script_text, &output->script_size);
     output->plain = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0);
     if (output->data == NULL || output->script == NULL || output->plain == (locale_t)0) {
         close_texts(output);

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "core/output.h"
+#include "core/memory_stream.h"
 
 gonio_status gonio_i_write_text(gonio_context *context, const char *path, const char *text)
 {
@@ -112,7 +113,7 @@ char *gonio_i_json_difference(const json_t *there, const json_t *here)
 {
     char *text = NULL;
     size_t size = 0;
-    differences d = {.text = open_memstream(&text, &size)};
+    differences d = {.text = gonio_i_memory_stream(&text, &size)};
     if (d.text == NULL) {
         return NULL;
     }

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "run_folder.h"
+#include "core/memory_stream.h"
 
 static void release(gonio_i_text *text)
 {
@@ -21,7 +22,7 @@ static void release(gonio_i_text *text)
 gonio_status gonio_i_text_begin(gonio_context *context, gonio_i_text *text)
 {
     *text = (gonio_i_text){0};
-    text->stream = open_memstream(&text->text, &text->size);
+    text->stream = gonio_i_memory_stream(&text->text, &text->size);
     text->plain = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0);
     if (text->stream == NULL || text->plain == (locale_t)0) {
         release(text);

@@ -5,6 +5,7 @@
 
 #include "brdf_json.h"
 #include "json_text.h"
+#include "../../core/memory_stream.h"
 
 static const char schema[] = "https://raw.githubusercontent.com/BiRD-project/BiRD_view/master/"
                              "BRDF_JSON_schema/brdf_json_schema_v1.0.json";
@@ -23,7 +24,7 @@ static char *join(const gonio_i_comments *comments)
 {
     char *text = NULL;
     size_t size = 0;
-    FILE *stream = open_memstream(&text, &size);
+    FILE *stream = gonio_i_memory_stream(&text, &size);
     if (stream == NULL) {
         return NULL;
     }
@@ -35,7 +36,11 @@ static char *join(const gonio_i_comments *comments)
             between = "\n";
         }
     }
-    return fclose(stream) == 0 ? text : NULL;
+    if (fclose(stream) != 0) {
+        free(text);
+        return NULL;
+    }
+    return text;
 }
 
 bool gonio_i_brdf_json_print_metadata(const gonio_readings *readings, const char *command,

@@ -129,7 +129,7 @@ static void drop_units(gonio_i_comments *all)
 }
 
 /* Prints the title, the comments on the plan, the reader's notes, and the program. */
-static bool print_comments(const printer *p, const char *command)
+static gonio_status print_comments(gonio_context *context, const printer *p, const char *command)
 {
     const gonio_i_csv_kept *kept = gonio_i_csv_kept_of(p->readings);
     gonio_i_comments all = {0};
@@ -147,7 +147,7 @@ static bool print_comments(const printer *p, const char *command)
         fprintf(p->stream, "# %s\n", title ? "gonio readings" : all.line[k]);
     }
     gonio_i_comments_free(&all);
-    return done;
+    return done ? GONIO_OK : gonio_i_fail(context, GONIO_ERROR_MEMORY, "out of memory");
 }
 
 /* ---- the columns ---- */
@@ -346,7 +346,7 @@ static gonio_status print_over(gonio_context *context, printer *p, const gonio_i
     p->delimiter = old.delimiter;
     status = choose_columns(context, p, kept, old.name);
     if (status == GONIO_OK) {
-        status = print_comments(p, command) ? GONIO_OK : GONIO_ERROR_MEMORY;
+        status = print_comments(context, p, command);
     }
     status = status == GONIO_OK ? print_rows_over(p, &old) : status;
     gonio_i_csv_close(&old);
@@ -357,7 +357,7 @@ static gonio_status print_new(gonio_context *context, printer *p, const char *co
 {
     gonio_status status = choose_columns(context, p, NULL, NULL);
     if (status == GONIO_OK) {
-        status = print_comments(p, command) ? GONIO_OK : GONIO_ERROR_MEMORY;
+        status = print_comments(context, p, command);
     }
     if (status == GONIO_OK) {
         print_names(p, NULL);
