@@ -1,14 +1,13 @@
 /* A basis: the mean and the principal components of a database, in its log space.
  *
- * H - m = V S W' (Ali et al., section 3.6). m is the mean column. Learned without mean, m is 0, and
- * in the relative mapping ln((median + e)/e) with the median of rho w over the columns learned
- * from, so that H - m = ln((rho w + e)/(median + e)). V is rows x components, orthonormal,
- * stored row by row: the K values of a row are next to each other, so a row is what one reading
- * sees. Rows are numbered as in database.h: joint, row = 3 x (position of the cell) + channel;
- * separate, row = position of the cell. The k-th component's sign makes its largest entry positive.
- * V is in single precision, in memory as in a file, so that a basis does the same before and after
- * it is written; all else is in double precision.
- */
+ * H - m = V S W' (Ali et al., section 3.6). m is the mean column. If a basis is learned without
+ * mean, m is 0, or in the relative mapping ln((median + e)/e) with the median of rho w over the
+ * columns, so that H - m = ln((rho w + e)/(median + e)). V is rows x components, orthonormal,
+ * stored row by row: the K values of a row are contiguous. A reading observes one row. Rows are
+ * numbered as in database.h: joint, row = 3 x (position of the cell) + channel; separate, row =
+ * position of the cell. The k-th component's sign makes its largest entry positive. V is in single
+ * precision, in memory and in files, so that a basis gives the same results before and after it is
+ * written. All else is in double precision. */
 #ifndef GONIO_BASIS_H
 #define GONIO_BASIS_H
 
@@ -21,12 +20,12 @@ extern "C" {
 typedef struct gonio_basis gonio_basis;
 
 /* Mixtures. A hundred materials do not cover all coatings, blends and finishes. A mixture is a
- * made-up column, from two measured columns drawn at random:
+ * computed column, made of two measured columns that are drawn at random:
  *
  *     g = ln(1 + u (e^a - 1) + (1 - u) (e^b - 1)),   u uniform in (0, 1),
  *
- * a weighted sum of reflectances. a and b are the two columns with lobes wider or narrower, and
- * with grazing effects (Fresnel reflection, shadowing) earlier or later:
+ * a weighted sum of reflectances. a and b are the two columns with wider or narrower lobes, and
+ * with grazing effects (Fresnel reflection, shadowing) that begin earlier or later:
  *
  *     a(theta_h, theta_d) = column(theta_h / f, 90 degrees (theta_d / 90 degrees)^t),
  *
@@ -47,8 +46,8 @@ typedef struct gonio_basis_options {
                            * without mean all of them */
     const size_t *subset; /* learn from these materials of the database only; NULL for all */
     size_t subset_count;
-    bool without_mean; /* components of H itself: all of them span the materials */
-    size_t mixtures;   /* made-up columns beside the measured ones; GONIO_USUAL_MIXTURES by
+    bool without_mean; /* components of H itself; all of them span the materials */
+    size_t mixtures;   /* computed columns beside the measured ones; GONIO_USUAL_MIXTURES by
                         * default */
     uint64_t seed;     /* of the mixtures */
 } gonio_basis_options;
@@ -59,9 +58,9 @@ static inline void gonio_basis_options_default(gonio_basis_options *options)
     gonio_basis_options_default_of(options, sizeof *options);
 }
 
-/* Learns a basis by the Gram matrix of the columns, accumulated over tiles of rows in double
- * precision. Before V is rounded to single precision, max |V'V - I| is at most 1e-11: where it
- * would be more, V is orthonormalised again (Cholesky QR). The result does not depend on the number
+/* Learns a basis by the Gram matrix of the columns, summed over tiles of rows in double precision.
+ * Before V is rounded to single precision, max |V'V - I| is at most 1e-11: otherwise V is
+ * orthonormalised again (Cholesky QR). The result does not depend on the number
  * of threads. Memory: the basis, and a few MB a thread.
  * options may be NULL. *basis is the caller's; the database need not outlive it.
  * Errors: _ARGUMENT if K > columns - 1 (without mean, > columns), for mixtures of another kind of
@@ -97,8 +96,8 @@ static inline void gonio_recipe_paper(gonio_recipe *recipe)
     gonio_recipe_paper_of(recipe, sizeof *recipe);
 }
 
-/* What is usual on a grid: separate channels if it is sectored, joint ones otherwise. The two above
- * are those of the sectored and the bivariate grid. */
+/* The usual recipe of a grid: separate channels if it is sectored, joint channels otherwise. The
+ * two recipes above are those of the sectored and the bivariate grid. */
 GONIO_API void gonio_recipe_for_grid_of(gonio_recipe *recipe, size_t size,
                                         gonio_representation representation);
 static inline void gonio_recipe_for_grid(gonio_recipe *recipe, gonio_representation representation)
@@ -120,20 +119,20 @@ GONIO_API void gonio_basis_free(gonio_basis **basis);
 GONIO_API gonio_status gonio_basis_write(gonio_context *context, const gonio_basis *basis,
                                          const char *command, const char *path);
 
-/* Reads a basis file and checks it: shapes, plausible values, orthonormality, checksums. V stays
- * in the file, which is mapped without a lock until the basis is freed: it may be replaced
- * meanwhile (gonio_basis_write does that), but not changed or cut.
+/* Reads a basis file and checks it: shapes, plausible values, orthonormality, checksums. V stays in
+ * the file, which is mapped without a lock until the basis is freed. Meanwhile the file may be
+ * replaced, as gonio_basis_write does, but it must not be changed or truncated.
  * Errors: _IO; _FORMAT for another kind of file, missing or mis-shaped arrays, damage; _MEMORY. */
 GONIO_API gonio_status gonio_basis_read(gonio_context *context, const char *path,
                                         gonio_basis **basis);
 
-/* Converts a basis file of an older gonio, which is HDF5, to today's format, with the same checks.
- * The record of the command that learned it is kept. A damaged file of that kind may crash the HDF5
- * library: convert only files that you trust. Errors: those of reading and writing. */
+/* Converts a basis file of an older gonio, which is HDF5, to the present format, with the same
+ * checks. The record of the command that learned it is kept. A damaged file of that kind may crash
+ * the HDF5 library: convert only files that you trust. Errors: those of reading and writing. */
 GONIO_API gonio_status gonio_basis_convert(gonio_context *context, const char *input,
                                            const char *output);
 
-/* What is in it. The view and the pointers in it belong to the basis. */
+/* The contents of a basis. The view and its pointers belong to the basis. */
 typedef struct gonio_basis_view {
     gonio_representation representation;
     gonio_channel_model channels;
@@ -152,13 +151,12 @@ typedef struct gonio_basis_view {
     size_t variance_count;   /* all of them, not only the first `components` */
     const double *variances; /* lambda_k = S_k^2/(columns - 1), descending */
     const double *loadings;  /* W, [columns][components], orthonormal; NULL in files without */
-    const int32_t *parents;  /* [mixtures][2]: the columns each one is made of; NULL without */
-    uint64_t
-        fingerprint; /* which basis it is: its cells, materials' names and leading variances to six
-                      * digits, so that the same one learned on another processor is the same */
-    uint64_t checksum;   /* of every bit of cells, mean, V and variances */
-    const char *program; /* "gonio 0.1.0" that learned it */
-    const char *command; /* "" if unknown */
+    const int32_t *parents;  /* [mixtures][2]: the columns of each mixture; NULL without */
+    uint64_t fingerprint;    /* of the cells, the materials' names and the leading variances to six
+                              * digits: the same for a basis that is learned on another processor */
+    uint64_t checksum;       /* of every bit of cells, mean, V and variances */
+    const char *program;     /* "gonio 0.1.0" that learned it */
+    const char *command;     /* "" if unknown */
 } gonio_basis_view;
 
 GONIO_API const gonio_basis_view *gonio_basis_describe(const gonio_basis *basis);
@@ -173,21 +171,21 @@ GONIO_API gonio_status gonio_basis_rows(gonio_context *context, const gonio_basi
 /* S_k, k from 0; 0 from variance_count on. */
 GONIO_API double gonio_basis_singular_value(const gonio_basis *basis, size_t k);
 
-/* sum of the first k variances over the sum of all: what Fig. 2(a) of the paper plots. 1 for k past
- * the last. */
+/* The sum of the first k variances over the sum of all (Fig. 2(a) of the paper); 1 for k past the
+ * last. */
 GONIO_API double gonio_basis_cumulative_variance(const gonio_basis *basis, size_t k);
 
-/* Finds the cell of the basis that represents a cell of the grid: itself, or if the database had no
- * data there, the nearest in index space (lowest index on ties). cell is theta_d + 90 theta_h, or a
- * bin's index for a full basis. Returns the position in view.cell, or the number of cells if `cell`
- * is outside the grid. */
+/* Finds the cell of the basis that represents a cell of the grid: the cell itself, or the nearest
+ * one in index space if the database had no data there (lowest index on ties). cell is theta_d + 90
+ * theta_h, or a bin's index for a full basis. Returns the position in view.cell, or the number of
+ * cells if `cell` is outside the grid. */
 GONIO_API size_t gonio_basis_position(const gonio_basis *basis, int32_t cell);
 
-/* The row that a reading in one channel at any directions sees, interpolated between cell centres
- * (bilinear in (sqrt theta_h, theta_d); for a full basis trilinear, phi_d periodic): the mean and
- * the first `components` values into row. At a cell's centre this is the cell's own row. The
- * channel does not matter to a separate basis. False, and nothing is written, for a channel of a
- * joint basis outside 0 .. 2 and for more components than there are. */
+/* The row that a reading in one channel at any directions observes: the mean, and the first
+ * `components` values in row. It is interpolated between cell centres, bilinear in (sqrt theta_h,
+ * theta_d), with a full basis trilinear and periodic in phi_d. At a cell's centre it is the cell's
+ * own row. A separate basis ignores the channel. Returns false and writes nothing for a channel of
+ * a joint basis outside 0 .. 2, or for more components than the basis has. */
 GONIO_API bool gonio_basis_row_at(const gonio_basis *basis, gonio_half_difference coordinates,
                                   int channel, size_t components, double *mean, double *row);
 

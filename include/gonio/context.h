@@ -1,4 +1,4 @@
-/* The context: where messages and progress go, and how many threads may be used.
+/* The context: callbacks for messages and progress, and the number of threads.
  *
  * Every function that takes a context accepts NULL: silent, one thread per processor. A context may
  * be used from several threads; its callbacks are called one at a time.
@@ -37,15 +37,15 @@ typedef struct gonio_context_options {
     int threads; /* most threads to use; 0 for one per processor */
 } gonio_context_options;
 
-/* Silence, no progress, one thread per processor. */
+/* The defaults: silence, no progress, one thread per processor. */
 GONIO_API void gonio_context_options_default_of(gonio_context_options *options, size_t size);
 static inline void gonio_context_options_default(gonio_context_options *options)
 {
     gonio_context_options_default_of(options, sizeof *options);
 }
 
-/* Makes a context; options may be NULL for the defaults. *context is the caller's. Where the
- * address space is limited, room for matrix products of each thread is taken. Errors:
+/* Makes a context; options may be NULL for the defaults. *context is the caller's. If the
+ * address space is limited, room for the matrix products of each thread is reserved. Errors:
  * GONIO_ERROR_MEMORY; without a message GONIO_ERROR_ARGUMENT for threads < 0 and for options that
  * were not initialised. */
 GONIO_API gonio_status gonio_context_create(gonio_context **context,

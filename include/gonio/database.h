@@ -5,13 +5,13 @@
  *             stores (Ali et al.);
  *   relative  s = e/w, e = 0.001, w = cos theta_i cos theta_o clipped to 0.01 .. 1, so that
  *             g = ln((rho w + e)/e) (Nielsen et al. 2015: theirs, ln((rho w + e)/(median + e)),
- *             differs by a constant in each row, which basis.h takes out).
+ *             differs by a constant in each row, which basis.h subtracts).
  *
  * Representation: bivariate (Romeiro et al. 2008), where a cell (theta_h, theta_d) holds the mean
  * of g over its phi_d bins with data; full, where every bin is a cell of its own; or sectored,
  * where a cell (theta_h, theta_d, sector) holds the mean over the bins with data of one of 12
- * sectors of phi_d, 15 degrees each: nearly the detail of the full grid with a fifteenth of its
- * rows (what it leaves out of the neural MERL materials is 0.4 % of E6, bivariate 1.5 %).
+ * sectors of phi_d, 15 degrees each. Sectored has nearly the detail of the full grid with a
+ * fifteenth of its rows: it leaves out 0.4 % E6 of the neural MERL materials, bivariate 1.5 %.
  *
  * Channel model: joint (Ali et al.), where a column is a material and the rows are (cell, channel),
  * channel fastest; or separate, where each channel of each material is a column (R, G, B of the
@@ -66,15 +66,15 @@ typedef enum gonio_representation {
 GONIO_API const char *gonio_representation_name(gonio_representation representation);
 GONIO_API bool gonio_representation_parse(const char *name, gonio_representation *representation);
 
-/* Cells of the whole grid in a representation, those that can hold no data included; 0 for any
- * other value. */
+/* The number of cells of the whole grid in a representation, including those that never hold data;
+ * 0 for any other value. */
 GONIO_API int32_t gonio_grid_cells(gonio_representation representation);
 
-/* The bin in the middle of a cell's phi_d bins; of a bivariate cell phi_d bin 0. All indices are -1
- * for a cell outside the grid or no representation. */
+/* The bin in the middle of a cell's phi_d bins; phi_d bin 0 of a bivariate cell. All indices are -1
+ * for a cell outside the grid or an unknown representation. */
 GONIO_API gonio_bin gonio_cell_bin(gonio_representation representation, int32_t cell);
 
-/* The cell that a bin lies in; -1 for a bin outside the grid or no representation. */
+/* The cell that a bin lies in; -1 for a bin outside the grid or an unknown representation. */
 GONIO_API int32_t gonio_cell_of_bin(gonio_representation representation, gonio_bin bin);
 
 typedef enum gonio_channel_model { GONIO_JOINT = 0, GONIO_SEPARATE = 1 } gonio_channel_model;
@@ -90,12 +90,13 @@ typedef struct gonio_slab_statistics {
     double scatter[GONIO_THETA_D_BINS][GONIO_CHANNELS]; /* sum of (g - mean)^2 */
 } gonio_slab_statistics;
 
-/* Which bins of a slab (material.h) count: data[theta_d][phi_d], true where the bin is valid
+/* Marks the bins of a slab (material.h) that count: data[theta_d][phi_d], true if the bin is valid
  * (direction.h) and holds data. */
 GONIO_API void gonio_slab_mask(int theta_h, const double *rho, bool *data);
 
-/* A slab in log space, g[channel][theta_d][phi_d]; where there is no data g is 0. In place: g ==
- * rho is allowed. */
+/* Converts a slab to log space, g[channel][theta_d][phi_d]; g is 0 without data. g == rho is
+ * allowed.
+ */
 GONIO_API void gonio_slab_to_log(const double *rho, double *g);
 
 /* The same for either mapping. */
@@ -127,7 +128,7 @@ static inline void gonio_database_options_default(gonio_database_options *option
 /* Reads the materials at the given paths (as gonio_material_open takes them), several at a time.
  * The order of the columns is that of the paths, whatever the number of threads.
  * options may be NULL. *database is the caller's.
- * Errors: _ARGUMENT for no paths, a representation, channel model or mapping that there is not, and
+ * Errors: _ARGUMENT for no paths, an unknown representation, channel model or mapping, and
  * for sectors with the relative mapping; those of gonio_material_open and
  * _read_slab; _DATA if a material has no data at all, if two have the same name, or if no cell has
  * data in all of them; _IO for the scratch files. */
@@ -135,9 +136,9 @@ GONIO_API gonio_status gonio_database_create(gonio_context *context, const char 
                                              size_t count, const gonio_database_options *options,
                                              gonio_database **database);
 
-/* The same from materials in memory, or opened already; their names are the columns'. Several
- * threads read at a time, each its own material. The materials stay the caller's and are not needed
- * afterwards. Errors: as gonio_database_create, but for those of gonio_material_open. */
+/* The same from materials that are open or in memory. The columns have their names. Several threads
+ * read at a time, each its own material. The materials stay the caller's and are not needed
+ * afterwards. Errors: as gonio_database_create, except those of gonio_material_open. */
 GONIO_API gonio_status gonio_database_create_from_materials(gonio_context *context,
                                                             const gonio_material *const *materials,
                                                             size_t count,
@@ -146,7 +147,7 @@ GONIO_API gonio_status gonio_database_create_from_materials(gonio_context *conte
 
 GONIO_API void gonio_database_free(gonio_database **database);
 
-/* What is in it. The view and the pointers in it belong to the database. */
+/* The contents of a database. The view and its pointers belong to the database. */
 typedef struct gonio_database_view {
     gonio_representation representation;
     gonio_channel_model channels;
@@ -165,8 +166,8 @@ GONIO_API const gonio_database_view *gonio_database_describe(const gonio_databas
 
 /* Reads rows first .. first + count - 1 of H into block[column][count] (column-major), for the
  * columns of the given materials (indices into names) in that order; subset NULL for all materials.
- * Threads may call it at the same time. Errors: _ARGUMENT (rows outside the matrix, a material of
- * the subset that there is not), _IO, _MEMORY. */
+ * Threads may call it at the same time. Errors: _ARGUMENT (rows outside the matrix, an unknown
+ * material of the subset), _IO, _MEMORY. */
 GONIO_API gonio_status gonio_database_read_rows(gonio_context *context,
                                                 const gonio_database *database, size_t first,
                                                 size_t count, const size_t *subset,

@@ -1,5 +1,5 @@
-/* Evaluation: how far one BRDF is from another, by every metric of metric.h, over the bins where
- * both have data. */
+/* Evaluation: errors of a BRDF relative to another by every metric of metric.h, over the bins where
+ * both have data; and what readings contain. */
 #ifndef GONIO_EVALUATE_H
 #define GONIO_EVALUATE_H
 
@@ -22,11 +22,12 @@ typedef struct gonio_comparison {
 GONIO_API gonio_status gonio_compare(gonio_context *context, const gonio_material *reference,
                                      const gonio_material *other, gonio_comparison *comparison);
 
-/* The same errors over readings: of reference reading k and of reading k of the other, which is at
- * the same directions (gonio_readings_look_up, gonio_measure_material) and in the same channels
- * (gonio_readings_share_channels), wherever both have a value. left_out[count], or NULL: readings
- * that do not count, for they were used. Errors: _MISMATCH (other numbers of readings or channels,
- * other wavelengths), _DATA (nothing to compare). *compared: how many readings count. */
+/* The same errors over readings. Reading k of both is at the same directions
+ * (gonio_readings_look_up, gonio_measure_material) and in the same channels
+ * (gonio_readings_share_channels). Values that are missing in one of them do not count.
+ * left_out[count], or NULL: readings that do not count, because they were used. *compared: the
+ * number of readings that count. Errors: _MISMATCH (different numbers of readings or channels,
+ * different wavelengths), _DATA (nothing to compare). */
 GONIO_API gonio_status gonio_compare_readings(gonio_context *context,
                                               const gonio_readings *reference,
                                               const gonio_readings *other, const bool *left_out,
@@ -37,27 +38,27 @@ GONIO_API gonio_status gonio_compare_readings(gonio_context *context,
 /* Values of one channel, 1/sr; NaN if there are none. */
 typedef struct gonio_channel_survey {
     size_t read;   /* readings with a value here */
-    size_t zero;   /* of them are 0 */
+    size_t zero;   /* number of values that are 0 */
     double least;  /* above 0, if any is */
     double median; /* of all */
     double most;
 } gonio_channel_survey;
 
-/* Readings with values whose light comes from one polar angle, to 0.1 degrees. */
+/* The readings with values at one polar angle of the light, to 0.1 degrees. */
 typedef struct gonio_incidence {
     double theta_i; /* radians */
     size_t count;
     double covered; /* share of the hemisphere, weighted by cos(theta_o), within 10 degrees of a
                      * reading or its mirror image; 0 where nothing was integrated */
-    double peak;    /* largest share of an albedo that a single reading makes: above 1/4 a peak
-                     * is too narrow for these readings to tell the albedo */
+    double peak;    /* largest share of a single reading in an albedo; above 1/4 a peak is too
+                     * narrow for these readings, and the albedo is uncertain */
     const double *albedo; /* [channels]: of that part, the rest taken as black; NULL for few
                            * readings or many incidences */
 } gonio_incidence;
 
 enum { GONIO_MOST_OUTLIERS = 16 };
 
-/* What readings contain, before anything is done with them. */
+/* The contents of readings. */
 typedef struct gonio_survey {
     size_t measured;               /* readings with a value */
     size_t empty;                  /* values that are missing, of all readings and channels */
@@ -69,17 +70,17 @@ typedef struct gonio_survey {
     size_t incidences;          /* polar angles of the light */
     gonio_incidence *incidence; /* [incidences], ascending */
     double *albedos;            /* what incidence[].albedo points to */
-    size_t repeats;             /* readings at the same angles as an earlier one; */
+    size_t repeats;             /* readings at the same angles as an earlier one, and their */
     double repeats_percent;     /* root mean square difference relative to the mean */
-    size_t reciprocal_pairs;    /* of readings with light and viewer exchanged; the same of these */
+    size_t reciprocal_pairs; /* of readings with light and viewer exchanged, and their difference */
     double reciprocity_percent;
     size_t outliers;                     /* readings 8 times above or below all of their nearest
                                           * neighbours, which agree to a factor of 3 */
     size_t outlier[GONIO_MOST_OUTLIERS]; /* the first of them */
 } gonio_survey;
 
-/* Looks at readings: ranges, coverage, albedo where it can be integrated, repeats, reciprocity,
- * outliers. Of more than three channels outliers are looked for in the first, the middle and the
+/* Surveys readings: ranges, coverage, albedo if it can be integrated, repeats, reciprocity,
+ * outliers. With more than three channels, outliers are searched in the first, the middle and the
  * last. Errors: _MEMORY. */
 GONIO_API gonio_status gonio_readings_survey(gonio_context *context, const gonio_readings *readings,
                                              gonio_survey **survey);

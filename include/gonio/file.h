@@ -1,4 +1,4 @@
-/* Files: what a file is, told by its content, never by its name. */
+/* Files: what a file is, judged by its content, never by its name. */
 #ifndef GONIO_FILE_H
 #define GONIO_FILE_H
 
@@ -20,18 +20,18 @@ typedef enum gonio_kind {
 
 /* What a file is, from its first 8192 bytes. `format`, unless it is NULL, becomes the format's name
  * in words ("MERL .binary table", "CSV"), or NULL for an unknown file; it is static. "atlas:NAME"
- * is a material whether or not there is one of that name.
+ * is a material even if there is none of that name.
  *
- * A pipe is not looked at, because what is read from it is gone. It is taken for readings, the only
- * files that are read from beginning to end, with no format.
+ * A pipe is not inspected, because bytes that are read from it are gone. It counts as readings
+ * without a format, because only readings are read from beginning to end.
  *
  * An unknown file is no error. Errors: _IO (missing, unreadable, a directory). Thread-safe. */
 GONIO_API gonio_status gonio_file_kind(gonio_context *context, const char *path, gonio_kind *kind,
                                        const char **format);
 
-/* The same, of a file that has to be of one of the kinds in `wanted`. Errors: _IO as above;
- * _FORMAT, with a message that says what the file is, or, if it is unknown or empty, which formats
- * are read. A damaged file of a wanted kind is no error here: reading it is. */
+/* The same for a file that must be of one of the kinds in `wanted`. Errors: _IO as above; _FORMAT,
+ * with a message that says what the file is or, for an unknown or empty file, which formats are
+ * read. A damaged file of a wanted kind is no error here, but when it is read. */
 GONIO_API gonio_status gonio_file_expect(gonio_context *context, const char *path, unsigned wanted,
                                          gonio_kind *kind);
 

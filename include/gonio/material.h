@@ -27,8 +27,8 @@ enum {
 
 typedef struct gonio_material gonio_material;
 
-/* Where a material's values come from: at least one of read_slab and evaluate. Both may be called
- * from several threads at once and must give the same values every time. */
+/* The source of a material's values: read_slab, evaluate or both. They may be called from several
+ * threads at once and must give the same values every time. */
 typedef struct gonio_material_source {
     size_t size; /* sizeof(gonio_material_source) */
     /* Fills rho (GONIO_SLAB_VALUES) for one theta_h index in 0 .. 89. NULL: made from evaluate, as
@@ -46,10 +46,10 @@ typedef struct gonio_material_source {
     bool anisotropic;         /* values depend on phi_h too */
     double theta_limit;       /* polar angle up to which values were measured, radians; 0: all */
     bool both_halves;         /* slabs are means of phi_d and phi_d + pi, which the source holds */
-    double halves_difference; /* RMS of their difference, as a share of the RMS of the mean */
+    double halves_difference; /* RMS of their difference over the RMS of the mean */
 } gonio_material_source;
 
-/* What a material is. The view and the pointers in it belong to the material. */
+/* A description of a material. The view and its pointers belong to the material. */
 typedef struct gonio_material_view {
     const char *name;         /* as gonio_material_name */
     const char *format;       /* as gonio_material_format */
@@ -57,7 +57,7 @@ typedef struct gonio_material_view {
     const double *wavelength; /* [channels], nm; NULL: R, G, B, or grey */
     bool anisotropic;
     double theta_limit; /* radians; 0 for none */
-    bool evaluated;     /* by its source at any directions, not by way of a table */
+    bool evaluated;     /* by its source at any directions, not from a table */
     bool both_halves;   /* as in gonio_material_source, as is the next */
     double halves_difference;
 } gonio_material_view;
@@ -71,8 +71,8 @@ typedef struct gonio_material_view {
 GONIO_API gonio_status gonio_material_open(gonio_context *context, const char *path,
                                            gonio_material **material);
 
-/* Wraps a source, for materials that come from elsewhere. On success the material owns source.self
- * and releases it with itself; on failure the caller still owns it. The strings are copied. Errors:
+/* Makes a material of a source. On success the material owns source.self and releases it when it is
+ * freed. On failure the caller still owns it. The strings are copied. Errors:
  * _ARGUMENT (neither read_slab nor evaluate, channels without wavelengths other than 1 and 3, a
  * source that was not initialised), _MEMORY. */
 GONIO_API gonio_status gonio_material_create(gonio_context *context, const char *name,
@@ -85,7 +85,7 @@ GONIO_API void gonio_material_free(gonio_material **material);
 /* The name: of a file, its base name without the extension; of a built-in, the part after ':'. */
 GONIO_API const char *gonio_material_name(const gonio_material *material);
 
-/* Where it came from in words: "MERL table 90 x 90 x 180", "neural BRDF 6-21-21-3". */
+/* The origin in words: "MERL table 90 x 90 x 180", "neural BRDF 6-21-21-3". */
 GONIO_API const char *gonio_material_format(const gonio_material *material);
 
 GONIO_API const gonio_material_view *gonio_material_describe(const gonio_material *material);
@@ -100,26 +100,26 @@ GONIO_API gonio_status gonio_material_evaluate(gonio_context *context,
                                                const gonio_pair *pairs, size_t count,
                                                double *values);
 
-/* What the colours of a spectrum are seen under: equal energy, CIE D65, CIE A. */
+/* The light under which the colours of a spectrum are computed: equal energy, CIE D65, CIE A. */
 typedef enum gonio_illuminant {
     GONIO_ILLUMINANT_E,
     GONIO_ILLUMINANT_D65,
     GONIO_ILLUMINANT_A
 } gonio_illuminant;
 
-/* What the colours of a material's spectra are seen under, from now on: in slabs, tables,
- * renderings and files of colours. Equal energy unless set. Not while others use the material.
- * Errors: _MEMORY. */
+/* Sets the light under which the colours of a material's spectra are computed from now on: in
+ * slabs, tables, renderings and files of colours. The default is equal energy. No other thread may
+ * use the material meanwhile. Errors: _MEMORY. */
 GONIO_API gonio_status gonio_material_set_illuminant(gonio_context *context,
                                                      gonio_material *material,
                                                      gonio_illuminant illuminant);
 
-/* Reads one slab into rho (GONIO_SLAB_VALUES doubles, the caller's). Thread-safe. Of a source that
- * is evaluated: at the centres of the bins, the mean of either side of the reciprocal pair and, if
- * it is anisotropic, of 8 azimuths of the half vector; spectra as linear sRGB under the illuminant,
- * in which a flat spectrum is white; one channel as grey; 0 in a channel without data where others
- * have some; no data beyond theta_limit. Errors: _ARGUMENT (theta_h outside 0 .. 89), and those of
- * the source (_IO, _FORMAT). */
+/* Reads one slab into rho (GONIO_SLAB_VALUES doubles, the caller's). Thread-safe. A source
+ * without read_slab is evaluated at the centres of the bins: the mean of both sides of the
+ * reciprocal pair and, if it is anisotropic, of 8 azimuths of the half vector. Spectra become
+ * linear sRGB under the illuminant, in which a flat spectrum is white. One channel becomes grey. A
+ * channel without data is 0 if others have data. There are no data beyond theta_limit. Errors:
+ * _ARGUMENT (theta_h outside 0 .. 89), and those of the source (_IO, _FORMAT). */
 GONIO_API gonio_status gonio_material_read_slab(gonio_context *context,
                                                 const gonio_material *material, int theta_h,
                                                 double *rho);
@@ -152,15 +152,16 @@ GONIO_API gonio_status gonio_material_write_rgl(gonio_context *context,
 
 /* How a material is written. */
 typedef struct gonio_write_options {
-    size_t size;         /* of this struct, which gonio_write_options_default sets */
-    const char *format;  /* by name; NULL: that of the path's extension, or a MERL table if gonio
-                          * does not know it */
-    double theta_i_step; /* of directions on a grid (csv; zemax but for theta_o), radians; 0: the */
-    double theta_o_step; /* format's usual */
+    size_t size;        /* of this struct, which gonio_write_options_default sets */
+    const char *format; /* by name; NULL: that of the path's extension, or a MERL table if gonio
+                         * does not know it */
+    double
+        theta_i_step; /* steps of directions on a grid (csv; zemax except for theta_o), radians; */
+    double theta_o_step; /* 0: the default of the format */
     double phi_step;
 } gonio_write_options;
 
-/* All 0 but for the size. */
+/* All fields are 0 except the size. */
 GONIO_API void gonio_write_options_default_of(gonio_write_options *options, size_t size);
 static inline void gonio_write_options_default(gonio_write_options *options)
 {
@@ -196,9 +197,9 @@ GONIO_API const double *gonio_table_values(const gonio_table *table);
 
 /* The BRDF at any directions, trilinear between bin centres in (sqrt theta_h, theta_d, phi_d),
  * phi_d periodic, bins without data left out and the weights of the others scaled up. Within the
- * first bin of theta_h or theta_d it fades into the mean over phi_d, which means nothing at 0.
- * Returns false, and rho = 0, if either direction is at or below the horizon or none of the bins
- * around has data. */
+ * first bin of theta_h or theta_d it fades into the mean over phi_d, because phi_d has no meaning
+ * at 0. Returns false, and rho = 0, if either direction is at or below the horizon or none of the
+ * bins around has data. */
 GONIO_API bool gonio_table_value(const gonio_table *table, gonio_half_difference coordinates,
                                  double rho[GONIO_CHANNELS]);
 

@@ -1,4 +1,4 @@
-/* Error metrics: how far reflectance rho' is from a reference rho.
+/* Error metrics: the error of a reflectance rho' relative to a reference rho.
  *
  * Over the values compared (bins or readings, times channels), with g = ln(1 + rho/s) the log space
  * of database.h and c_i, c_o the cosines of the incident and the outgoing direction:
@@ -6,8 +6,8 @@
  *   cube-root      100 sqrt(sum (r - r')^2 / sum r^2), r = cbrt(rho c_i c_o); Fores et al. 2012
  *   log-relative   sqrt(mean ln^2((rho w + e)/(rho' w + e))), e = 0.001 1/sr,
  *                  w = clip(c_i c_o, 0.01, 1); Nielsen et al. 2015
- *   bias           100 mean(g' - g): above 0 where rho' is too bright. Of reflectance far above s
- *                  it is the mean of ln(rho'/rho) in per cent: 9.5 if rho' is 1.1 rho
+ *   bias           100 mean(g' - g): above 0 if rho' is too bright. For reflectance far above s it
+ *                  is the mean of ln(rho'/rho) in per cent: 9.5 if rho' is 1.1 rho
  *
  * All functions are pure; threads may share what they return, which is never released. */
 #ifndef GONIO_METRIC_H
@@ -37,7 +37,7 @@ typedef struct gonio_error {
     double value[GONIO_MOST_METRICS];
 } gonio_error;
 
-/* What a metric is called. */
+/* The names of a metric. */
 typedef struct gonio_metric_view {
     const char *name;    /* on command lines: "cube-root" */
     const char *key;     /* in JSON and CSV: "cube_root_percent" */

@@ -8,8 +8,8 @@
 extern "C" {
 #endif
 
-/* What an interactive page shows. Nothing is owned; everything may be NULL, but not both reference
- * and folder, and what is compared needs a reference. */
+/* The content of a page. All pointers stay the caller's and may be NULL, but reference or folder is
+ * needed. A reconstruction needs a reference. */
 typedef struct gonio_page_content {
     size_t size; /* sizeof(gonio_page_content) */
     const gonio_material *reference;
@@ -25,12 +25,11 @@ typedef struct gonio_page_content {
 GONIO_API bool gonio_page_is_built(void);
 
 /* Writes a page for a browser: one file of less than 6 MB that needs nothing else and no network.
- * Tables are stored in steps of 1/2048 of g, or coarser where noise makes them too large; the page
- * says which. The file appears whole or not at all.
- * Errors: _IO, also if the library was built without the page (which needs Node.js); _ARGUMENT for
- * nothing to show, a reconstruction without a reference, deviations without a reconstruction;
- * _DATA and _FORMAT for a folder without tables, or with others; those of gonio_compare and of the
- * materials; _MEMORY; _CANCELLED. */
+ * Tables are stored in steps of 1/2048 of g, or coarser steps if noise makes them too large; the
+ * page states the step. The file appears whole or not at all. Errors: _IO, also if the library was
+ * built without the page (which needs Node.js); _ARGUMENT for nothing to show, a reconstruction
+ * without a reference, deviations without a reconstruction; _DATA and _FORMAT for a folder without
+ * tables, or with others; those of gonio_compare and of the materials; _MEMORY; _CANCELLED. */
 GONIO_API gonio_status gonio_page_write(gonio_context *context, const gonio_page_content *content,
                                         const char *path);
 

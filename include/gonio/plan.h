@@ -4,8 +4,8 @@
  * (reconstruct.h): greedy selection of the best next reading, improved by exchanges
  * (docs/method.md).
  *
- * Selection of Ali et al., section 3.8: of the rows of V_K choose n, X, that minimise the condition
- * number kappa = lambda_max(X'X)/lambda_min(X'X), by swaps until no single one lowers it. The other
+ * The method of Ali et al., section 3.8, chooses n rows X of V_K that minimise the condition number
+ * kappa = lambda_max(X'X)/lambda_min(X'X), by swaps until no single swap lowers it. The other
  * methods are for comparison (docs/method.md). */
 #ifndef GONIO_PLAN_H
 #define GONIO_PLAN_H
@@ -35,42 +35,42 @@ typedef struct gonio_plan_step {
 
 typedef struct gonio_plan {
     size_t count;
-    gonio_plan_entry *entries; /* ascending row of the basis; by expected-error in the order of
-                                * reading: the first of them are a good plan too */
+    gonio_plan_entry *entries; /* in ascending order of the basis's rows; by expected-error in the
+                                * order of use: the first ones are a good plan too */
     size_t components;         /* K that the plan was made for */
-    double condition_number;   /* kappa of X'X, infinity if singular; of matusik, nielsen and
-                                * frost, that of the rows of V S */
+    double condition_number;   /* kappa of X'X, infinity if singular; for matusik, nielsen and
+                                * frost that of the rows of V S */
     uint64_t basis;            /* fingerprint of the basis */
     char method[32];
-    uint64_t
-        tests; /* rows tried at a position, all starts: one eigenvalue solve each in the paper */
+    uint64_t tests; /* number of rows tried, in all starts; the paper solves an eigenvalue problem
+                       for each */
     size_t steps;
     gonio_plan_step *history; /* all restarts, in order; not kept in files */
     double *expected;         /* [count] by expected-error: the expected E6 after each reading, per
                                * cent; NULL by other methods */
 } gonio_plan;
 
-/* Number of readings: 80; with a target error 300 at most; of gonio_plan_next 5. */
+/* The default number of readings: 80, at most 300 with a target error, 5 for gonio_plan_next. */
 #define GONIO_USUAL_COUNT SIZE_MAX
 
 typedef struct gonio_plan_options {
     size_t size;        /* of this struct, which gonio_plan_options_default sets */
-    const char *method; /* NULL: what suits the basis, expected-error for one with mixtures and
-                         * condition for others; gonio_plan_method_name */
+    const char *method; /* gonio_plan_method_name; NULL: expected-error for a basis with
+                         * mixtures, condition for others */
     const char *start;  /* of the swaps: "random" (default): gonio_plan_start_name */
-    size_t components;  /* K; 0 for all of the basis, with nielsen and frost for n if it is less */
+    size_t components;  /* K; 0: all of the basis, with nielsen and frost at most n */
     size_t count;       /* n, rows to choose; GONIO_USUAL_COUNT by default */
     int restarts;       /* starts of swaps, of which the best is kept; 5 by default */
     uint64_t seed;      /* same seed, same plan, on any number of threads */
-    bool keep_history;  /* true by default; a search of very many starts may do without */
-    double phi_d;       /* where on the free angle to measure a bivariate cell; pi/2 by default */
+    bool keep_history;  /* true by default; false saves memory in a search of very many starts */
+    double phi_d;       /* phi_d of the readings of bivariate cells; pi/2 by default */
     /* Of expected-error only: */
     gonio_metric metric;          /* whose expected value is minimised */
-    const gonio_pair *candidates; /* choose among these directions, for the least error at all of
-                                   * them; NULL: any, for the least error over the grid */
+    const gonio_pair *candidates; /* choose among these directions, so that the error at all of
+                                   * them is least; NULL: any, for the error over the grid */
     size_t candidate_count;       /* at most 100,000 */
-    double target;                /* per cent: the fewest readings with at most this expected E6,
-                                   * and at most `count`; 0: exactly `count` */
+    double target;                /* per cent: plan the fewest readings with at most this expected
+                                   * E6, at most `count` of them; 0: exactly `count` */
 } gonio_plan_options;
 
 GONIO_API void gonio_plan_options_default_of(gonio_plan_options *options, size_t size);
@@ -93,10 +93,10 @@ typedef struct gonio_plan_basis {
     gonio_channel_model channels;
     gonio_mapping mapping;
     bool without_mean;
-    bool mixtures; /* whether it is learned from mixtures too */
+    bool mixtures; /* whether the basis is also learned from mixtures */
 } gonio_plan_basis;
 
-/* Of a method; NULL if there is none of that name. It is static. */
+/* The basis of a method, static; NULL for an unknown name. */
 GONIO_API const gonio_plan_basis *gonio_plan_method_basis(const char *method);
 
 /* Names and one-line descriptions of the starts that the condition method's swaps may begin with;
@@ -104,24 +104,24 @@ GONIO_API const gonio_plan_basis *gonio_plan_method_basis(const char *method);
 GONIO_API const char *gonio_plan_start_name(int index);
 GONIO_API const char *gonio_plan_start_summary(int index);
 
-/* Makes a plan. A chosen cell becomes the pair at its centre with phi_h = 0 and the given phi_d (of
- * a full basis, the bin's own phi_d); where that pair would be at or below the horizon, the valid
- * phi_d nearest to it is taken. options may be NULL. *plan is the caller's; the basis need not
- * outlive it. The same plan on any number of threads. Errors: _ARGUMENT (unknown method, K more
- * than the basis has, n < K for the condition method, n more than there are rows, phi_d outside [0,
- * pi), a method that works on another kind of basis); _DATA (rows of rank less than K); _CANCELLED.
+/* Makes a plan. A chosen cell becomes the pair at its centre with phi_h = 0 and the given phi_d
+ * (with a full basis the bin's own phi_d). If that pair is at or below the horizon, the nearest
+ * valid phi_d is taken. options may be NULL. *plan is the caller's; the basis need not outlive it.
+ * The plan does not depend on the number of threads. Errors: _ARGUMENT (unknown method, K more than
+ * the basis has, n < K for the condition method, n more than there are rows, phi_d outside [0, pi),
+ * a method that works on another kind of basis); _DATA (rows of rank less than K); _CANCELLED.
  */
 GONIO_API gonio_status gonio_plan_create(gonio_context *context, const gonio_basis *basis,
                                          const gonio_plan_options *options, gonio_plan **plan);
 
 GONIO_API void gonio_plan_free(gonio_plan **plan);
 
-/* The rows of the basis that a plan made for it reads: rows[plan->count]. Errors: _MISMATCH for an
- * entry whose cell or channel the basis does not have. */
+/* The rows of the basis that a plan reads: rows[plan->count]. Errors: _MISMATCH for an entry whose
+ * cell or channel the basis lacks. */
 GONIO_API gonio_status gonio_plan_rows(gonio_context *context, const gonio_plan *plan,
                                        const gonio_basis *basis, size_t *rows);
 
-/* What gonio_plan_select found besides the rows. */
+/* The results of gonio_plan_select besides the rows. */
 typedef struct gonio_selection_report {
     double condition_number;
     uint64_t tests; /* see gonio_plan */
@@ -129,9 +129,9 @@ typedef struct gonio_selection_report {
     gonio_plan_step *history; /* the caller's; released with free() */
 } gonio_selection_report;
 
-/* Chooses n of `rows` rows of a matrix V[rows][leading], of which the first `components` of each
- * row count, ascending, into chosen[n]; the engine under gonio_plan_create, for rows that come from
- * elsewhere. V is neither copied nor changed. options may be NULL; method NULL is condition.
+/* Chooses n of the rows of a matrix V[rows][leading], ascending: chosen[n]. The first `components`
+ * numbers of each row count. This is the search of gonio_plan_create for any matrix. V is neither
+ * copied nor changed. options may be NULL; method NULL is condition.
  * Errors: _ARGUMENT for methods that need to know the basis, for more components than `leading` and
  * as gonio_plan_create; _DATA (rows of rank less than `components`); _CANCELLED; _MEMORY. */
 GONIO_API gonio_status gonio_plan_select(gonio_context *context, const double *vectors, size_t rows,
@@ -147,14 +147,13 @@ GONIO_API gonio_status gonio_condition_number(gonio_context *context, const doub
                                               const size_t *chosen, size_t count,
                                               double *condition_number);
 
-/* A plan as CSV (docs/plan-and-readings.md): `#` lines, then columns theta_i_deg, phi_i_deg,
- * theta_o_deg, phi_o_deg, channel. Whole or not at all. command may be NULL. Errors: _ARGUMENT (a
- * channel that there is not), _IO, _MEMORY.
- */
+/* Writes a plan as CSV (docs/plan-and-readings.md): `#` lines, then columns theta_i_deg, phi_i_deg,
+ * theta_o_deg, phi_o_deg, channel. The file appears whole or not at all. command may be NULL.
+ * Errors: _ARGUMENT (an unknown channel), _IO, _MEMORY. */
 GONIO_API gonio_status gonio_plan_write(gonio_context *context, const gonio_plan *plan,
                                         const char *command, const char *path);
 
-/* kappa against swaps, as CSV: restart, swap, condition_number. Errors and command as above. */
+/* Writes kappa by swaps as CSV: restart, swap, condition_number. Errors and command as above. */
 GONIO_API gonio_status gonio_plan_write_history(gonio_context *context, const gonio_plan *plan,
                                                 const char *command, const char *path);
 
