@@ -38,6 +38,8 @@ expect_true 'means are means' awk -F, '
     NR == FNR { if ($4 == "\"random\"" && $5 == "\"interpolation\"" && $7 == 12) { sum += $10; count++ } next }
     $2 == "\"random\"" && $3 == "\"interpolation\"" && $4 == 12 { found = 1; off = $7 - sum / count }
     END { exit !(found && off < 1e-6 && off > -1e-6) }' out/tables/trials.csv out/tables/means.csv
+expect_true 'repeated readings are compared with single ones' \
+    grep -q '"worse_if_repeated": [0-9]' out/results.json
 if command -v jq >/dev/null; then
     expect_true 'results.json holds the means' test "$(jq '.means | length' out/results.json)" -eq 30
 fi

@@ -170,6 +170,29 @@ static void put_honesty(FILE *f, const benchmark_mean *m)
     fprintf(f, isfinite(m->inside) ? " / %.0f |" : " / - |", 100.0 * m->inside);
 }
 
+static void put_repeated(FILE *f, const benchmark_mean *m)
+{
+    if (isfinite(m->worse_repeated)) {
+        fprintf(f, " %.0f |", 100.0 * m->worse_repeated);
+    } else {
+        fputs(" |", f);
+    }
+}
+
+static bool is_repeated(const benchmark_mean *m)
+{
+    return isfinite(m->worse_repeated);
+}
+
+static bool any_repeated(const page *p, const char *set)
+{
+    bool any = false;
+    for (size_t k = 0; k < p->summary->count; k++) {
+        any = any || (p->summary->mean[k].set == set && is_repeated(&p->summary->mean[k]));
+    }
+    return any;
+}
+
 static bool any_rendered(const page *p, const char *set)
 {
     bool any = false;
@@ -271,6 +294,10 @@ static void put_set(const page *p, size_t number)
     put_table(p, set, is_not_simple, put_honesty);
     fputs("\nTrials lost to a simple method / to all of them, per cent:\n", p->f);
     put_table(p, set, is_not_simple, put_lost);
+    if (any_repeated(p, set)) {
+        fputs("\nTrials that a repeated direction makes worse, per cent:\n", p->f);
+        put_table(p, set, is_repeated, put_repeated);
+    }
     if (any_rendered(p, set)) {
         fputs("\nRendered, PSNR dB / mean Delta E_ITP:\n", p->f);
         put_table(p, set, any_mean, put_rendered);

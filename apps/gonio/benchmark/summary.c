@@ -179,11 +179,28 @@ static bool find_losses(const benchmark_rows *rows, size_t k, bool *any, bool *a
     return simple > 0;
 }
 
+/* The E6 of the same method from the same directions, each read once; NaN if there is none. The
+ * first n directions of a draw are the same for both ways. */
+static double e6_read_once(const benchmark_rows *rows, const benchmark_row *repeated)
+{
+    const benchmark_directions *once = benchmark_directions_at(benchmark_directions_find("random"));
+    double e6 = NAN;
+    for (size_t k = 0; k < rows->count && isnan(e6); k++) {
+        const benchmark_row *r = &rows->row[k];
+        if (r->ways == once && r->subject == repeated->subject && r->lesson == repeated->lesson &&
+            r->draw == repeated->draw && r->n == repeated->n &&
+            strcmp(r->method, repeated->method) == 0) {
+            e6 = r->error.value[GONIO_E6];
+        }
+    }
+    return e6;
+}
+
 /* ---- a mean ---- */
 
 typedef struct totals {
     average error[GONIO_MOST_METRICS];
-    average inside, psnr, delta_e_itp, seconds, lost_any, lost_all;
+    average inside, psnr, delta_e_itp, seconds, lost_any, lost_all, worse_repeated;
     pairs expected, here;
 } totals;
 
@@ -209,6 +226,10 @@ static void add_row(const benchmark_rows *rows, size_t k, totals *t, benchmark_m
         add(&t->lost_any, any);
         add(&t->lost_all, all);
     }
+    if (row->ways->repeats > 0) {
+        const double once = e6_read_once(rows, row);
+        add(&t->worse_repeated, isnan(once) || isnan(e6) ? NAN : e6 > 1.01 * once);
+    }
 }
 
 static void finish(const totals *t, benchmark_mean *m)
@@ -222,6 +243,7 @@ static void finish(const totals *t, benchmark_mean *m)
     m->seconds = mean_of(&t->seconds);
     m->lost_any = mean_of(&t->lost_any);
     m->lost_all = mean_of(&t->lost_all);
+    m->worse_repeated = mean_of(&t->worse_repeated);
     m->expected = honesty_of(&t->expected);
     m->here = honesty_of(&t->here);
 }

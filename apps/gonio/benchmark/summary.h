@@ -34,6 +34,8 @@ typedef struct benchmark_mean {
     benchmark_honesty here;     /* that by its deviations of the compared values */
     double lost_any;            /* share of rows in which a simple method has a smaller E6, */
     double lost_all;            /* in which all simple methods have; NaN without any */
+    double worse_repeated;      /* of rows with repeated readings: share in which E6 is more than
+                                 * 1 % of it above that of the same directions read once; NaN */
 } benchmark_mean;
 
 typedef struct benchmark_summary {

@@ -103,7 +103,8 @@ static void put_means(const content *c, FILE *f)
     put_metric_names(f);
     fputs(",worst_e6_percent,inside_95,psnr_db,delta_e_itp,true_by_expected,within_2_expected,"
           "correlation_expected,true_by_expected_here,within_2_expected_here,"
-          "correlation_expected_here,lost_to_a_simple_method,lost_to_all_simple_methods\n",
+          "correlation_expected_here,lost_to_a_simple_method,lost_to_all_simple_methods,worse_if_"
+          "repeated\n",
           f);
     for (size_t k = 0; k < c->summary->count; k++) {
         const benchmark_mean *m = &c->summary->mean[k];
@@ -120,6 +121,7 @@ static void put_means(const content *c, FILE *f)
         put_honesty(f, &m->here);
         put(f, m->lost_any);
         put(f, m->lost_all);
+        put(f, m->worse_repeated);
         fputc('\n', f);
     }
 }
@@ -146,13 +148,14 @@ static json_t *mean_json(const benchmark_mean *m)
         json_object_set_new(errors, metric->key, number(m->error.value[i]));
     }
     return json_pack(
-        "{s:s, s:s, s:s, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "set",
+        "{s:s, s:s, s:s, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "set",
         m->set, "directions", m->ways->name, "method", m->method, "n", (json_int_t)m->n, "trials",
         (json_int_t)m->rows, "failed", (json_int_t)m->failed, "errors", errors, "worst_e6_percent",
         number(m->worst_e6), "inside_95", number(m->inside), "psnr_db", number(m->psnr),
         "delta_e_itp", number(m->delta_e_itp), "expected", honesty_json(&m->expected),
         "expected_here", honesty_json(&m->here), "lost_to_a_simple_method", number(m->lost_any),
-        "lost_to_all_simple_methods", number(m->lost_all));
+        "lost_to_all_simple_methods", number(m->lost_all), "worse_if_repeated",
+        number(m->worse_repeated));
 }
 
 static gonio_status write_json(gonio_context *context, const benchmark_setting *setting,
