@@ -323,7 +323,7 @@ static const char *const reasons[GONIO_I_REASONS] = {
     [GONIO_I_BELOW_HORIZON] = "at or below the horizon",
     [GONIO_I_NOT_MEASURED] = "not measured",
     [GONIO_I_LOST] = "too low or too high near the horizon",
-    [GONIO_I_REPEATED] = "said again of the same directions",
+    [GONIO_I_REPEATED] = "repeated with the same values",
     [GONIO_I_EXTRAPOLATED] = "extrapolated",
 };
 

@@ -186,7 +186,7 @@ static void test_zemax(void **state)
         read_good(ZEMAX_HEADER "Monochrome\nDataBegin\nTIS 0.1\n1 2\n1 3\n1 4\n"
                                "TIS 0.2\n5 6\n5 7\n5 0\nDataEnd\n",
                   "a Zemax BSDF (angles about the mirror direction): angles in degrees, values in "
-                  "1/sr, 0 means not measured; 7 readings; left out: 1 not measured, 4 said again");
+                  "1/sr, 0 means not measured; 7 readings; left out: 1 not measured, 4 repeated");
     const double side = atan2(sin(M_PI / 9.0), 0.5 * cos(M_PI / 9.0)) * 180.0 / M_PI;
     assert_reading(readings, 0, 10.0, 10.0, 180.0, 1.0);
     assert_reading(readings, 1, 10.0, 10.0, 0.0, 2.0);
@@ -262,7 +262,7 @@ static void test_fred(void **state)
                   "0 0 0.3\n0 90 0.3\n10 180 0.00001\n30 0 0.4\n95 0 1\n50 90\n20 90 0.5\n",
                   "FRED text: angles in degrees, phi_o = phi_i on the mirror's side, values in "
                   "1/sr, 0 means not measured; 3 readings; left out: 1 at or below the horizon, 1 "
-                  "not measured, 1 said again");
+                  "not measured, 1 repeated");
     assert_reading(readings, 0, 10.0, 0.0, 0.0, 0.6);
     assert_reading(readings, 1, 10.0, 30.0, 180.0, 0.8);
     assert_reading(readings, 2, 50.0, 20.0, 180.0, 1.0);

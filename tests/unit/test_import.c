@@ -173,7 +173,7 @@ static void test_repeats_and_noise(void **state)
     assert_int_equal(view->line[1], 4);
     assert_int_equal(view->line[2], 5);
     assert_near(gonio_readings_value(readings, 4, 0), 0.0);
-    assert_non_null(strstr(view->note[0], "3 said again of the same directions"));
+    assert_non_null(strstr(view->note[0], "3 repeated with the same values"));
     assert_non_null(strstr(view->note[0], "1 value below zero taken as 0"));
     gonio_readings_free(&readings);
 }
