@@ -33,6 +33,11 @@ size_t gonio_i_gzip_head(const void *bytes, size_t size, char *text, size_t room
     return room - stream.avail_out;
 }
 
+/* Tables compress to a tenth or so. A file that grows more than a hundredfold, beyond what costs
+ * little, was made to fill the memory. */
+static const size_t MOST_FREE = (size_t)64 << 20;
+static const size_t MOST_COMPRESSION = 100;
+
 /* A growing block of text. */
 typedef struct growing {
     char *text;
@@ -99,6 +104,8 @@ gonio_status gonio_i_gzip_text(gonio_context *context, const char *path, const v
     if (!begin(&stream, bytes, size)) {
         return gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", path);
     }
+    const size_t plausible = MOST_FREE + MOST_COMPRESSION * size;
+    most = plausible < most ? plausible : most;
     const int result = inflate_all(&stream, most, &g);
     inflateEnd(&stream);
     if (result == Z_STREAM_END && g.length <= most) {
@@ -111,9 +118,11 @@ gonio_status gonio_i_gzip_text(gonio_context *context, const char *path, const v
     if (result == Z_MEM_ERROR) {
         return gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", path);
     }
+    if (g.length > most) {
+        return gonio_i_fail(context, GONIO_ERROR_FORMAT, "%s: more than %zu MiB once decompressed",
+                            path, most >> 20);
+    }
     return gonio_i_fail(context, GONIO_ERROR_FORMAT,
-                        g.length > most
-                            ? "%s: more than 1 GiB once decompressed"
-                            : "%s: a damaged or truncated gzip file; copy it again from its source",
+                        "%s: a damaged or truncated gzip file; copy it again from its source",
                         path);
 }

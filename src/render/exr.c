@@ -254,6 +254,14 @@ static void complete(channels found, gonio_image *image)
     }
 }
 
+/* Whether a file can hold so many pixels. No compression makes one a thousand times smaller, but of
+ * black images, which may be of 256 MiB. */
+static bool can_hold(const gonio_i_bytes *bytes, int64_t pixels)
+{
+    enum { MOST_COMPRESSION = 1000, BLACK = 256 << 20 };
+    return pixels <= ((int64_t)bytes->size * MOST_COMPRESSION + BLACK) / PIXEL_BYTES;
+}
+
 static gonio_status read_pixels(const stream *s, exr_context_t exr, const exr_attr_box2i_t *window,
                                 channels found, bool tiled, gonio_image **image)
 {
@@ -263,6 +271,11 @@ static gonio_status read_pixels(const stream *s, exr_context_t exr, const exr_at
         return gonio_i_fail(s->context, GONIO_ERROR_FORMAT,
                             "%s: an image of %lld x %lld pixels: each side must be 1 to %d",
                             s->path, (long long)width, (long long)height, GONIO_MOST_PIXELS);
+    }
+    if (!can_hold(s->bytes, width * height)) {
+        return gonio_i_fail(s->context, GONIO_ERROR_FORMAT,
+                            "%s: an image of %lld x %lld pixels in %zu bytes: damaged or cut off",
+                            s->path, (long long)width, (long long)height, s->bytes->size);
     }
     gonio_image *made = NULL;
     const gonio_status status = gonio_image_create(s->context, (int)width, (int)height, &made);

@@ -101,12 +101,36 @@ static void test_nothing_is_left_out(void **state)
     check_refused(f);
 }
 
+/* 80 MiB in 80 kB: no table. */
+static void test_what_fills_the_memory_is_refused(void **state)
+{
+    enum { BLOCK = 1 << 20, BLOCKS = 80 };
+    const file *f = *state;
+    gonio_context *context = support_context();
+    char *block = malloc(BLOCK);
+    char *text = NULL;
+    size_t size = 0;
+    gzFile to = gzopen(f->path, "wb");
+    assert_true(block != NULL && to != NULL);
+    memset(block, '0', BLOCK);
+    for (int k = 0; k < BLOCKS; k++) {
+        assert_int_equal(gzwrite(to, block, BLOCK), BLOCK);
+    }
+    assert_int_equal(gzclose(to), Z_OK);
+    assert_int_equal(gonio_i_text_read(context, f->path, &text, &size), GONIO_ERROR_FORMAT);
+    assert_non_null(strstr(support_message(), " MiB once decompressed"));
+    assert_null(text);
+    free(block);
+    gonio_context_free(&context);
+}
+
 int GONIO_TEST(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_appended_members_are_one_text, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_zeros_behind_the_text, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_nothing_is_left_out, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_what_fills_the_memory_is_refused, set_up, tear_down),
     };
     return cmocka_run_group_tests_name("gzip", tests, NULL, NULL);
 }

@@ -114,23 +114,23 @@ static void put_attribute(FILE *f, const char *name, const char *type, const voi
     fwrite(data, 1, size, f);
 }
 
-/* Half floats B, G, R and a float Z beside them; little-endian, as the format is. */
-static void openexr_of_mixed_channels_is_read(void **state)
+enum { WIDTH = 16 };
+
+/* A file of a line of pixels: half floats B, G, R and a float Z beside them; little-endian, as the
+ * format is. Its header claims width x height pixels. The caller frees it. */
+static char *mixed_channels(int32_t width, int32_t height, size_t *size)
 {
-    (void)state;
-    enum { WIDTH = 16 };
     static const char channels[] = "B\0\1\0\0\0\0\0\0\0\1\0\0\0\1\0\0\0"
                                    "G\0\1\0\0\0\0\0\0\0\1\0\0\0\1\0\0\0"
                                    "R\0\1\0\0\0\0\0\0\0\1\0\0\0\1\0\0\0"
                                    "Z\0\2\0\0\0\0\0\0\0\1\0\0\0\1\0\0\0";
-    static const int32_t window[4] = {0, 0, WIDTH - 1, 0};
+    const int32_t window[4] = {0, 0, width - 1, height - 1};
     static const float one = 1.0F;
     static const float centre[2] = {0.0F, 0.0F};
     /* 0.25, 1.5, the least above 0, for B, G, R */
     static const uint16_t half[3] = {0x3400, 0x3e00, 0x0001};
     char *text = NULL;
-    size_t size = 0;
-    FILE *f = open_memstream(&text, &size);
+    FILE *f = open_memstream(&text, size);
     assert_non_null(f);
     fwrite("\x76\x2f\x31\x01\2\0\0\0", 1, 8, f);
     put_attribute(f, "channels", "chlist", channels, sizeof channels);
@@ -143,7 +143,7 @@ static void openexr_of_mixed_channels_is_read(void **state)
     put_attribute(f, "screenWindowWidth", "float", &one, sizeof one);
     fputc(0, f);
     fflush(f);
-    const uint64_t offset = size + sizeof offset;
+    const uint64_t offset = *size + sizeof offset;
     const int32_t chunk[2] = {0, WIDTH * (3 * 2 + 4)};
     fwrite(&offset, 1, sizeof offset, f);
     fwrite(chunk, 1, sizeof chunk, f);
@@ -154,6 +154,14 @@ static void openexr_of_mixed_channels_is_read(void **state)
         fwrite(&one, 1, sizeof one, f);
     }
     fclose(f);
+    return text;
+}
+
+static void openexr_of_mixed_channels_is_read(void **state)
+{
+    (void)state;
+    size_t size = 0;
+    char *text = mixed_channels(WIDTH, 1, &size);
     gonio_image *image = NULL;
     assert_int_equal(read_image(text, size, &image), GONIO_OK);
     for (int k = 0; k < WIDTH; k++) {
@@ -163,6 +171,19 @@ static void openexr_of_mixed_channels_is_read(void **state)
         assert_close((double)image->rgba[4 * k + 3], 1.0, 0.0);
     }
     gonio_image_free(&image);
+    free(text);
+}
+
+/* 100 bytes do not ask for gigabytes. */
+static void openexr_that_claims_more_than_it_holds_is_refused(void **state)
+{
+    (void)state;
+    size_t size = 0;
+    char *text = mixed_channels(20000, 20000, &size);
+    gonio_image *image = NULL;
+    assert_int_equal(read_image(text, size, &image), GONIO_ERROR_FORMAT);
+    assert_non_null(strstr(support_message(), "20000 x 20000 pixels in "));
+    assert_null(image);
     free(text);
 }
 
@@ -200,6 +221,7 @@ int main(void)
         cmocka_unit_test(radiance_images_are_exposed),
         cmocka_unit_test(coded_radiance_images_are_read_or_refused),
         cmocka_unit_test(openexr_of_mixed_channels_is_read),
+        cmocka_unit_test(openexr_that_claims_more_than_it_holds_is_refused),
         cmocka_unit_test(pictures_are_png),
     };
     return cmocka_run_group_tests(tests, begin, end);

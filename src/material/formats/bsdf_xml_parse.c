@@ -196,9 +196,23 @@ static bool parse_numbers(parse *p, double *value, size_t room, size_t *count)
     }
 }
 
+/* How many numbers there can be: parts between what separates. */
+static size_t count_parts(const char *text, size_t length)
+{
+    size_t count = 0;
+    for (size_t k = 0; k < length; k++) {
+        count += !separates(text[k]) && (k == 0 || separates(text[k - 1]));
+    }
+    return count;
+}
+
 static void read_matrix(parse *p, gonio_i_xml_block *b)
 {
-    const size_t room = p->length / 2 + 1;
+    const size_t room = count_parts(p->text, p->length);
+    if (room > (size_t)GONIO_I_XML_PATCHES * GONIO_I_XML_PATCHES) {
+        stop(p, GONIO_ERROR_FORMAT, "scattering data of more numbers than 4096 x 4096");
+        return;
+    }
     b->value = gonio_i_allocate(p->context, room, sizeof *b->value);
     if (b->value == NULL) {
         p->status = GONIO_ERROR_MEMORY;
