@@ -47,4 +47,4 @@ xml.ElementTree(scene).write(folder / "scene.xml", encoding="utf-8", xml_declara
 # %% How it should look: gonio's own rendering.
 picture = gonio.render(made, width=256, height=256, samples=16)
 gonio.save_image(picture, folder / "expected.png")
-print(f"{folder / 'scene.xml'}, {folder / 'material.bsdf'}: render with mitsuba; {folder / 'expected.png'} for comparison")
+print(f"{folder / 'scene.xml'}: render it with mitsuba, and compare with {folder / 'expected.png'}")

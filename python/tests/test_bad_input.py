@@ -106,6 +106,39 @@ def test_plans(basis, n, target, candidates):
     assert made is None or len(made) <= max(n, 1)
 
 
+SCALARS = st.one_of(st.none(), st.text(max_size=3), st.integers(), st.integers(-2, 3), st.floats(), st.booleans(),
+                    st.lists(st.floats(), max_size=2), st.just(b"x"), st.complex_numbers())
+
+
+FEW = st.one_of(st.integers(-2, 3), st.floats(-1.0, 3.0), st.sampled_from([np.nan, np.inf, "3", b"3", 1j, [2], True]))
+
+
+@settings(quick, max_examples=40)
+@given(n=FEW, given=st.dictionaries(st.sampled_from(["target_error", "metric", "method", "components", "seed",
+                                                     "restarts", "start", "phi_d"]), SCALARS, max_size=2))
+def test_words_and_numbers_of_plans(basis, n, given):
+    made = attempt(basis.plan, n, **given)
+    assert made is None or 0 < len(made) <= n
+
+
+@settings(quick, max_examples=40)
+@given(given=st.dictionaries(st.sampled_from(["noise", "floor", "saturation", "method", "average_repeats"]), SCALARS,
+                             max_size=3), level=SCALARS)
+def test_words_and_numbers_of_models(basis, plan, values, given, level):
+    model = attempt(gonio.Regressor(basis, checks=False, **given).fit, plan.directions, values)
+    if model is not None:
+        attempt(model.interval, plan.directions, level=level)
+
+
+@settings(quick, max_examples=25)
+@given(given=st.dictionaries(st.sampled_from(["seed", "azimuth", "elevation", "field_of_view", "lamp", "lamp_position",
+                                              "environment", "mesh", "environment_turn"]), SCALARS, max_size=2),
+       size=st.integers(-1, 4))
+def test_words_and_numbers_of_renderings(sample, given, size):
+    image = attempt(gonio.render, sample, **{"width": size, "height": 4, "samples": 1, **given})
+    assert image is None or image.shape == (4, size, 4)
+
+
 @pytest.mark.parametrize("wi, message", [
     ([1.0, 0.0], r"wi has shape \(2,\).*gonio.directions"),
     ([[0.0, 0.0, np.nan]], r"wi\[0\].*not finite"),

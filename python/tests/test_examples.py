@@ -26,7 +26,9 @@ def run(source, basis_path, tmp_path):
 def test_readings_to_bands(run, tmp_path):
     out = run("readings_to_bands.py")
     assert int(re.search(r"(\d+)% of the true values", out)[1]) > 60
-    assert (tmp_path / "plan.csv").exists() and gonio.Material(tmp_path / "material.bsdf").channels == 3
+    stated = float(re.search(r"Errors\(e6=([\d.]+)", out)[1])
+    written = gonio.errors("atlas:red-glossy-plastic", tmp_path / "material.bsdf")["e6"]
+    assert (tmp_path / "plan.csv").exists() and abs(written - stated) < 1.0
 
 
 def test_drive_instrument(run, tmp_path):

@@ -113,7 +113,7 @@ def test_what_a_function_raises_comes_out(some_directions):
         gonio.Material(lambda wi, wo: np.zeros(7)).eval(*some_directions)
 
 
-@pytest.mark.parametrize("name", ["a.binary", "a.bsdf", "a.csv"])
+@pytest.mark.parametrize("name", ["a.binary", "a.csv"])
 def test_formats(sample, name, tmp_path, some_directions):
     steps = dict(theta_i_step=0.4, theta_o_step=0.4, phi_step=0.8) if name.endswith("csv") else {}
     sample.save(tmp_path / name, **steps)
@@ -121,14 +121,13 @@ def test_formats(sample, name, tmp_path, some_directions):
     assert kind == ("readings" if name.endswith("csv") else "material") and format
     if kind == "material":
         other = gonio.Material(tmp_path / name)
-        assert gonio.errors(sample, other)["e6"] < 1.0
-        wi, wo = (w[(some_directions[0][:, 2] > 0.3) & (some_directions[1][:, 2] > 0.3)] for w in some_directions)
-        assert np.allclose(other.eval(wi, wo), sample.eval(wi, wo), rtol=0.05)
+        assert gonio.errors(sample, other)["e6"] < 1e-6
+        assert np.allclose(other.to_numpy(), sample.to_numpy(), rtol=1e-12, equal_nan=True)
 
 
 def test_every_format_is_written(sample, tmp_path):
     assert {"merl", "rgl", "klems", "csv"} <= set(gonio.formats())
-    for format in set(gonio.formats()) - {"merl", "rgl", "klems"}:  # the first two are written above, klems takes long
+    for format in set(gonio.formats()) - {"merl", "rgl", "klems"}:  # merl above, rgl by the examples; klems takes long
         sample.save(tmp_path / format, format=format, theta_i_step=0.4, theta_o_step=0.4, phi_step=0.8)
         assert gonio.file_kind(tmp_path / format)[0] in ("material", "readings")
     with pytest.raises(gonio.ArgumentError):

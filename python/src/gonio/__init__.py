@@ -44,8 +44,8 @@ from ._calls import settings
 from ._bases import Basis, builtin_basis, learn
 from ._directions import angles, directions
 from ._evaluation import Errors, errors, file_kind
-from ._exceptions import (ArgumentError, CancelledError, DataError, DirectionWarning, FileError, FormatError, GonioError,
-                         GonioWarning, MismatchError, NotFittedError, NumericalError, OutOfMemoryError,
+from ._exceptions import (ArgumentError, CancelledError, DataError, DirectionWarning, FileError, FormatError,
+                         GonioError, GonioWarning, MismatchError, NotFittedError, NumericalError, OutOfMemoryError,
                          UndeterminedError)
 from ._instruments import Instrument, SimulatedInstrument
 from ._materials import Material, atlas, formats, grid
@@ -67,3 +67,7 @@ __all__ = [
     "formats", "grid", "image_errors", "learn", "metrics", "plot", "planning_methods", "read_image", "reconstruct",
     "reconstruction_methods", "render", "report", "save_image", "settings", "tone_map",
 ]
+
+for _name in __all__:  # as users know them, in messages and pickles
+    if getattr(globals()[_name], "__module__", "").startswith("gonio._"):
+        globals()[_name].__module__ = "gonio"

@@ -23,7 +23,7 @@ Path = Union[str, "os.PathLike[str]"]
 
 def _parsed(kind: str, name: str) -> int:
     out = ffi.new(f"gonio_{kind} *")
-    if not getattr(lib, f"gonio_{kind}_parse")(str(name).encode(), out):
+    if not getattr(lib, f"gonio_{kind}_parse")(str(name).encode(errors="replace"), out):
         raise ArgumentError(f"there is no {kind.replace('_', ' ')} {name!r}")
     return int(out[0])
 

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import logging
+import numbers
 import os
 import sys
 import time
@@ -82,7 +83,8 @@ class _Bar:
             except ImportError:
                 self._wanted = False
                 return
-            self._bar = tqdm(total=1.0, desc=task, leave=False, bar_format="{desc}: {percentage:3.0f} %|{bar}| {remaining} left")
+            self._bar = tqdm(total=1.0, desc=task, leave=False,
+                             bar_format="{desc}: {percentage:3.0f} %|{bar}| {remaining} left")
         self._bar.set_description_str(task, refresh=False)
         self._bar.update(fraction - self._bar.n)
 
@@ -203,8 +205,25 @@ def options(kind: str, **fields: Any) -> Any:
     getattr(lib, f"gonio_{kind}_options_default")(struct)
     for name, value in fields.items():
         if value is not None:
-            setattr(struct, name, value)
+            try:
+                setattr(struct, name, value)
+            except (OverflowError, TypeError) as error:
+                raise exceptions.ArgumentError(f"{name} is {value!r}: {error}") from None
     return struct
+
+
+def chosen(value: Any, name: str, table: dict[str, Any]) -> Any:
+    """What an argument that is one of some words stands for."""
+    if isinstance(value, str) and value in table:
+        return table[value]
+    raise exceptions.ArgumentError(f"{name} is {value!r}: choose one of {', '.join(map(repr, table))}")
+
+
+def number(value: Any, name: str, least: float, meaning: str) -> float:
+    """An argument that is a finite number of at least `least`."""
+    if isinstance(value, numbers.Real) and least <= float(value) < float("inf"):
+        return float(value)
+    raise exceptions.ArgumentError(f"{name} is {value!r}: it must be {meaning}")
 
 
 def struct(name: str, **fields: Any) -> Any:
@@ -222,7 +241,10 @@ def text(pointer: Any) -> str:
 
 def encoded(path: Any) -> bytes:
     """A file's name as the library takes it."""
-    name = os.fsencode(os.fspath(path))
+    try:
+        name = os.fsencode(os.fspath(path))
+    except (TypeError, ValueError) as error:
+        raise exceptions.ArgumentError(f"{path!r} is no path: {error}") from None
     if b"\0" in name:
         raise exceptions.ArgumentError(f"the path {path!r} has a null character")
     return name

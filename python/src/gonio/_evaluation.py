@@ -88,7 +88,7 @@ def _of_readings(reference: Any, other: Any, left_out: Any) -> Errors:
     if left_out is not None:
         skipped = np.ascontiguousarray(left_out, dtype=np.bool_)
         if skipped.shape != (len(places),):
-            raise ArgumentError(f"left_out has shape {skipped.shape}: it needs a bool for each of {len(places)} readings")
+            raise ArgumentError(f"left_out has shape {skipped.shape}: it needs {(len(places),)}")
     error, compared = _calls.struct("gonio_error"), ffi.new("size_t *")
     _calls.run(lib.gonio_compare_readings, a, b, _calls.buffer(skipped, "bool"), error, compared)
     return Errors(_values(error), None, int(compared[0]), 0)

@@ -124,10 +124,9 @@ class Material:
             self._wrap_function(source, name or "function", channels, wavelengths, anisotropic)
         else:
             self._wrap_array(source, name or "array")
-        if illuminant not in ILLUMINANTS:
-            raise ArgumentError(f"illuminant is {illuminant!r}: choose one of {', '.join(ILLUMINANTS)}")
-        if illuminant != "E":
-            _calls.run(lib.gonio_material_set_illuminant, self._handle, ILLUMINANTS[illuminant])
+        light = _calls.chosen(illuminant, "illuminant", ILLUMINANTS)
+        if light != lib.GONIO_ILLUMINANT_E:
+            _calls.run(lib.gonio_material_set_illuminant, self._handle, light)
         self._finish()
 
     def _finish(self) -> None:
@@ -235,9 +234,8 @@ class Material:
         ArgumentError
             Shapes that do not broadcast, vectors that are not finite or have no length, directions below the horizon.
         """
-        mode = below or ("zero" if cosine else "raise")
-        if mode not in ("raise", "zero", "nan"):
-            raise ArgumentError(f"below is {below!r}: choose 'raise', 'zero' or 'nan'")
+        usual = "zero" if cosine else "raise"
+        mode = _calls.chosen(usual if below is None else below, "below", {m: m for m in ("raise", "zero", "nan")})
         at = pairs(wi, wo, below_is_wrong=mode == "raise")
         values = np.empty((*at.shape[:-1], self.channels))
         if values.size:
@@ -326,7 +324,7 @@ class Material:
         FileError
             The file cannot be written.
         """
-        name = ffi.NULL if format is None else ffi.new("char[]", format.encode())
+        name = ffi.NULL if format is None else ffi.new("char[]", str(format).encode(errors="replace"))
         how = _calls.options("write", format=name, theta_i_step=theta_i_step, theta_o_step=theta_o_step,
                              phi_step=phi_step)
         with causes(self):

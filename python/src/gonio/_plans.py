@@ -33,13 +33,14 @@ def planning_methods() -> list[str]:
 def plan_options(n: Optional[int], instrument: Any, metric: str, target_error: Optional[float], candidates: Any,
                  **others: Any) -> tuple[Any, Any]:
     """gonio_plan_options, and what it points to."""
-    place = lib.gonio_metric_find(str(metric).encode())
+    place = lib.gonio_metric_find(str(metric).encode(errors="replace"))
     if place < 0:
         raise ArgumentError(f"metric is {metric!r}: choose one of {', '.join(metrics())}")
-    if n is not None and (int(n) != n or n < 1):
-        raise ArgumentError(f"n is {n}: the number of readings is a whole number of at least 1")
-    if target_error is not None and not 0.0 < target_error < np.inf:
-        raise ArgumentError(f"target_error is {target_error}: it is an error in per cent, above 0")
+    if n is not None and _calls.number(n, "n", 1, "a whole number of readings, at least 1") % 1.0 != 0.0:
+        raise ArgumentError(f"n is {n}: it must be a whole number of readings")
+    error = None if target_error is None else _calls.number(target_error, "target_error", 0.0, "an error in per cent")
+    if error == 0.0:
+        raise ArgumentError("target_error is 0: it must be an error in per cent, above 0")
     if candidates is None and instrument is not None:
         candidates = getattr(instrument, "directions", None)
     at = None
@@ -47,9 +48,9 @@ def plan_options(n: Optional[int], instrument: Any, metric: str, target_error: O
         at = pairs(*split(candidates)).reshape(-1, 4)
         if len(at) == 0:
             raise ArgumentError("candidates is empty: give at least one pair of directions, or None for any")
-    words = {name: ffi.new("char[]", others[name].encode()) for name in ("method", "start")
+    words = {name: ffi.new("char[]", str(others[name]).encode(errors="replace")) for name in ("method", "start")
              if others.get(name) is not None}
-    fields = {**others, **words, "count": None if n is None else int(n), "metric": place, "target": target_error}
+    fields = {**others, **words, "count": None if n is None else int(n), "metric": place, "target": error}
     if at is not None:
         fields.update(candidates=_calls.buffer(at, "gonio_pair"), candidate_count=len(at))
     return _calls.options("plan", **fields), (at, words)

@@ -58,8 +58,8 @@ class Readings:
     negative_to_zero : bool
         Take values below zero as 0, rather than refuse them.
 
-    Raises ArgumentError for shapes that do not fit, DataError for values that are negative or infinite and for directions
-    that were read twice.
+    Raises ArgumentError for shapes that do not fit, DataError for values that are negative or infinite and for
+    directions that were read twice.
 
     They never change and can be pickled, without the comments of their file.
 
@@ -195,8 +195,8 @@ class Readings:
         dict
             measured, empty : readings with a value, values that are missing.
             theta_i, theta_o, theta_h : least and most, radians.
-            incidences : for each polar angle of the light a dict with theta_i, count, the share of the hemisphere that is
-            covered, and the albedo of that part, (channels,) or None.
+            incidences : for each polar angle of the light a dict with theta_i, count, the share of the hemisphere that
+            is covered, and the albedo of that part, (channels,) or None.
             repeats, repeats_percent : readings at the angles of an earlier one, and how far they differ (RMS).
             reciprocal_pairs, reciprocity_percent : the same with light and viewer exchanged.
             outliers : places of readings that are far from all around them, at most 16.

@@ -68,7 +68,7 @@ def reconstruct(basis: Any, readings: Readings, *, noise: float = 0.01, floor: f
     Source: ``gonio/reconstruct.h`` (gonio_reconstruct).
     """
     if not isinstance(readings, Readings):
-        raise ArgumentError(f"readings is {type(readings).__name__}: make gonio.Readings(wi, wo, values) or load a file")
+        raise ArgumentError(f"readings is {type(readings).__name__}: make gonio.Readings(wi, wo, values), or load them")
     settings = dict(noise=noise, floor=floor, saturation=saturation, method=method, components=components, eta=eta,
                     all_channels=all_channels, other_basis=other_basis, checks=checks)
     return Reconstruction._solve(as_basis(basis), readings, settings)
@@ -126,11 +126,10 @@ class Reconstruction:
     def _options(self) -> tuple[Any, Any]:
         given = dict(self._settings)
         method = given.pop("method")
-        word = ffi.NULL if method is None else ffi.new("char[]", str(method).encode())
+        word = ffi.NULL if method is None else ffi.new("char[]", str(method).encode(errors="replace"))
         checks = given.pop("checks")
         for name in ("noise", "floor", "saturation", "eta"):
-            if not 0.0 <= given[name] < np.inf:
-                raise ArgumentError(f"{name} is {given[name]}: it is a finite number of 0 or more")
+            given[name] = _calls.number(given[name], name, 0.0, "a finite number of 0 or more")
         return _calls.options("reconstruct", method=word, no_checks=not checks, **given), word
 
     # -- what was found --
@@ -203,7 +202,7 @@ class Reconstruction:
 
     @property
     def surprise(self) -> float:
-        """Root mean square error of leave-one-out predictions, in standard deviations; about 1 if all is as expected."""
+        """Root mean square error of leave-one-out predictions, in standard deviations; 1 if all is as expected."""
         return float(self._handle.surprise)
 
     @property
@@ -262,8 +261,8 @@ class Reconstruction:
         low, high : ndarray, (..., channels)
             1/sr; 0 or more. From the normal distribution of ln(1 + value/s).
         """
-        if not 0.0 < level < 1.0:
-            raise ArgumentError(f"level is {level}: it is a probability between 0 and 1")
+        if not 0.0 < _calls.number(level, "level", 0.0, "a probability between 0 and 1") < 1.0:
+            raise ArgumentError(f"level is {level}: it must be a probability between 0 and 1")
         at = pairs(wi, wo)
         value, spread = self._predict(at, True)
         scale = self._scales(at)

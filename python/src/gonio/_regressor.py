@@ -192,7 +192,7 @@ class Regressor:
         return value[..., 0] if single else value
 
     def interval(self, wi: Any, wo: Any = None, level: float = 0.95) -> Tuple[Array, Array]:
-        """The interval that holds a value with probability `level`: low and high, 1/sr, as `Reconstruction.interval`."""
+        """The interval that holds a value with probability `level`, as `Reconstruction.interval`: low, high, 1/sr."""
         made = self._fitted()
         low, high = made.interval(*split(wi, wo), level)
         return (low[..., 0], high[..., 0]) if getattr(self, "_single", False) else (low, high)

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from . import _calls
 from ._backend import ffi, lib
+from ._directions import numbers
 from ._exceptions import ArgumentError, GonioError
 from ._materials import as_material, causes
 
@@ -75,18 +76,17 @@ def render(material: Any, *, width: int = 512, height: int = 512, samples: int =
 
     Source: ``gonio/render.h`` (gonio_render).
     """
-    if lamp not in LAMPS:
-        raise ArgumentError(f"lamp is {lamp!r}: choose one of {', '.join(LAMPS)}")
     sample = as_material(material)
     shape = _calls.made("mesh", lib.gonio_mesh_read, _calls.encoded(mesh)) if mesh is not None else None
     light = None
     if environment is not None:
         light = _calls.made("environment", lib.gonio_environment_open, _calls.encoded(environment), repair)
-    if lamp_position is not None and len(lamp_position) != 3:
-        raise ArgumentError(f"lamp_position has {len(lamp_position)} numbers: it needs x, y, z")
+    place = None if lamp_position is None else numbers(lamp_position, "lamp_position")
+    if place is not None and place.shape != (3,):
+        raise ArgumentError(f"lamp_position has shape {place.shape}: it needs x, y, z")
     how = _calls.options("render", width=width, height=height, samples=samples, seed=seed, mesh=shape,
                          environment=light, environment_turn=environment_turn, show_environment=show_environment,
-                         lamp=LAMPS[lamp], lamp_position=lamp_position, azimuth=azimuth, elevation=elevation,
+                         lamp=_calls.chosen(lamp, "lamp", LAMPS), lamp_position=None if place is None else place.tolist(), azimuth=azimuth, elevation=elevation,
                          field_of_view=field_of_view)
     with causes(sample):
         return _array(_calls.made("image", lib.gonio_render, sample._handle, how))
