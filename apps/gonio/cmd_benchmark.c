@@ -209,11 +209,30 @@ static bool any_scattered(const benchmark_subjects *subjects)
     return any;
 }
 
-static gonio_status run_benchmark(tool *t, const options *o, benchmark_setting *s,
-                                  const benchmark_subjects *subjects)
+/* Of a table without candidates there is nothing to draw from. */
+static bool can_draw(const tool *t, const benchmark_setting *s, const benchmark_subjects *subjects)
+{
+    bool tables = false;
+    for (size_t k = 0; k < subjects->count; k++) {
+        tables = tables || !subjects->subject[k].scattered;
+    }
+    for (size_t k = 0; k < s->direction_count && tables && s->candidates == 0; k++) {
+        const benchmark_directions *ways = benchmark_directions_at(s->directions[k]);
+        if (ways->drawn) {
+            return tool_refuse(t, "--directions %s needs --candidates", ways->name);
+        }
+    }
+    return true;
+}
+
+static gonio_status run_on(tool *t, const options *o, benchmark_setting *s,
+                           const benchmark_subjects *subjects)
 {
     char *builtin = NULL;
     gonio_status status = GONIO_OK;
+    if (!can_draw(t, s, subjects)) {
+        return GONIO_ERROR_ARGUMENT;
+    }
     if (o->learn == NULL && any_scattered(subjects)) {
         status = tool_builtin_basis(t, false, &builtin);
     }
@@ -225,38 +244,52 @@ static gonio_status run_benchmark(tool *t, const options *o, benchmark_setting *
     return status;
 }
 
+/* Finds what is to be tested and tests it; returns an exit code. */
+static int run_benchmark(tool *t, const options *o, benchmark_setting *s)
+{
+    benchmark_subjects subjects = {0};
+    size_t count = 0;
+    const char **arguments = tool_arguments(t, &count);
+    gonio_status status = GONIO_OK;
+    if (tool_as != NULL) {
+        status = gonio_convention_parse(t->context, tool_as, &s->as);
+    }
+    if (status == GONIO_OK) {
+        status = benchmark_subjects_find(t->context, arguments, count, &s->as, &subjects);
+    }
+    if (status == GONIO_OK) {
+        status = run_on(t, o, s, &subjects);
+    }
+    int code = tool_exit_code(status);
+    if (code == 0 && s->group->rank == 0) {
+        code = report(t, o, subjects.count);
+    }
+    benchmark_subjects_free(&subjects);
+    return code;
+}
+
+static bool check(const tool *t, const options *o)
+{
+    size_t count = 0;
+    tool_arguments(t, &count);
+    if (count == 0) {
+        return tool_refuse(t, "materials or readings to test are needed");
+    }
+    return (o->output != NULL && *o->output != '\0') || tool_refuse(t, "no output: give -o FOLDER");
+}
+
 static int run(tool *t, const options *o, const process_group *group)
 {
     benchmark_setting s;
-    benchmark_subjects subjects = {0};
     material_list list = {0};
-    size_t count = 0;
-    const char **arguments = tool_arguments(t, &count);
-    if (!read_setting(t, o, &s)) {
-        return EXIT_USAGE;
-    }
-    if (count == 0 || o->output == NULL || *o->output == '\0') {
-        tool_refuse(t, count == 0 ? "materials or readings to test are needed"
-                                  : "no output: give -o FOLDER");
+    if (!read_setting(t, o, &s) || !check(t, o)) {
         return EXIT_USAGE;
     }
     s.group = group;
     int code = take_lesson(t, o, &s, &list);
-    gonio_status status = GONIO_OK;
-    if (code == 0 && tool_as != NULL) {
-        status = gonio_convention_parse(t->context, tool_as, &s.as);
+    if (code == 0) {
+        code = run_benchmark(t, o, &s);
     }
-    if (code == 0 && status == GONIO_OK) {
-        status = benchmark_subjects_find(t->context, arguments, count, &s.as, &subjects);
-    }
-    if (code == 0 && status == GONIO_OK) {
-        status = run_benchmark(t, o, &s, &subjects);
-    }
-    code = code != 0 ? code : tool_exit_code(status);
-    if (code == 0 && group->rank == 0) {
-        code = report(t, o, subjects.count);
-    }
-    benchmark_subjects_free(&subjects);
     material_list_free(&list);
     return code;
 }

@@ -110,6 +110,7 @@ expect_fail 2 "there is no 'best'" benchmark cloth.csv --directions best -o none
 expect_fail 2 'needs --external' benchmark cloth.csv --methods external -o none
 expect_fail 2 'takes numbers' benchmark cloth.csv -n 4,x -o none
 expect_fail 2 'reach' benchmark cloth.csv --reach 91 -o none
+expect_fail 2 'needs --candidates' benchmark --learn b.gonio atlas:oak-sawn --candidates 0 -o none
 expect_fail 1 'too few to learn from' benchmark atlas:oak-sawn -o none
 expect_fail 1 'another kind of basis' benchmark --learn b.gonio atlas:oak-sawn --directions frost -n 4 -o none
 expect_fail 1 'missing.csv' benchmark --learn b.gonio missing.csv -o none

@@ -52,60 +52,90 @@ static bool evaluates_colours(const gonio_material *material)
     return view->evaluated && view->wavelength == NULL && view->channels == GONIO_CHANNELS;
 }
 
-/* The bins of a slab: their pairs and the reciprocal ones in turn, and which they are. */
-static size_t list_pairs(int slab, gonio_pair *pair, int32_t *bin)
+/* Where materials have no data in a channel on either side of a pair: a conversion to R, G, B has
+ * made it negative. Room for one slab. */
+typedef struct pair_list {
+    size_t count;
+    gonio_pair *pair; /* [2][count]: of bins and the reciprocal ones in turn */
+    int32_t *bin;     /* [count] */
+    double *value;    /* [2][count][channels] */
+} pair_list;
+
+/* Every stride-th bin of a slab. */
+static void list_pairs(int slab, int stride, pair_list *list)
 {
-    size_t count = 0;
-    for (int32_t k = 0; k < GONIO_SLAB_BINS; k++) {
+    list->count = 0;
+    for (int32_t k = 0; k < GONIO_SLAB_BINS; k += stride) {
         const int32_t index = slab * GONIO_SLAB_BINS + k;
-        if (gonio_bin_is_valid(gonio_bin_from_index(index))) {
-            const gonio_pair p =
-                gonio_pair_from_half_difference(gonio_bin_centre(gonio_bin_from_index(index)));
-            pair[2 * count] = p;
-            pair[2 * count + 1] = (gonio_pair){p.outgoing, p.incident};
-            bin[count++] = index;
+        const gonio_bin bin = gonio_bin_from_index(index);
+        if (gonio_bin_is_valid(bin)) {
+            const gonio_pair p = gonio_pair_from_half_difference(gonio_bin_centre(bin));
+            list->pair[2 * list->count] = p;
+            list->pair[2 * list->count + 1] = (gonio_pair){p.outgoing, p.incident};
+            list->bin[list->count++] = index;
         }
     }
-    return count;
 }
 
-/* Clears the bits of channels in which the material has no data on either side of a pair: a
- * conversion to R, G, B has made them negative. */
-static void clear_missing(const double *value, const int32_t *bin, size_t count,
-                          unsigned char *measured)
+/* Clears the bits of what is missing; how many values are. */
+static size_t clear_missing(const pair_list *list, unsigned char *measured)
 {
-    for (size_t k = 0; k < 2 * count * GONIO_CHANNELS; k++) {
-        if (isnan(value[k])) {
+    size_t missing = 0;
+    for (size_t k = 0; k < 2 * list->count * GONIO_CHANNELS; k++) {
+        if (isnan(list->value[k])) {
             const unsigned bit = 1U << k % GONIO_CHANNELS;
-            measured[bin[k / (size_t)(2 * GONIO_CHANNELS)]] &= (unsigned char)~bit;
+            measured[list->bin[k / (size_t)(2 * GONIO_CHANNELS)]] &= (unsigned char)~bit;
+            missing++;
         }
     }
+    return missing;
+}
+
+static gonio_status look_for_missing(gonio_context *context, benchmark_sample *sample, int stride,
+                                     pair_list *list, size_t *missing)
+{
+    gonio_status status = GONIO_OK;
+    *missing = 0;
+    for (int slab = 0; slab < GONIO_THETA_H_BINS && status == GONIO_OK; slab++) {
+        list_pairs(slab, stride, list);
+        status = gonio_material_evaluate(context, sample->material, list->pair, 2 * list->count,
+                                         list->value);
+        if (status == GONIO_OK) {
+            *missing += clear_missing(list, sample->measured);
+        }
+    }
+    return status;
+}
+
+/* All bins are looked at only if something is missing in a sixteenth of them. */
+static gonio_status find_missing(gonio_context *context, benchmark_sample *sample, pair_list *list)
+{
+    enum { FIRST_LOOK = 16 };
+    size_t missing = 0;
+    gonio_status status = look_for_missing(context, sample, FIRST_LOOK, list, &missing);
+    if (status == GONIO_OK && missing > 0) {
+        status = look_for_missing(context, sample, 1, list, &missing);
+    }
+    return status;
 }
 
 static gonio_status find_measured(gonio_context *context, benchmark_sample *sample)
 {
     enum { ALL = (1 << GONIO_CHANNELS) - 1, PAIRS = 2 * GONIO_SLAB_BINS };
+    pair_list list = {
+        .pair = gonio_i_allocate(context, PAIRS, sizeof *list.pair),
+        .bin = gonio_i_allocate(context, GONIO_SLAB_BINS, sizeof *list.bin),
+        .value = gonio_i_allocate(context, (size_t)PAIRS * GONIO_CHANNELS, sizeof *list.value)};
     sample->measured = gonio_i_allocate(context, GONIO_BINS, 1);
-    gonio_pair *pair = gonio_i_allocate(context, PAIRS, sizeof *pair);
-    int32_t *bin = gonio_i_allocate(context, GONIO_SLAB_BINS, sizeof *bin);
-    double *value = gonio_i_allocate(context, (size_t)PAIRS * GONIO_CHANNELS, sizeof *value);
-    const bool room = sample->measured != NULL && pair != NULL && bin != NULL && value != NULL;
-    gonio_status status = room ? GONIO_OK : GONIO_ERROR_MEMORY;
-    if (room) {
+    gonio_status status = GONIO_ERROR_MEMORY;
+    if (sample->measured != NULL && list.pair != NULL && list.bin != NULL && list.value != NULL) {
         memset(sample->measured, ALL, GONIO_BINS);
+        status =
+            evaluates_colours(sample->material) ? find_missing(context, sample, &list) : GONIO_OK;
     }
-    for (int slab = 0;
-         slab < GONIO_THETA_H_BINS && status == GONIO_OK && evaluates_colours(sample->material);
-         slab++) {
-        const size_t count = list_pairs(slab, pair, bin);
-        status = gonio_material_evaluate(context, sample->material, pair, 2 * count, value);
-        if (status == GONIO_OK) {
-            clear_missing(value, bin, count, sample->measured);
-        }
-    }
-    free(pair);
-    free(bin);
-    free(value);
+    free(list.pair);
+    free(list.bin);
+    free(list.value);
     return status;
 }
 

@@ -106,28 +106,51 @@ static bool is_excused(gonio_status status)
            status == GONIO_ERROR_NUMERICAL || status == GONIO_ERROR_MISMATCH;
 }
 
+/* What is known of one completion. */
+typedef struct outcome {
+    benchmark_score score;
+    gonio_image_error image;
+    double expected, seconds;
+} outcome;
+
+static outcome no_outcome(void)
+{
+    outcome o = {.score = {.inside = NAN, .expected_here = NAN},
+                 .image = {NAN, NAN},
+                 .expected = NAN,
+                 .seconds = NAN};
+    for (int m = 0; m < GONIO_MOST_METRICS; m++) {
+        o.score.error.value[m] = NAN;
+    }
+    return o;
+}
+
+static gonio_status complete_and_judge(state *s, gonio_context *context, const benchmark_task *task,
+                                       size_t n, const benchmark_method *method, outcome *o)
+{
+    benchmark_completion completion = {.expected = NAN};
+    const double start = seconds_now();
+    gonio_status status = method->complete(context, task, &completion);
+    o->seconds = seconds_now() - start;
+    o->expected = completion.expected;
+    if (status == GONIO_OK) {
+        status = judge(s, context, task, n, &completion, &o->score, &o->image);
+    }
+    benchmark_completion_free(&completion);
+    return status;
+}
+
+/* The author of an external program wants to know why it fails; other methods may fail silently. */
 static gonio_status try_method(state *s, const benchmark_task *task, size_t n,
                                const benchmark_method *method, const char *name)
 {
     const size_t read = gonio_readings_describe(task->readings)->count;
-    benchmark_completion completion = {.expected = NAN};
-    benchmark_score score = {.inside = NAN, .expected_here = NAN};
-    gonio_image_error image = {NAN, NAN};
-    for (int m = 0; m < GONIO_MOST_METRICS; m++) {
-        score.error.value[m] = NAN;
-    }
-    const bool loud = method == &benchmark_external; /* its author wants to know why */
-    gonio_context *context = loud ? s->context : s->silent;
-    const double start = seconds_now();
-    gonio_status status = method->complete(context, task, &completion);
-    const double seconds = seconds_now() - start;
-    const double expected = completion.expected;
-    if (status == GONIO_OK) {
-        status = judge(s, context, task, n, &completion, &score, &image);
-    }
-    benchmark_completion_free(&completion);
+    const bool loud = method == &benchmark_external;
+    outcome o = no_outcome();
+    const gonio_status status =
+        complete_and_judge(s, loud ? s->context : s->silent, task, n, method, &o);
     if (status == GONIO_OK || (is_excused(status) && !loud)) {
-        add_row(s, n, name, read, &score, expected, &image, seconds);
+        add_row(s, n, name, read, &o.score, o.expected, &o.image, o.seconds);
         return GONIO_OK;
     }
     return gonio_i_fail(s->context, status, "%s by %s from %zu readings: %s",
