@@ -4,9 +4,15 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "leave_one_out.h"
+
 static const double FINEST = 0.05;
 static const double COARSER = 1.2;
 static const double COARSEST = 20.0; /* one cell holds all that have the same signs */
+
+/* Places that are the same. The lattice is moved, as rounded angles lie on the borders of cells. */
+static const double SAME = 0.001;
+static const double MOVED = 0.3819;
 
 /* A part of every variance that does not average out. */
 static const double LEFT_OPEN = GONIO_I_MODEL_DEVIATION * GONIO_I_MODEL_DEVIATION;
@@ -51,11 +57,11 @@ static void list_members(const gonio_i_column *column, member *members)
 }
 
 /* Sorts members by their cells; returns the number of cells. */
-static size_t sort_into_cells(member *members, size_t count, double pitch)
+static size_t sort_into_cells(member *members, size_t count, double pitch, double moved)
 {
     for (size_t i = 0; i < count; i++) {
         for (int k = 0; k < 4; k++) {
-            members[i].cell[k] = (int)floor(members[i].place.p[k] / pitch);
+            members[i].cell[k] = (int)floor(members[i].place.p[k] / pitch + moved);
         }
     }
     qsort(members, count, sizeof *members, compare_members);
@@ -117,6 +123,17 @@ static void merge_cells(const gonio_i_column *column, const member *members, gon
     }
 }
 
+static gonio_status merge_all(gonio_context *context, const gonio_i_column *column,
+                              const member *members, size_t cells, gonio_i_column *merged)
+{
+    merged->observation = gonio_i_allocate(context, cells, sizeof *merged->observation);
+    if (merged->observation == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    merge_cells(column, members, merged);
+    return GONIO_OK;
+}
+
 gonio_status gonio_i_merge(gonio_context *context, const gonio_i_column *column, size_t most,
                            gonio_i_column *merged)
 {
@@ -127,15 +144,29 @@ gonio_status gonio_i_merge(gonio_context *context, const gonio_i_column *column,
     }
     list_members(column, members);
     double pitch = FINEST;
-    size_t cells = sort_into_cells(members, column->count, pitch);
+    size_t cells = sort_into_cells(members, column->count, pitch, 0.0);
     while (cells > most && pitch < COARSEST) {
         pitch *= COARSER;
-        cells = sort_into_cells(members, column->count, pitch);
+        cells = sort_into_cells(members, column->count, pitch, 0.0);
     }
-    merged->observation = gonio_i_allocate(context, cells, sizeof *merged->observation);
-    if (merged->observation != NULL) {
-        merge_cells(column, members, merged);
-    }
+    const gonio_status status = merge_all(context, column, members, cells, merged);
     free(members);
-    return merged->observation != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
+    return status;
+}
+
+gonio_status gonio_i_merge_repeats(gonio_context *context, const gonio_i_column *column,
+                                   gonio_i_column *merged)
+{
+    *merged = (gonio_i_column){0};
+    member *members = gonio_i_allocate(context, column->count, sizeof *members);
+    if (members == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    list_members(column, members);
+    const size_t cells = sort_into_cells(members, column->count, SAME, MOVED);
+    const gonio_status status = cells < column->count
+                                    ? merge_all(context, column, members, cells, merged)
+                                    : gonio_i_thin_copy(context, column, column->count, merged);
+    free(members);
+    return status;
 }

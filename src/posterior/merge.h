@@ -17,4 +17,10 @@
 gonio_status gonio_i_merge(gonio_context *context, const gonio_i_column *column, size_t most,
                            gonio_i_column *merged);
 
+/* Merges readings of one place only, to a fiftieth of the FINEST lattice: repeats, on a turned
+ * sample too. They share the error of the model, so that n of them count as one whose noise is
+ * smaller. A column without such readings is copied, in its order. Otherwise as gonio_i_merge. */
+gonio_status gonio_i_merge_repeats(gonio_context *context, const gonio_i_column *column,
+                                   gonio_i_column *merged);
+
 #endif

@@ -145,7 +145,8 @@ static double best_score(const subset_scores *o)
 
 gonio_i_models gonio_i_models_of(gonio_i_model model)
 {
-    return (gonio_i_models){.count = 1, .model = {model}, .weight = {1.0}, .best = model};
+    return (gonio_i_models){
+        .count = 1, .model = {model}, .weight = {1.0}, .best = model, .judge_outliers = true};
 }
 
 /* log_weight[CHOICES], but for a constant, as shares of those that are not negligible. */
@@ -199,5 +200,6 @@ gonio_status gonio_i_models_weigh(gonio_context *context, const gonio_i_prior *p
         log_weight[k] = SHARE * chosen->score[k] + log_prior(k);
     }
     *models = normalise(log_weight, subset->readings[0]);
+    models->judge_outliers = wrong;
     return status;
 }

@@ -20,6 +20,7 @@ typedef struct gonio_i_models {
     gonio_i_model model[GONIO_I_MOST_MODELS];
     double weight[GONIO_I_MOST_MODELS]; /* add up to 1; none is negligible */
     gonio_i_model best;                 /* the likeliest by itself */
+    bool judge_outliers; /* readings that the others contradict are wrong, and are set aside */
 } gonio_i_models;
 
 /* One model alone. */

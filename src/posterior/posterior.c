@@ -115,11 +115,12 @@ static gonio_status mix_models(gonio_i_fit *e, const gonio_i_models *models, dou
     return status;
 }
 
-/* The best model, with outliers set aside. */
+/* The best model, with outliers set aside if the models were weighed without them. */
 static gonio_status settle(const finding *all, gonio_i_fit *e, size_t *outlying)
 {
     const gonio_status status = gonio_i_fit_solve(e, &all->models.best);
-    return status == GONIO_OK ? gonio_i_fit_settle(e, true, outlying) : status;
+    return status == GONIO_OK ? gonio_i_fit_settle(e, all->models.judge_outliers, outlying)
+                              : status;
 }
 
 /* The variance, of the best model, which e is solved for. c: scratch of K. */
@@ -459,13 +460,13 @@ static gonio_status find(finding *all, const gonio_i_column *columns)
 
 /* ---- wrong directions and models ---- */
 
-/* Copies, as what is read wrongly gets another variance. */
+/* Copies, as what is read wrongly gets another variance; readings of one place are merged. */
 static gonio_status copy_columns(gonio_context *context, const gonio_i_column *columns,
                                  size_t count, gonio_i_column *copies)
 {
     gonio_status status = GONIO_OK;
     for (size_t k = 0; k < count && status == GONIO_OK; k++) {
-        status = gonio_i_thin_copy(context, &columns[k], columns[k].count, &copies[k]);
+        status = gonio_i_merge_repeats(context, &columns[k], &copies[k]);
     }
     return status;
 }
@@ -488,24 +489,13 @@ static gonio_status weigh_models(finding *all, gonio_i_column *columns, size_t *
     return status;
 }
 
-static gonio_status find_with_models(finding *all, const gonio_i_column *columns)
+static gonio_status find_in_copies(finding *all, gonio_i_column *copies)
 {
-    gonio_i_column *copies = gonio_i_allocate(all->context, all->count, sizeof *copies);
     size_t wrong = 0;
-    gonio_status status = copies == NULL ? GONIO_ERROR_MEMORY
-                                         : copy_columns(all->context, columns, all->count, copies);
-    if (status == GONIO_OK) {
-        status = weigh_models(all, copies, &wrong);
-    }
+    const bool weigh = all->options->smoothness < 0.0;
+    const gonio_status status = weigh ? weigh_models(all, copies, &wrong) : GONIO_OK;
     all->p->outlying += wrong;
-    if (status == GONIO_OK) {
-        status = find(all, copies);
-    }
-    for (size_t k = 0; copies != NULL && k < all->count; k++) {
-        free(copies[k].observation);
-    }
-    free(copies);
-    return status;
+    return status == GONIO_OK ? find(all, copies) : status;
 }
 
 gonio_status gonio_i_posterior_find(gonio_context *context, const gonio_i_prior *prior,
@@ -523,5 +513,15 @@ gonio_status gonio_i_posterior_find(gonio_context *context, const gonio_i_prior 
     p->outlying = 0;
     p->residual = 0.0;
     p->surprise = 0.0;
-    return options->smoothness >= 0.0 ? find(&all, columns) : find_with_models(&all, columns);
+    gonio_i_column *copies = gonio_i_allocate(context, count, sizeof *copies);
+    gonio_status status =
+        copies == NULL ? GONIO_ERROR_MEMORY : copy_columns(context, columns, count, copies);
+    if (status == GONIO_OK) {
+        status = find_in_copies(&all, copies);
+    }
+    for (size_t k = 0; copies != NULL && k < count; k++) {
+        free(copies[k].observation);
+    }
+    free(copies);
+    return status;
 }

@@ -37,6 +37,41 @@ static void test_mean_and_variance(void **state)
     free(merged.observation);
 }
 
+/* Repeats are merged, to rounding, wherever the borders of a lattice are; other readings stay as
+ * they are, in their order. */
+static void test_repeats(void **state)
+{
+    (void)state;
+    enum { PLACES = 60 };
+    gonio_context *context = support_context();
+    gonio_i_observation reading[2 * PLACES];
+    for (int k = 0; k < PLACES; k++) {
+        const double degree = M_PI / 180.0;
+        const gonio_half_difference at = {
+            .theta_h = (PLACES - k) * degree, .theta_d = k * degree, .phi_d = 3.0 * k * degree};
+        reading[k] = (gonio_i_observation){.at = at, .g = k, .variance = OPEN + 0.01};
+        reading[PLACES + k] = reading[k];
+        reading[PLACES + k].at.theta_d += 1e-13;
+    }
+    gonio_i_column merged;
+    const gonio_i_column once = {PLACES, reading};
+    assert_int_equal(gonio_i_merge_repeats(context, &once, &merged), GONIO_OK);
+    assert_int_equal(merged.count, PLACES);
+    for (int k = 0; k < PLACES; k++) {
+        assert_true(merged.observation[k].g == k);
+        assert_true(merged.observation[k].variance == OPEN + 0.01);
+    }
+    free(merged.observation);
+    const gonio_i_column twice = {2 * PLACES, reading};
+    assert_int_equal(gonio_i_merge_repeats(context, &twice, &merged), GONIO_OK);
+    assert_int_equal(merged.count, PLACES);
+    for (int k = 0; k < PLACES; k++) {
+        assert_true(fabs(merged.observation[k].variance - OPEN - 0.005) < 1e-12);
+    }
+    free(merged.observation);
+    gonio_context_free(&context);
+}
+
 /* "At most this" does not mix with a value, or with a bound from below. */
 static void test_bounds_stay_apart(void **state)
 {
@@ -92,6 +127,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_mean_and_variance),
+        cmocka_unit_test(test_repeats),
         cmocka_unit_test(test_bounds_stay_apart),
         cmocka_unit_test(test_many),
     };
