@@ -47,10 +47,10 @@ static double log_prior(int k)
            (k < ALL_REMAINDERS ? 0.0 : FOR_PLAIN);
 }
 
-/* The gain in score from which outliers are set aside, for each direction's worth of them. With 40
- * readings, right readings of unusual materials gain 0 to 15 a direction, wrong readings 24 and
- * more. */
-static const double FOR_WRONG_DIRECTION = 14.0;
+/* The gain in score from which outliers are set aside, for each direction's worth of them. Right
+ * readings of unusual materials gain up to 29 a direction. Readings that are wrong in all channels
+ * are found before (wrong_directions.h). */
+static const double FOR_WRONG_DIRECTION = 30.0;
 
 /* Scores of every model given the readings, with outliers judged or not. */
 typedef struct subset_scores {
