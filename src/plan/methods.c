@@ -196,16 +196,18 @@ gonio_status gonio_plan_select(gonio_context *context, const double *vectors, si
                                          .stride = leading};
     const gonio_i_method *method = NULL;
     status = choose_method(context, NULL, &options, &method);
-    if (status == GONIO_OK && method->select == NULL) {
-        status = gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "%s needs a basis, not only its rows",
-                              method->name);
+    if (status != GONIO_OK) {
+        return status;
     }
-    if (status == GONIO_OK && (components == 0 || components > leading)) {
-        status =
-            gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                         "%zu components requested, but the rows have %zu", components, leading);
+    if (method->select == NULL) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "%s needs a basis, not only its rows",
+                            method->name);
     }
-    return status == GONIO_OK ? select_rows(method, &problem, &options, chosen, report) : status;
+    if (components == 0 || components > leading) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "%zu components requested, but the rows have %zu", components, leading);
+    }
+    return select_rows(method, &problem, &options, chosen, report);
 }
 
 /* ---- plans of rows ---- */
