@@ -2,6 +2,7 @@
 #include "builtin_basis.h"
 #include "command_line.h"
 #include "inputs.h"
+#include "interpretation.h"
 #include "json_output.h"
 #include "planning_options.h"
 #include "posterior_options.h"
@@ -18,7 +19,7 @@ typedef struct options {
 /* The result of gonio_plan_next. plan: NULL if the target is met. */
 typedef struct answer {
     double now;
-    const char *suspicion;
+    gonio_interpretation interpretation;
     gonio_plan *plan;
 } answer;
 
@@ -26,14 +27,13 @@ static int report(const tool *t, const options *o, const answer *a)
 {
     const gonio_plan *plan = a->plan;
     if (tool_json) {
-        return tool_print_json(
-            t, json_pack("{s:b, s:f, s:o, s:I, s:o, s:s?}", "target_met", plan == NULL,
-                         "expected_e6_percent", a->now, "plan",
-                         tool_json_text(plan != NULL ? o->output : NULL), "readings",
-                         (json_int_t)(plan != NULL ? plan->count : 0), "expected_then_percent",
-                         plan != NULL ? tool_json_number(plan->expected[plan->count - 1])
-                                      : json_null(),
-                         "suspicion", a->suspicion));
+        json_t *json = json_pack(
+            "{s:b, s:f, s:o, s:I, s:o}", "target_met", plan == NULL, "expected_e6_percent", a->now,
+            "plan", tool_json_text(plan != NULL ? o->output : NULL), "readings",
+            (json_int_t)(plan != NULL ? plan->count : 0), "expected_then_percent",
+            plan != NULL ? tool_json_number(plan->expected[plan->count - 1]) : json_null());
+        tool_add_interpretation(json, &a->interpretation);
+        return tool_print_json(t, json);
     }
     if (!tool_quiet && plan == NULL) {
         fprintf(tool_results(),
@@ -59,8 +59,8 @@ static gonio_status find_next(tool *t, const options *o, const gonio_basis *basi
     gonio_plan_options_default(&what);
     gonio_status status = planning_options_apply(t, &o->planning, &what, &candidates);
     if (status == GONIO_OK) {
-        status = gonio_plan_next(t->context, basis, readings, &how, &what, &a->now, &a->suspicion,
-                                 &a->plan);
+        status = gonio_plan_next(t->context, basis, readings, &how, &what, &a->now,
+                                 &a->interpretation, &a->plan);
     }
     free(candidates);
     return status;
@@ -84,7 +84,7 @@ static int next(tool *t, const options *o, const char *basis_path, const char *p
         status = find_next(t, o, basis, readings, &a);
     }
     if (status == GONIO_OK) {
-        tool_note_suspicion("next", path, a.suspicion);
+        tool_note_interpretation("next", path, &a.interpretation);
     }
     if (status == GONIO_OK && a.plan != NULL) {
         status = gonio_plan_write(t->context, a.plan, t->command_line, o->output);

@@ -3,10 +3,12 @@
 #include "builtin_basis.h"
 #include "command_line.h"
 #include "inputs.h"
+#include "interpretation.h"
 #include "json_output.h"
 #include "posterior_options.h"
 #include "write_options.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -66,9 +68,13 @@ static double largest(const double *value, size_t count)
     return most;
 }
 
+/* A result that reflects too much at larger angles only is one of too few readings there, degrees.
+ */
+static const double NOT_GRAZING = 60.0;
+
 static void warn(const gonio_reconstruction *r, const char *output, const energy *e)
 {
-    tool_note_suspicion("reconstruct", output, r->suspicion);
+    tool_note_interpretation("reconstruct", output, &r->interpretation);
     if (r->dark != NULL && !tool_quiet) {
         fprintf(stderr,
                 "gonio reconstruct: note: %s: the instrument seems to subtract up to "
@@ -79,8 +85,12 @@ static void warn(const gonio_reconstruction *r, const char *output, const energy
     if (e->known && e->albedo > 1.0 && !tool_quiet) {
         fprintf(stderr,
                 "gonio reconstruct: note: %s reflects %.2f times the light from theta_i = %g "
-                "degrees, which no material can do\n",
+                "degrees, which no material can do",
                 output, e->albedo, e->theta_i);
+        if (e->theta_i <= NOT_GRAZING) {
+            fprintf(stderr, " (%.2f if the values are reflectance factors)", e->albedo / M_PI);
+        }
+        fputc('\n', stderr);
     }
 }
 
@@ -98,16 +108,18 @@ static json_t *as_json(const gonio_reconstruction *r, const char *output, const 
 {
     json_t *made =
         r->field != NULL
-            ? json_pack("{s:o, s:I, s:I, s:f, s:f, s:I, s:f, s:s?, s:o}", "output",
+            ? json_pack("{s:o, s:I, s:I, s:f, s:f, s:I, s:f, s:o}", "output",
                         tool_json_text(output), "channels", (json_int_t)r->columns, "readings",
                         (json_int_t)r->readings, "expected_e6_percent", r->predicted_e6,
                         "residual_log", r->residual, "outlying", (json_int_t)r->outlying,
-                        "remainder_log", r->smoothness, "suspicion", r->suspicion,
-                        "dark_level_per_sr", dark_levels(r))
+                        "remainder_log", r->smoothness, "dark_level_per_sr", dark_levels(r))
             : json_pack("{s:o, s:I, s:I, s:o, s:f}", "output", tool_json_text(output), "components",
                         (json_int_t)r->components, "readings", (json_int_t)r->readings,
                         "condition_number", tool_json_number(r->condition_number), "residual_log",
                         r->residual);
+    if (r->field != NULL) {
+        tool_add_interpretation(made, &r->interpretation);
+    }
     if (e->known) {
         json_object_set_new(made, "largest_albedo", tool_json_number(e->albedo));
     }
@@ -131,6 +143,9 @@ static void print(const gonio_reconstruction *r, const char *output, const energ
     }
     if (e->known) {
         fprintf(tool_results(), ", albedo at most %.2f", e->albedo);
+        if (r->field != NULL && tool_as == NULL) {
+            fprintf(tool_results(), " (of reflectance factors %.2g)", e->albedo / M_PI);
+        }
     }
     if (r->outlying > 0) {
         fprintf(tool_results(), ", %zu value%s contradicted by the others", r->outlying,
@@ -139,15 +154,14 @@ static void print(const gonio_reconstruction *r, const char *output, const energ
     fputc('\n', tool_results());
 }
 
-/* Reports a result and its warnings, as a line or as an object appended to `results`. `table`:
- * whether the output is a table. */
+/* Reports a result and its warnings, as a line or as an object appended to `results`. */
 static void report(const gonio_basis *basis, const gonio_reconstruction *r, const char *output,
-                   bool table, json_t *results)
+                   json_t *results)
 {
     if (tool_quiet && results == NULL) {
         return;
     }
-    const energy e = table ? find_energy(basis, r) : (energy){0};
+    const energy e = find_energy(basis, r);
     warn(r, output, &e);
     if (results != NULL) {
         json_array_append_new(results, as_json(r, output, &e));
@@ -253,7 +267,7 @@ static gonio_status reconstruct_one(tool *t, const options *o, const gonio_basis
         status = write_both(t, o, basis, made, material, output);
     }
     if (status == GONIO_OK) {
-        report(basis, made, output, o->predict_at == NULL, results);
+        report(basis, made, output, results);
     }
     gonio_material_free(&material);
     gonio_reconstruction_free(&made);
@@ -285,7 +299,7 @@ static gonio_status reconstruct(tool *t, const options *o, const gonio_basis *ba
                                  (const char *const *)outputs, count, &how, made);
     for (size_t k = 0; k < count; k++) {
         if (made[k] != NULL) {
-            report(basis, made[k], outputs[k], true, results);
+            report(basis, made[k], outputs[k], results);
         }
         gonio_reconstruction_free(&made[k]);
     }

@@ -14,6 +14,8 @@ static const double ENOUGH = 0.5; /* share of a hemisphere that an albedo needs 
 static const double NARROW =
     0.25; /* share of one reading in an albedo, if its peak is too narrow */
 
+static const double ANISOTROPIC_PERCENT = 28.0; /* ln 1.28: gonio_interpretation.anisotropic */
+
 typedef struct description {
     const char *path;
     const char *format; /* NULL: unknown, for a pipe */
@@ -227,6 +229,12 @@ static void print_agreement(const gonio_survey *s)
                "(RMS)\n",
                s->repeats, tool_plural(s->repeats), s->repeats_percent);
     }
+    if (s->turned_pairs > 0) {
+        printf(
+            "  turned       %zu pair%s at other turns of the sample differ by %.2g %% (median)%s\n",
+            s->turned_pairs, tool_plural(s->turned_pairs), s->turned_percent,
+            s->turned_percent > ANISOTROPIC_PERCENT ? ": anisotropic?" : "");
+    }
     if (s->reciprocal_pairs > 0) {
         printf(
             "  reciprocity  %zu pair%s with light and viewer exchanged differ by %.2f %% (RMS)\n",
@@ -392,11 +400,13 @@ static json_t *energy_json(const description *d)
 static json_t *checks_json(const description *d)
 {
     const gonio_survey *s = d->survey;
-    return json_pack("{s:o, s:I, s:o, s:I, s:o, s:I, s:I, s:I, s:I, s:o}", "conserves_energy",
-                     energy_json(d), "repeats", (json_int_t)s->repeats, "repeats_rms_percent",
-                     percent_json(s->repeats, s->repeats_percent), "reciprocal_pairs",
-                     (json_int_t)s->reciprocal_pairs, "reciprocity_rms_percent",
-                     percent_json(s->reciprocal_pairs, s->reciprocity_percent), "empty",
+    return json_pack("{s:o, s:I, s:o, s:I, s:o, s:I, s:o, s:I, s:I, s:I, s:I, s:o}",
+                     "conserves_energy", energy_json(d), "repeats", (json_int_t)s->repeats,
+                     "repeats_rms_percent", percent_json(s->repeats, s->repeats_percent),
+                     "reciprocal_pairs", (json_int_t)s->reciprocal_pairs, "reciprocity_rms_percent",
+                     percent_json(s->reciprocal_pairs, s->reciprocity_percent), "turned_pairs",
+                     (json_int_t)s->turned_pairs, "turned_median_percent",
+                     percent_json(s->turned_pairs, s->turned_percent), "empty",
                      (json_int_t)s->empty, "zeros", (json_int_t)count_zeros(d), "below_zero",
                      (json_int_t)d->view->below_zero, "outliers", (json_int_t)s->outliers,
                      "outlier_lines", lines_json(d));

@@ -138,16 +138,6 @@ int tool_on_progress(void *user, const char *task, double fraction)
     return interrupted != 0;
 }
 
-void tool_note_suspicion(const char *command, const char *path, const char *suspicion)
-{
-    if (suspicion != NULL && !tool_quiet) {
-        fprintf(stderr,
-                "gonio %s: note: %s: the readings fit far better if %s (--no-checks turns this "
-                "check off)\n",
-                command, path, suspicion);
-    }
-}
-
 const char *tool_plural(size_t count)
 {
     return count == 1 ? "" : "s";

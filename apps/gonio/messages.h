@@ -40,10 +40,6 @@ int tool_on_progress(void *user, const char *task, double fraction);
 /* Removes the progress bar from the terminal. */
 void tool_clear_progress(tool_messages *m);
 
-/* Prints the usual mistake that would explain readings better (gonio_reconstruction.suspicion);
- * NULL: nothing. path: the readings. */
-void tool_note_suspicion(const char *command, const char *path, const char *suspicion);
-
 /* The plural ending for `count`: "s", or "" for 1. */
 const char *tool_plural(size_t count);
 

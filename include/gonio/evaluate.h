@@ -74,8 +74,10 @@ typedef struct gonio_survey {
     double repeats_percent;     /* root mean square difference relative to the mean */
     size_t reciprocal_pairs; /* of readings with light and viewer exchanged, and their difference */
     double reciprocity_percent;
-    size_t outliers;                     /* readings 8 times above or below all of their nearest
-                                          * neighbours, which agree to a factor of 3 */
+    size_t turned_pairs;   /* of readings at the same angles and other turns of the sample; the */
+    double turned_percent; /* median difference of these: large of anisotropic materials */
+    size_t outliers;       /* readings 8 times above or below all of their nearest
+                            * neighbours, which agree to a factor of 3 */
     size_t outlier[GONIO_MOST_OUTLIERS]; /* the first of them */
 } gonio_survey;
 

@@ -242,6 +242,31 @@ GONIO_API gonio_status gonio_readings_drop_empty_channels(gonio_context *context
 GONIO_API gonio_status gonio_readings_share_channels(gonio_context *context, gonio_readings *a,
                                                      gonio_readings *b);
 
+/* ---- what readings may be ---- */
+
+/* Something else that readings may be. */
+typedef struct gonio_alternative {
+    const char *mistake; /* "the values are in per cent; divide them by 100"; static */
+    double albedo;       /* that the readings have then, in the brightest channel */
+} gonio_alternative;
+
+enum { GONIO_MOST_ALTERNATIVES = 4, GONIO_MOST_UNMEASURED_LINES = 8 };
+
+/* What the readings seem to be, by the method posterior with a basis of separate channels. */
+typedef struct gonio_interpretation {
+    double albedo;       /* of the readings as they are, in the brightest channel, a mean over
+                          * three incidences; 0 where it was not looked for (no_checks) */
+    size_t alternatives; /* usual mistakes that explain the readings far better, or without which
+                          * they reflect more than they receive: the likeliest first */
+    gonio_alternative alternative[GONIO_MOST_ALTERNATIVES];
+    size_t unmeasured; /* readings of nothing: far below what the others predict, as where a
+                        * detector hides the light. They are left out */
+    size_t unmeasured_line[GONIO_MOST_UNMEASURED_LINES]; /* of the file: the first of them */
+    size_t turned_pairs; /* readings at the angles of others but at another turn of the sample */
+    double turned;       /* median of |ln| of the ratio of their values; 0 without such pairs */
+    bool anisotropic;    /* they differ by far more than readings of an isotropic material do */
+} gonio_interpretation;
+
 /* ---- the simulated instrument ---- */
 
 typedef struct gonio_instrument_options {

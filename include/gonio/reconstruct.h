@@ -34,7 +34,7 @@ typedef struct gonio_reconstruct_options {
                         * in place of noise and floor */
     double saturation; /* 1/sr; readings of this value or more are lower bounds; 0: none */
     bool deviation;    /* also compute the standard deviation of every cell */
-    bool no_checks;    /* do not look for usual mistakes (gonio_reconstruction.suspicion) nor for a
+    bool no_checks;    /* do not look for usual mistakes (gonio_interpretation) nor for a
                         * dark level (gonio_reconstruction.dark) */
 } gonio_reconstruct_options;
 
@@ -70,12 +70,12 @@ typedef struct gonio_reconstruction {
     size_t outlying;     /* readings that the others contradict; they have almost no weight */
     size_t wavelengths;  /* 0 without wavelengths: R, G, B if there are three */
     double *wavelength;  /* [wavelengths], nm */
-    const char *suspicion; /* a usual mistake that explains the readings far better ("the values
-                            * include the cosine of theta_o"), static; NULL if there is none */
+    const char *suspicion; /* the likeliest alternative of the interpretation; NULL without one */
+    gonio_interpretation interpretation;
     double *dark; /* [columns], 1/sr: the dark level that the instrument subtracts in excess: it
                    * reads max(0, rho - dark/cos theta_i). The field is corrected for it. NULL if
-                   * no reading is zero, if levels explain little, with a suspicion, with no_checks,
-                   * with a joint basis, and from rows */
+                   * no reading is zero, if levels explain little, with an alternative, with
+                   * no_checks, with a joint basis, and from rows */
 } gonio_reconstruction;
 
 /* Predicts the BRDF at any directions from a reconstruction by posterior: value[channels] in 1/sr
@@ -155,15 +155,15 @@ GONIO_API gonio_status gonio_reconstruct_material(gonio_context *context, const 
  * be NULL. Of plan_options, the fields count, metric, candidates and target are used, as by the
  * method expected-error. Directions that were read are not proposed again. expected[] is the
  * expected E6 of this material, per cent. Usual mistakes and a dark level are looked for as in a
- * reconstruction; *suspicion is gonio_reconstruction.suspicion. *expected_now is the expected E6
+ * reconstruction; *interpretation is that of gonio_reconstruction. *expected_now is the expected E6
  * without another reading. If it is at most plan_options->target (above 0), *plan is NULL.
- * suspicion and expected_now may be NULL. Errors: those of gonio_reconstruct and
+ * interpretation and expected_now may be NULL. Errors: those of gonio_reconstruct and
  * gonio_plan_create. */
 GONIO_API gonio_status gonio_plan_next(gonio_context *context, const gonio_basis *basis,
                                        const gonio_readings *readings,
                                        const gonio_reconstruct_options *options,
                                        const gonio_plan_options *plan_options, double *expected_now,
-                                       const char **suspicion, gonio_plan **plan);
+                                       gonio_interpretation *interpretation, gonio_plan **plan);
 
 GONIO_API void gonio_reconstruction_free(gonio_reconstruction **reconstruction);
 

@@ -215,6 +215,9 @@ static gonio_status survey_all(gonio_context *context, const gonio_readings *rea
     survey_directions(readings, s);
     gonio_i_survey_repeats(readings, s);
     if (status == GONIO_OK) {
+        status = gonio_i_survey_turned(context, readings, s);
+    }
+    if (status == GONIO_OK) {
         status = survey_incidences(context, readings, s);
     }
     if (status == GONIO_OK) {

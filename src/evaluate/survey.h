@@ -10,8 +10,10 @@ gonio_status gonio_i_survey_albedo(gonio_context *context, const gonio_readings 
                                    const size_t *member, gonio_incidence *incidence,
                                    double *albedo);
 
-/* What repeats, reciprocal pairs and neighbours differ by. Errors: _MEMORY. */
+/* What repeats, turned readings, reciprocal pairs and neighbours differ by. Errors: _MEMORY. */
 void gonio_i_survey_repeats(const gonio_readings *readings, gonio_survey *survey);
+gonio_status gonio_i_survey_turned(gonio_context *context, const gonio_readings *readings,
+                                   gonio_survey *survey);
 gonio_status gonio_i_survey_reciprocity(gonio_context *context, const gonio_readings *readings,
                                         gonio_survey *survey);
 gonio_status gonio_i_survey_outliers(gonio_context *context, const gonio_readings *readings,

@@ -47,6 +47,16 @@ void gonio_i_survey_repeats(const gonio_readings *readings, gonio_survey *survey
     survey->repeats_percent = percent_of(&d);
 }
 
+gonio_status gonio_i_survey_turned(gonio_context *context, const gonio_readings *readings,
+                                   gonio_survey *survey)
+{
+    double median = 0.0;
+    const gonio_status status =
+        gonio_i_readings_compare_turned(context, readings, &survey->turned_pairs, &median);
+    survey->turned_percent = 100.0 * expm1(median);
+    return status;
+}
+
 gonio_status gonio_i_survey_reciprocity(gonio_context *context, const gonio_readings *readings,
                                         gonio_survey *survey)
 {

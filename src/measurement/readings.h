@@ -114,6 +114,12 @@ gonio_status gonio_i_readings_group(gonio_context *context, gonio_readings *read
 gonio_status gonio_i_readings_count_pole_repeats(gonio_context *context,
                                                  const gonio_readings *readings, size_t *repeats);
 
+/* Compares readings at the same theta_i, theta_o and phi_o - phi_i, to 0.01 degrees, that were made
+ * at other turns of the sample. pairs: how many; median: that of the mean over the channels of
+ * |ln((a + s)/(b + s))|, 0 without pairs. Errors: _MEMORY. */
+gonio_status gonio_i_readings_compare_turned(gonio_context *context, const gonio_readings *readings,
+                                             size_t *pairs, double *median);
+
 /* Errors: _DATA if a direction is listed more than once for a channel. */
 gonio_status gonio_i_readings_refuse_repeats(gonio_context *context, const gonio_readings *readings,
                                              bool measured);

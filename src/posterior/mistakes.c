@@ -1,28 +1,46 @@
 /* Usual mistakes in readings: see mistakes.h.
  *
- * Each usual mistake is a hypothesis: the readings' density under the prior if they were made with
- * it, against that of the readings as they are (their evidences: MacKay 1992). */
+ * Units are judged by the albedo, because materials differ by more than a factor of pi: a material
+ * that reflects more than it receives is not one, and what makes it plausible is offered. Angles
+ * and cosines are judged by how well readings predict each other (transform_trial.h). An unusual
+ * material is explained better by many transforms, so a mistake has to explain it better than any
+ * change of the unit does. */
 #include "mistakes.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-#include "parallel_for.h"
-#include "leave_one_out.h"
+#include "transform_trial.h"
 
-/* A factor of pi alone is not among the hypotheses: materials differ by more than that. */
+/* What a mistake in angles has to explain, in ln of the density of a column. Among right readings
+ * the largest is below (docs/experiments.md). */
+static const double CONVINCING = 10.0;
 
-/* The log likelihood ratio from which a mistake is reported. */
-static const double CONVINCING = 30.0;
+/* The same where velvet and cloth are easily mistaken: they too are bright towards the light. */
+static const double OF_MIRROR = 20.0;
 
-/* alpha of the remainder, log units. The readings without a mistake may also have the larger one,
- * so that an unusual material is not taken for a mistake. Narrow peaks are included, because those
- * of a mirror are higher than any in the database. */
-static const double SOME = 0.25;
-static const double MUCH = 0.5;
-static const double PEAK = 8.0;
+/* The same of angles that are all below pi/2 degrees, as nobody measures. */
+static const double OF_RADIANS = 2.0;
 
-enum { MOST_TRIED = 64, MOST_COLUMNS = 3 };
+/* Mistakes that explain less by this are not told. A unit of ln of the density; of MERL's numbers
+ * less, because their factor is far from the others. */
+static const double SIMILAR = 5.0;
+static const double SIMILAR_UNITS = 30.0;
+static const double SIMILAR_MERL = 4.0;
+
+/* A mean albedo that is too large for a material even if the readings say little of it; and pi
+ * times the median value from which that is not the doing of single readings. */
+static const double TOO_MUCH = 1.5;
+static const double BRIGHT = 0.6;
+
+/* The albedos that another unit may give. */
+static const double DARKEST = 0.004;
+static const double BRIGHTEST = 1.05;
+
+static const double USUAL_ALBEDO = 0.3;
+
+/* Fewer readings do not tell of angles. */
+enum { FEW = 5 };
 
 static double to_radians(double degrees_taken_for_radians)
 {
@@ -46,170 +64,278 @@ static gonio_pair from_mirror(gonio_pair p)
     return (gonio_pair){p.incident, {p.outgoing.theta, p.outgoing.phi + M_PI}};
 }
 
-static const struct hypothesis {
+typedef struct hypothesis {
     gonio_i_transform transform;
     const char *name;
-} hypotheses[] = {
-    {{.factor = 1.0, .by_cosine = true},
-     "the values include the cosine of theta_o; divide them by it"},
-    {{.factor = 0.01}, "the values are in per cent; divide them by 100"},
+    double convincing; /* what it has to explain; 0 for a unit */
+    bool colours;      /* only of R, G, B */
+} hypothesis;
+
+static const hypothesis UNITS[] = {
+    {{.factor = 1.0 / M_PI}, "the values are reflectance factors; divide them by pi", 0.0, false},
+    {{.factor = 0.01}, "the values are in per cent; divide them by 100", 0.0, false},
     {{.factor = 0.01 / M_PI},
-     "the values are reflectance factors in per cent; divide them by 100 pi"},
+     "the values are reflectance factors in per cent; divide them by 100 pi",
+     0.0,
+     false},
     {{.factor = 1.0, .merl = true},
-     "the values are numbers of a MERL file; multiply them by (1, 1.15, 1.66)/1500"},
-    {{.factor = 1.0, .change = from_radians}, "the angles are in radians; write them in degrees"},
-    {{.factor = 1.0, .change = from_elevation},
-     "theta is measured from the surface; give 90 degrees less theta"},
-    {{.factor = 1.0, .change = from_mirror},
-     "phi_o is measured from the mirror direction; add 180 degrees to it"},
+     "the values are numbers of a MERL file; multiply them by (1, 1.15, 1.66)/1500",
+     0.0,
+     true},
 };
 
-enum { HYPOTHESES = sizeof hypotheses / sizeof *hypotheses };
+static const hypothesis ANGLES[] = {
+    {{.factor = 1.0, .by_cosine_i = true},
+     "the values include the cosine of theta_i; divide them by it",
+     CONVINCING,
+     false},
+    {{.factor = 1.0, .by_cosine = true},
+     "the values include the cosine of theta_o; divide them by it",
+     CONVINCING,
+     false},
+    {{.factor = 1.0, .change = from_radians},
+     "the angles are in radians; write them in degrees",
+     OF_RADIANS,
+     false},
+    {{.factor = 1.0, .change = from_elevation},
+     "theta is measured from the surface; give 90 degrees less theta",
+     CONVINCING,
+     false},
+    {{.factor = 1.0, .change = from_mirror},
+     "phi_o is measured from the mirror direction; add 180 degrees to it, unless the material "
+     "is a retroreflector",
+     OF_MIRROR,
+     false},
+};
 
-/* Whether the directions exist under a hypothesis. */
-static bool is_possible(const gonio_readings_view *view, const gonio_i_transform *transform)
+enum {
+    UNITS_COUNT = sizeof UNITS / sizeof *UNITS,
+    ANGLES_COUNT = sizeof ANGLES / sizeof *ANGLES,
+};
+
+/* A hypothesis that has been tried. */
+typedef struct tried {
+    const hypothesis *hypothesis;
+    bool possible;
+    gonio_i_verdict verdict;
+    double largest; /* albedo of the brightest channel */
+    double mean;    /* and of all */
+    double worth;   /* by which alternatives are sorted */
+} tried;
+
+typedef struct search {
+    gonio_i_transform_trial trial;
+    gonio_i_transform as_it_is;
+    gonio_i_verdict given; /* of the readings as they are */
+    double mean;           /* albedo of the same */
+    bool units_tried;
+    tried unit[UNITS_COUNT];
+    tried angle[ANGLES_COUNT];
+    gonio_interpretation *found;
+} search;
+
+static gonio_status try_one(search *s, const hypothesis *h, tried *t)
 {
-    for (size_t k = 0; k < view->count && transform->change != NULL; k++) {
-        const gonio_pair changed = transform->change(view->pair[k]);
-        const double largest = fmax(changed.incident.theta, changed.outgoing.theta);
-        const double least = fmin(changed.incident.theta, changed.outgoing.theta);
-        if (!(largest < M_PI / 2.0 && least >= 0.0)) {
-            return false;
-        }
-    }
-    return true;
+    const bool colours = gonio_readings_are_colours(s->trial.readings);
+    t->hypothesis = h;
+    t->possible =
+        (colours || !h->colours) && gonio_i_transform_trial_is_possible(&s->trial, &h->transform);
+    gonio_status status = t->possible
+                              ? gonio_i_transform_trial_judge(&s->trial, &h->transform, &t->verdict)
+                              : GONIO_OK;
+    return status;
 }
 
-/* The readings on which hypotheses are tried: MOST_TRIED readings of a few columns. */
-typedef struct trial {
-    gonio_context *context;
-    const gonio_i_prior *prior;
-    const gonio_readings *readings;
-    const gonio_i_noise *noise;
-    size_t count;
-    size_t channel[MOST_COLUMNS];
-    double share[MOST_COLUMNS]; /* of the column's readings */
-    gonio_i_column column[MOST_COLUMNS];
-    gonio_i_sites *sites[MOST_COLUMNS]; /* of the directions as they are read */
-} trial;
-
-static gonio_status begin(trial *t, const gonio_i_columns *columns)
+static gonio_status try_units(search *s)
 {
     gonio_status status = GONIO_OK;
-    const size_t tried = columns->count < MOST_COLUMNS ? columns->count : MOST_COLUMNS;
-    for (size_t k = 0; k < tried && status == GONIO_OK; k++) {
-        const size_t channel = k * columns->count / tried;
-        const gonio_i_column *all = &columns->column[channel];
-        if (all->count > 0) {
-            gonio_i_column *thinned = &t->column[t->count];
-            status = gonio_i_thin_copy(t->context, all, MOST_TRIED, thinned);
-            t->channel[t->count] = channel;
-            t->share[t->count++] = (double)thinned->count / (double)all->count;
+    for (int k = 0; k < UNITS_COUNT && !s->units_tried && status == GONIO_OK; k++) {
+        status = try_one(s, &UNITS[k], &s->unit[k]);
+    }
+    s->units_tried = true;
+    return status;
+}
+
+static gonio_status find_albedo(search *s, tried *t)
+{
+    return gonio_i_transform_trial_albedo(&s->trial, &t->hypothesis->transform, &t->verdict,
+                                          &t->largest, &t->mean);
+}
+
+/* ---- what is offered ---- */
+
+static int compare_worth(const void *a, const void *b)
+{
+    const tried *x = a;
+    const tried *y = b;
+    return (x->worth < y->worth) - (x->worth > y->worth);
+}
+
+/* Offers those that are worth something, of `similar` worth, best first. */
+static void offer(search *s, tried *all, size_t count, double similar)
+{
+    gonio_interpretation *found = s->found;
+    qsort(all, count, sizeof *all, compare_worth);
+    for (size_t k = 0; k < count && found->alternatives < GONIO_MOST_ALTERNATIVES; k++) {
+        if (all[k].worth > -INFINITY && all[k].worth >= all[0].worth - similar) {
+            found->alternative[found->alternatives++] =
+                (gonio_alternative){all[k].hypothesis->name, all[k].largest};
         }
     }
-    return status == GONIO_OK
-               ? gonio_i_sites_share(t->context, t->prior, t->column, t->count, t->sites)
-               : status;
 }
 
-static void end(trial *t)
-{
-    gonio_i_sites_release(t->sites, t->count);
-    for (size_t k = 0; k < t->count; k++) {
-        free(t->column[k].observation);
-    }
-}
+/* ---- angles and cosines ---- */
 
-/* One model of the columns, with the sites that they have now. */
-typedef struct weighing {
-    const trial *t;
-    gonio_i_sites *const *sites;
-    double alpha;
-    double evidence[MOST_COLUMNS];
-} weighing;
-
-static gonio_status weigh_column(void *data, gonio_context *context, size_t k)
+/* The best explanation without a mistake in angles: the readings in any unit. */
+static const gonio_i_verdict *best_unit(const search *s)
 {
-    weighing *w = data;
-    return gonio_i_fit_evidence(context, w->sites[k], &w->t->column[k], w->alpha, PEAK,
-                                &w->evidence[k]);
-}
-
-static gonio_status weigh_columns(const trial *t, gonio_i_sites *const *sites,
-                                  const gonio_i_transform *transform, double alpha,
-                                  double *evidence)
-{
-    weighing w = {.t = t, .sites = sites, .alpha = alpha};
-    gonio_i_steps steps = {.task = NULL};
-    const gonio_status status =
-        gonio_i_parallel_for(t->context, &steps, t->count, weigh_column, &w);
-    *evidence = 0.0;
-    for (size_t k = 0; k < t->count && status == GONIO_OK; k++) {
-        *evidence +=
-            w.evidence[k] + t->share[k] * gonio_i_transform_logarithm(t->readings, t->channel[k],
-                                                                      t->noise, transform);
-    }
-    return status;
-}
-
-/* ln of the density of the values under a transform and with a remainder of size alpha, scaled from
- * the readings that are tried to all. Only directions that change need other sites. */
-static gonio_status weigh(trial *t, const gonio_i_transform *transform, double alpha,
-                          double *evidence)
-{
-    for (size_t k = 0; k < t->count; k++) {
-        gonio_i_column_transform(t->readings, t->noise, transform, &t->column[k]);
-    }
-    if (transform->change == NULL) {
-        return weigh_columns(t, t->sites, transform, alpha, evidence);
-    }
-    gonio_i_sites *changed[MOST_COLUMNS] = {NULL};
-    gonio_status status = gonio_i_sites_share(t->context, t->prior, t->column, t->count, changed);
-    if (status == GONIO_OK) {
-        status = weigh_columns(t, changed, transform, alpha, evidence);
-    }
-    gonio_i_sites_release(changed, t->count);
-    return status;
-}
-
-static gonio_status try_hypotheses(trial *t, const double *dark, const char **mistake)
-{
-    const gonio_i_transform as_it_is = {.factor = 1.0, .dark = dark};
-    const gonio_readings_view *view = gonio_readings_describe(t->readings);
-    double here = 0.0;
-    double unusual = 0.0;
-    gonio_status status = weigh(t, &as_it_is, SOME, &here);
-    if (status == GONIO_OK) {
-        status = weigh(t, &as_it_is, MUCH, &unusual);
-    }
-    double best = fmax(here + CONVINCING, unusual);
-    for (int k = 0; k < HYPOTHESES && status == GONIO_OK; k++) {
-        double evidence = 0.0;
-        if (is_possible(view, &hypotheses[k].transform)) {
-            status = weigh(t, &hypotheses[k].transform, SOME, &evidence);
-            if (status == GONIO_OK && evidence > best) {
-                best = evidence;
-                *mistake = hypotheses[k].name;
-            }
+    const gonio_i_verdict *best = &s->given;
+    for (int k = 0; k < UNITS_COUNT; k++) {
+        if (s->unit[k].possible && s->unit[k].verdict.sum > best->sum) {
+            best = &s->unit[k].verdict;
         }
     }
+    return best;
+}
+
+/* What a hypothesis is worth: the margin over no mistake; -INFINITY if that does not convince. */
+static gonio_status value_angle(search *s, tried *t)
+{
+    const double least = t->possible ? t->hypothesis->convincing : INFINITY;
+    const bool of_radians = t->hypothesis->convincing == OF_RADIANS;
+    gonio_status status = GONIO_OK;
+    t->worth =
+        t->possible ? gonio_i_transform_trial_margin(&s->trial, &t->verdict, &s->given) : -INFINITY;
+    if (t->worth > least && !of_radians) {
+        status = try_units(s);
+        t->worth =
+            fmin(t->worth, gonio_i_transform_trial_margin(&s->trial, &t->verdict, best_unit(s)));
+    }
+    if (t->worth > least && status == GONIO_OK) {
+        status = find_albedo(s, t);
+    }
+    t->worth = t->worth > least && (of_radians || t->mean <= TOO_MUCH) ? t->worth : -INFINITY;
     return status;
 }
 
-gonio_status gonio_i_mistake_find(gonio_context *context, const gonio_i_prior *prior,
-                                  const gonio_readings *readings, const gonio_i_noise *noise,
-                                  const gonio_i_columns *columns, const double *dark,
-                                  const char **mistake)
+static gonio_status find_angles(search *s)
 {
-    trial t = {.context = context, .prior = prior, .readings = readings, .noise = noise};
-    *mistake = NULL;
+    gonio_status status = GONIO_OK;
+    for (int k = 0; k < ANGLES_COUNT && status == GONIO_OK; k++) {
+        status = try_one(s, &ANGLES[k], &s->angle[k]);
+        if (status == GONIO_OK) {
+            status = value_angle(s, &s->angle[k]);
+        }
+    }
+    if (status == GONIO_OK) {
+        offer(s, s->angle, ANGLES_COUNT, SIMILAR);
+    }
+    return status;
+}
+
+/* ---- units ---- */
+
+static int compare_numbers(const void *a, const void *b)
+{
+    const double x = *(const double *)a;
+    const double y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Whether most readings are bright, not only a few that an albedo is made of. */
+static gonio_status find_bright(const search *s, bool *bright)
+{
+    const gonio_i_transform_trial *t = &s->trial;
+    size_t count = 0;
+    for (size_t c = 0; c < t->count; c++) {
+        count += t->column[c].count;
+    }
+    double *value = gonio_i_allocate(t->context, count, sizeof *value);
+    if (value == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    count = 0;
+    for (size_t c = 0; c < t->count; c++) {
+        for (size_t i = 0; i < t->column[c].count; i++) {
+            value[count++] = gonio_readings_value(t->readings, t->column[c].observation[i].reading,
+                                                  t->channel[c]);
+        }
+    }
+    qsort(value, count, sizeof *value, compare_numbers);
+    *bright = count > 0 && M_PI * value[count / 2] > BRIGHT;
+    free(value);
+    return GONIO_OK;
+}
+
+/* The closer the albedo is to that of usual materials the better. The scores of units prefer dark
+ * materials, which all look alike: they only exclude. */
+static gonio_status value_unit(search *s, tried *t, double best)
+{
+    const double similar = t->hypothesis->transform.merl ? SIMILAR_MERL : SIMILAR_UNITS;
+    const bool explains = t->possible && t->verdict.sum >= best - similar;
+    const gonio_status status = explains ? find_albedo(s, t) : GONIO_OK;
+    t->worth = explains && t->mean > DARKEST && t->mean < BRIGHTEST
+                   ? -fabs(log(t->mean / USUAL_ALBEDO))
+                   : -INFINITY;
+    return status;
+}
+
+static gonio_status find_units(search *s)
+{
+    bool bright = false;
+    gonio_status status = s->mean > TOO_MUCH ? find_bright(s, &bright) : GONIO_OK;
+    if (!bright || status != GONIO_OK) {
+        return status;
+    }
+    status = try_units(s);
+    for (int k = 0; k < UNITS_COUNT && status == GONIO_OK; k++) {
+        status = value_unit(s, &s->unit[k], best_unit(s)->sum);
+    }
+    if (status == GONIO_OK) {
+        offer(s, s->unit, UNITS_COUNT, INFINITY);
+    }
+    return status;
+}
+
+static gonio_status find(search *s)
+{
+    gonio_status status = gonio_i_transform_trial_judge(&s->trial, &s->as_it_is, &s->given);
+    if (status == GONIO_OK) {
+        status = gonio_i_transform_trial_albedo(&s->trial, &s->as_it_is, &s->given,
+                                                &s->found->albedo, &s->mean);
+    }
+    if (status == GONIO_OK && gonio_readings_describe(s->trial.readings)->count >= FEW) {
+        status = find_angles(s);
+    }
+    return status == GONIO_OK && s->found->alternatives == 0 ? find_units(s) : status;
+}
+
+static void release(search *s)
+{
+    free(s->given.score);
+    for (int k = 0; k < UNITS_COUNT; k++) {
+        free(s->unit[k].verdict.score);
+    }
+    for (int k = 0; k < ANGLES_COUNT; k++) {
+        free(s->angle[k].verdict.score);
+    }
+    gonio_i_transform_trial_end(&s->trial);
+}
+
+gonio_status gonio_i_mistakes_find(gonio_context *context, const gonio_i_prior *prior,
+                                   const gonio_readings *readings, const gonio_i_noise *noise,
+                                   const gonio_i_columns *columns, const double *dark,
+                                   gonio_interpretation *interpretation)
+{
+    search s = {.as_it_is = {.factor = 1.0, .dark = dark}, .found = interpretation};
     if (prior->view->channels == GONIO_JOINT) {
         return GONIO_OK; /* the only column holds all channels */
     }
-    gonio_status status = begin(&t, columns);
-    if (status == GONIO_OK) {
-        status = try_hypotheses(&t, dark, mistake);
+    gonio_status status =
+        gonio_i_transform_trial_begin(context, prior, readings, noise, columns, &s.trial);
+    if (status == GONIO_OK && s.trial.count > 0) {
+        status = find(&s);
     }
-    end(&t);
+    release(&s);
     return status;
 }

@@ -32,8 +32,10 @@ static double variance_of(double value, double deviation, double s, const gonio_
 /* The factor of a value. */
 static double factor_of(gonio_pair pair, double s, const gonio_i_transform *transform)
 {
-    const double cosine = transform->by_cosine ? cos(pair.outgoing.theta) : 1.0;
-    return transform->factor * (transform->merl ? s : 1.0) / fmax(cosine, 1e-3);
+    const double outgoing = transform->by_cosine ? cos(pair.outgoing.theta) : 1.0;
+    const double incident = transform->by_cosine_i ? cos(pair.incident.theta) : 1.0;
+    return transform->factor * (transform->merl ? s : 1.0) /
+           (fmax(outgoing, 1e-3) * fmax(incident, 1e-3));
 }
 
 static double true_value(gonio_pair pair, size_t channel, double value, double s,
@@ -166,18 +168,12 @@ gonio_status gonio_i_columns_check(gonio_context *context, const gonio_i_columns
     return GONIO_OK;
 }
 
-double gonio_i_transform_logarithm(const gonio_readings *readings, size_t channel,
-                                   const gonio_i_noise *noise, const gonio_i_transform *transform)
+double gonio_i_transform_slope(const gonio_readings *readings, size_t reading, size_t channel,
+                               const gonio_i_transform *transform)
 {
-    const gonio_readings_view *view = gonio_readings_describe(readings);
+    const gonio_pair pair = gonio_readings_describe(readings)->pair[reading];
     const double s = gonio_readings_scale(readings, channel);
-    double sum = 0.0;
-    for (size_t k = 0; k < view->count; k++) {
-        const double value = gonio_readings_value(readings, k, channel);
-        if (!isnan(value) && bound_of(value, noise) == 0) {
-            const double factor = factor_of(view->pair[k], s, transform);
-            sum += log(factor) - log(s + true_value(view->pair[k], channel, value, s, transform));
-        }
-    }
-    return sum;
+    const double value = gonio_readings_value(readings, reading, channel);
+    return log(factor_of(pair, s, transform)) -
+           log(s + true_value(pair, channel, value, s, transform));
 }

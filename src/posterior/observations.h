@@ -17,6 +17,7 @@ typedef struct gonio_i_noise {
 typedef struct gonio_i_transform {
     double factor;                         /* of the values; */
     bool by_cosine;                        /* which are divided by cos theta_o too */
+    bool by_cosine_i;                      /* and by cos theta_i */
     bool merl;                             /* and multiplied by s */
     const double *dark;                    /* [channels]: added to them (dark_level.h), or NULL */
     gonio_pair (*change)(gonio_pair pair); /* of directions; NULL: none */
@@ -47,9 +48,8 @@ gonio_status gonio_i_columns_check(gonio_context *context, const gonio_i_columns
  * NULL for none. */
 double gonio_i_dark_level_missing(const double *dark, size_t channel, double theta_i);
 
-/* ln of the Jacobian of a transform at the values of a column: sum ln(dg'/dv), without bounds,
- * which have a probability and no density. */
-double gonio_i_transform_logarithm(const gonio_readings *readings, size_t channel,
-                                   const gonio_i_noise *noise, const gonio_i_transform *transform);
+/* ln of the Jacobian of a transform at a value: ln(dg'/dv). */
+double gonio_i_transform_slope(const gonio_readings *readings, size_t reading, size_t channel,
+                               const gonio_i_transform *transform);
 
 #endif

@@ -21,7 +21,7 @@ typedef struct next {
     gonio_i_columns columns;
     gonio_i_posterior posterior;
     gonio_half_difference *read;
-    const char *suspicion;
+    gonio_interpretation interpretation;
 } next;
 
 static gonio_status allocate(next *n)
@@ -67,8 +67,8 @@ static gonio_status find_posterior(next *n, const gonio_reconstruct_options *opt
         status = gonio_i_prior_create(n->context, n->basis, &n->prior);
     }
     if (status == GONIO_OK && !options->no_checks) {
-        status = gonio_i_interpret(n->context, n->prior, n->readings, &noise, &n->columns, &dark,
-                                   &n->suspicion);
+        status = gonio_i_interpret(n->context, n->prior, n->readings, &noise, &n->columns,
+                                   &n->interpretation, &dark);
     }
     if (status == GONIO_OK) {
         status = allocate(n);
@@ -94,15 +94,15 @@ static gonio_status plan_more(const next *n, const gonio_plan_options *options, 
     return gonio_i_expected_error_next(n->context, n->basis, &all, &known, plan);
 }
 
-static void hand_out(const next *n, gonio_plan *made, double *expected_now, const char **suspicion,
-                     gonio_plan **plan)
+static void hand_out(const next *n, gonio_plan *made, double *expected_now,
+                     gonio_interpretation *interpretation, gonio_plan **plan)
 {
     *plan = made;
     if (expected_now != NULL) {
         *expected_now = n->posterior.predicted;
     }
-    if (suspicion != NULL) {
-        *suspicion = n->suspicion;
+    if (interpretation != NULL) {
+        *interpretation = n->interpretation;
     }
 }
 
@@ -110,7 +110,7 @@ gonio_status gonio_plan_next(gonio_context *context, const gonio_basis *basis,
                              const gonio_readings *readings,
                              const gonio_reconstruct_options *options,
                              const gonio_plan_options *plan_options, double *expected_now,
-                             const char **suspicion, gonio_plan **plan)
+                             gonio_interpretation *interpretation, gonio_plan **plan)
 {
     next n = {.context = context,
               .basis = basis,
@@ -130,7 +130,7 @@ gonio_status gonio_plan_next(gonio_context *context, const gonio_basis *basis,
         status = plan_more(&n, &wanted, &made);
     }
     if (status == GONIO_OK) {
-        hand_out(&n, made, expected_now, suspicion, plan);
+        hand_out(&n, made, expected_now, interpretation, plan);
     }
     release(&n);
     return status;

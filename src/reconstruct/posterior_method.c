@@ -83,8 +83,9 @@ static gonio_status estimate(gonio_context *context, const gonio_i_prior *prior,
     const gonio_i_noise noise = gonio_i_posterior_noise(options);
     gonio_status status = keep_wavelengths(context, readings, r);
     if (status == GONIO_OK && !options->no_checks) {
-        status =
-            gonio_i_interpret(context, prior, readings, &noise, columns, &r->dark, &r->suspicion);
+        status = gonio_i_interpret(context, prior, readings, &noise, columns, &r->interpretation,
+                                   &r->dark);
+        r->suspicion = r->interpretation.alternative[0].mistake;
     }
     return status == GONIO_OK ? find(context, prior, columns, options, r) : status;
 }

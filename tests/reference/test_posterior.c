@@ -104,7 +104,7 @@ static double error_of(const gonio_basis *basis, const gonio_plan *plan, const c
     assert_int_equal(gonio_compare(context, original, made, &comparison), GONIO_OK);
     print_message("%s: E6 %.2f %%, expected %.2f %%\n", name, comparison.all.value[GONIO_E6],
                   r->predicted_e6);
-    assert_null(r->suspicion);
+    assert_int_equal(r->interpretation.alternatives, 0);
     gonio_material_free(&made);
     gonio_reconstruction_free(&r);
     gonio_readings_free(&readings);

@@ -120,7 +120,7 @@ static void test_transforms(void **state)
     const double dark[CHANNELS] = {0.01, 0.02, 0.03};
     const gonio_i_transform nothing = {.factor = 1.0};
     const gonio_i_transform tenth = {
-        .factor = 0.1, .by_cosine = true, .dark = dark, .change = swap};
+        .factor = 0.1, .by_cosine = true, .by_cosine_i = true, .dark = dark, .change = swap};
     gonio_context *context = support_context();
     gonio_readings *readings = make(context, deviation);
     gonio_i_columns columns = columns_of(context, readings, GONIO_SEPARATE);
@@ -131,7 +131,7 @@ static void test_transforms(void **state)
         for (size_t i = 0; i < column->count; i++) {
             const gonio_i_observation *o = &column->observation[i];
             const gonio_pair at = pair[o->reading];
-            const double factor = 0.1 / cos(at.outgoing.theta);
+            const double factor = 0.1 / (cos(at.outgoing.theta) * cos(at.incident.theta));
             const double stated = deviation[o->reading * CHANNELS + c];
             const double v =
                 value[o->reading * CHANNELS + c] * factor + dark[c] / cos(at.incident.theta);
@@ -162,12 +162,42 @@ static void test_transforms(void **state)
     gonio_context_free(&context);
 }
 
+/* The slope of a transform is ln of the change of g for a small change of the value. */
+static void test_slopes(void **state)
+{
+    (void)state;
+    const double dark[CHANNELS] = {0.01, 0.02, 0.03};
+    const gonio_i_transform transform = {
+        .factor = 0.3, .by_cosine = true, .by_cosine_i = true, .merl = true, .dark = dark};
+    const double step = 1e-6;
+    gonio_context *context = support_context();
+    gonio_readings *readings = make(context, NULL);
+    for (size_t c = 0; c < CHANNELS; c++) {
+        const double v = gonio_readings_value(readings, 0, c);
+        double g[2];
+        for (int k = 0; k < 2; k++) {
+            assert_int_equal(
+                gonio_readings_set_value(context, readings, 0, c, v + step * (double)k), GONIO_OK);
+            gonio_i_columns columns = columns_of(context, readings, GONIO_SEPARATE);
+            gonio_i_column_transform(readings, &NOISE, &transform, &columns.column[c]);
+            g[k] = columns.column[c].observation[0].g;
+            gonio_i_columns_free(&columns);
+        }
+        assert_int_equal(gonio_readings_set_value(context, readings, 0, c, v), GONIO_OK);
+        assert_close(gonio_i_transform_slope(readings, 0, c, &transform), log((g[1] - g[0]) / step),
+                     1e-3);
+    }
+    gonio_readings_free(&readings);
+    gonio_context_free(&context);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_values_and_bounds),
         cmocka_unit_test(test_stated_deviations),
         cmocka_unit_test(test_transforms),
+        cmocka_unit_test(test_slopes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
