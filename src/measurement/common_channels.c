@@ -107,8 +107,7 @@ static gonio_status fill_wavelengths(gonio_context *context, const gonio_reading
     return interpolate(readings, others, value) > 0
                ? GONIO_OK
                : gonio_i_fail(context, GONIO_ERROR_MISMATCH,
-                              "no wavelength of %s is within those of %s", others->path,
-                              readings->path);
+                              "no wavelength of %s is within those of the other", others->path);
 }
 
 /* ---- channels without a value ---- */

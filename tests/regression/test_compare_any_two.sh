@@ -53,7 +53,7 @@ expect_output "$same" compare colours.csv grey.csv
 expect_output '2 readings compared' compare spectrum.csv cotton.binary
 expect_output '2 readings compared' compare cotton.binary spectrum.csv
 expect_output '2 readings compared' compare grey.csv cotton.binary
-expect_fail 1 'none is among the other' compare spectrum.csv far.csv
+expect_fail 1 'no wavelength of spectrum.csv is within those of the other' compare spectrum.csv far.csv
 
 # ---- what was left out, and repeats ----
 
