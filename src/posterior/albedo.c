@@ -43,7 +43,7 @@ static double place_node(double incidence, double theta_h, double phi, gonio_hal
 static void add_node(gonio_i_hemisphere *h, size_t *count, double incidence, double u, double phi)
 {
     const double theta_h = u * u * M_PI / 2.0;
-    gonio_half_difference at;
+    gonio_half_difference at = {0};
     const double outgoing = place_node(incidence, theta_h, phi, &at);
     if (outgoing <= 0.0) {
         return;
@@ -71,8 +71,10 @@ gonio_status gonio_i_hemisphere_create(gonio_context *context, const gonio_i_pri
     }
     for (int n = 0; n < GONIO_I_ALBEDO_INCIDENCES; n++) {
         for (int k = 0; k < POLAR * AZIMUTHS; k++) {
-            const double u = ((double)(k / AZIMUTHS) + 0.5) / (double)POLAR;
-            const double phi = ((double)(k % AZIMUTHS) + 0.5) / (double)AZIMUTHS * M_PI;
+            const int polar = k / AZIMUTHS;
+            const int azimuth = k % AZIMUTHS;
+            const double u = (polar + 0.5) / (double)POLAR;
+            const double phi = (azimuth + 0.5) / (double)AZIMUTHS * M_PI;
             add_node(h, &count, INCIDENCE[n], u, phi);
         }
         h->first[n + 1] = count;
