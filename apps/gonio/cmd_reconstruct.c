@@ -144,7 +144,7 @@ static void print(const gonio_reconstruction *r, const char *output, const energ
     if (e->known) {
         fprintf(tool_results(), ", albedo at most %.2f", e->albedo);
         if (r->field != NULL && tool_as == NULL) {
-            fprintf(tool_results(), " (of reflectance factors %.2g)", e->albedo / M_PI);
+            fprintf(tool_results(), " (%.2g if these are reflectance factors)", e->albedo / M_PI);
         }
     }
     if (r->outlying > 0) {

@@ -82,20 +82,6 @@ gonio_status gonio_i_hemisphere_create(gonio_context *context, const gonio_i_pri
     return GONIO_OK;
 }
 
-/* c = z + h^2 F' S^-1 (y - F z). */
-static void find_coefficients(const gonio_i_fit *e, double *c)
-{
-    for (size_t k = 0; k < e->components; k++) {
-        c[k] = e->centre[k];
-    }
-    for (size_t i = 0; i < e->n; i++) {
-        const double weight = e->model.h * e->model.h * e->solved[i];
-        for (size_t k = 0; k < e->components; k++) {
-            c[k] += weight * e->sites->f[i * e->components + k];
-        }
-    }
-}
-
 /* g of the fit at a node. */
 static double predict(const gonio_i_fit *e, const gonio_i_hemisphere *h, const double *c,
                       size_t node)
@@ -118,7 +104,7 @@ gonio_status gonio_i_fit_albedo(const gonio_i_fit *e, const gonio_i_hemisphere *
     if (c == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    find_coefficients(e, c);
+    gonio_i_fit_coefficients(e, c);
     for (int n = 0; n < GONIO_I_ALBEDO_INCIDENCES; n++) {
         albedo[n] = 0.0;
         for (size_t node = h->first[n]; node < h->first[n + 1]; node++) {

@@ -225,6 +225,16 @@ gonio_status gonio_i_fit_solve(gonio_i_fit *e, const gonio_i_model *model)
     return GONIO_OK;
 }
 
+void gonio_i_fit_coefficients(const gonio_i_fit *e, double *c)
+{
+    memcpy(c, e->centre, e->components * sizeof *c);
+    for (size_t i = 0; i < e->n; i++) {
+        for (size_t k = 0; k < e->components; k++) {
+            c[k] += e->model.h * e->model.h * e->solved[i] * e->sites->f[i * e->components + k];
+        }
+    }
+}
+
 /* Sample j's difference at reading i is d_j = (S^-1 (y - a F z_j))_i v, v = 1/(S^-1)_ii; without
  * that reading its weight would be q_j / N(d_j; 0, v), but for what makes them add up to 1. */
 static gonio_status mix_differences(const gonio_i_fit *e, double *difference, double *variance)

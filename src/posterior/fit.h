@@ -54,6 +54,11 @@ void gonio_i_fit_end(gonio_i_fit *fit);
 /* Solves the fit for a model. Errors: _NUMERICAL, _MEMORY. */
 gonio_status gonio_i_fit_solve(gonio_i_fit *fit, const gonio_i_model *model);
 
+/* The mean of the coefficients of a solved fit, in units of the prior: c[K] = z + h^2 F' S^-1 (y -
+ * F z).
+ */
+void gonio_i_fit_coefficients(const gonio_i_fit *fit, double *c);
+
 /* The variance of a reading in the fit: so large that it has no weight if it is left out. */
 double gonio_i_fit_noise(const gonio_i_fit *fit, size_t reading);
 

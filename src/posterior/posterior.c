@@ -57,17 +57,6 @@ typedef struct group {
 
 /* ---- one column ---- */
 
-/* c = z + h^2 F' S^-1 (y - F z), in units of the prior. */
-static void find_coefficients(const gonio_i_fit *e, double *c)
-{
-    memcpy(c, e->centre, e->components * sizeof *c);
-    for (size_t i = 0; i < e->n; i++) {
-        for (size_t k = 0; k < e->components; k++) {
-            c[k] += e->model.h * e->model.h * e->solved[i] * e->sites->f[i * e->components + k];
-        }
-    }
-}
-
 /* The sum of squared residuals of the field at the readings: D S^-1 (y - F z). */
 static double square_left(const gonio_i_fit *e)
 {
@@ -84,7 +73,7 @@ static void add_model(const gonio_i_fit *e, double weight, double *c, double *su
                       const gonio_i_field_column *field)
 {
     const gonio_i_model *m = &e->model;
-    find_coefficients(e, c);
+    gonio_i_fit_coefficients(e, c);
     for (size_t k = 0; k < e->components; k++) {
         sum[k] += weight * c[k];
     }
@@ -132,7 +121,7 @@ static gonio_status find_variance(const group *g, const gonio_i_fit *e, size_t k
     const size_t square = e->components * e->components;
     double *deviation = all->p->deviation != NULL ? all->p->deviation + number * rows : NULL;
     double *covariance = g->covariance != NULL ? g->covariance + (k - g->first) * square : NULL;
-    find_coefficients(e, c);
+    gonio_i_fit_coefficients(e, c);
     return gonio_i_variance_find(e, g->rows, c, deviation, covariance, &all->found[number].sums);
 }
 

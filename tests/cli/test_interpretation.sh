@@ -56,9 +56,9 @@ said merl.csv 'numbers of a MERL file; multiply them by (1, 1.15, 1.66)/1500 (al
 expect_output '"albedo": 0.' reconstruct b.gonio percent.csv --json -o out.binary
 expect_also '"mistake": "the values are in per cent; divide them by 100"'
 
-# The albedo is told where no table is written too, and what it is of reflectance factors.
+# The albedo is told where no table is written too, and what it is if the values are reflectance factors.
 expect_output 'albedo at most 0.' reconstruct b.gonio right.csv --predict-at glossy.csv -o at.csv
-expect_also '(of reflectance factors 0.'
+expect_also ' if these are reflectance factors)'
 expect_output 'albedo at most 2.' reconstruct b.gonio factor.csv --predict-at glossy.csv -o at.csv
 expect_true 'more than is received' grep -q 'which no material can do' "$root/work/stderr"
 
