@@ -6,8 +6,12 @@
 
 #include "leave_one_out.h"
 
-/* A reading is a suspect if it is zero, or this far below the median of its channel. */
+/* A reading is a suspect if it is zero, or a floor this far below the median of its channel. Other
+ * values were measured, however low: where a retroreflector has no mirror direction, say. */
 static const double DIM = 0.2;
+
+/* A floor is a power of ten, to this in its logarithm, or the smallest value if it occurs twice. */
+static const double EXACT = 1e-9;
 
 /* A suspect is none if the prediction, less this number of deviations, is this many times the
  * value, and a few s more: less may be what a dark level leaves. */
@@ -34,7 +38,7 @@ typedef struct search {
     const gonio_readings *readings;
     const gonio_i_columns *columns;
     size_t count;     /* of readings */
-    bool *suspect;    /* [count]: dim in all channels */
+    bool *suspect;    /* [count]: in all channels */
     bool *unmeasured; /* [count] */
     double *sorted;   /* [count]: scratch */
 } search;
@@ -46,8 +50,13 @@ static int compare_numbers(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* The median of the values above zero of a column's channel; 0 if there is none. */
-static double median_of(const search *s, size_t channel)
+/* What is known of the values of a channel that are above zero. */
+typedef struct channel_values {
+    double median;   /* 0 if there is none */
+    double repeated; /* the smallest if it occurs twice, otherwise 0 */
+} channel_values;
+
+static channel_values values_of(const search *s, size_t channel)
 {
     size_t count = 0;
     for (size_t k = 0; k < s->count; k++) {
@@ -57,10 +66,19 @@ static double median_of(const search *s, size_t channel)
         }
     }
     qsort(s->sorted, count, sizeof *s->sorted, compare_numbers);
-    return count > 0 ? s->sorted[count / 2] : 0.0;
+    return (channel_values){count > 0 ? s->sorted[count / 2] : 0.0,
+                            count > 1 && s->sorted[1] <= s->sorted[0] ? s->sorted[0] : 0.0};
 }
 
-/* Suspects are dim in every channel in which they were read. Returns how many there are. */
+static bool is_floor(double value, const channel_values *channel)
+{
+    const double power = log10(value);
+    const bool smallest = channel->repeated > 0.0 && value <= channel->repeated;
+    return value <= DIM * channel->median && (smallest || fabs(power - round(power)) < EXACT);
+}
+
+/* Suspects are zero or a floor in every channel in which they were read. Returns how many there
+ * are. */
 static size_t find_suspects(const search *s)
 {
     size_t suspects = 0;
@@ -68,10 +86,10 @@ static size_t find_suspects(const search *s)
         s->suspect[k] = true;
     }
     for (size_t c = 0; c < s->columns->count; c++) {
-        const double dim = DIM * median_of(s, c);
+        const channel_values channel = values_of(s, c);
         for (size_t k = 0; k < s->count; k++) {
             const double value = gonio_readings_value(s->readings, k, c);
-            s->suspect[k] = s->suspect[k] && !(value > 0.0 && value > dim);
+            s->suspect[k] = s->suspect[k] && !(value > 0.0 && !is_floor(value, &channel));
         }
     }
     for (size_t k = 0; k < s->count; k++) {

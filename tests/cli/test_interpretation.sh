@@ -98,6 +98,9 @@ expect_ok reconstruct b.gonio seen.csv -o out.binary
 expect_same hidden.binary out.binary
 expect_output "\"unmeasured\": $hidden" reconstruct b.gonio hidden.csv --json -o out.binary
 expect_also '"unmeasured_lines": ['
+# Low values that are no floor were measured.
+changed right.csv 'if (NR % 10 == 0) { $5 = $6 = $7 = 1e-5 * (1 + NR / 977) }' >low.csv
+expect_output '"unmeasured": 0' reconstruct b.gonio low.csv --json -o out.binary
 expect_output '60 readings' reconstruct b.gonio hidden.csv --no-checks -o out.binary
 
 # ---- anisotropy ----
