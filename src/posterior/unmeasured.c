@@ -6,9 +6,15 @@
 
 #include "leave_one_out.h"
 
-/* A reading is a suspect if it is zero, or a floor this far below the median of its channel. Other
- * values were measured, however low: where a retroreflector has no mirror direction, say. */
+/* A reading is a suspect if it is zero, or this far below the median of its channel and either a
+ * floor or at a direction that instruments hide. Other values were measured, however low: where a
+ * retroreflector has no mirror direction, say. */
 static const double DIM = 0.2;
+
+/* Instruments hide directions this near to the light, and lose light from this theta on, radians.
+ */
+static const double NEAR_LIGHT = 10.0 * M_PI / 180.0;
+static const double GRAZING = 79.5 * M_PI / 180.0;
 
 /* A floor is a power of ten, to this in its logarithm, or the smallest value if it occurs twice. */
 static const double EXACT = 1e-9;
@@ -74,10 +80,25 @@ static bool is_floor(double value, const channel_values *channel)
 {
     const double power = log10(value);
     const bool smallest = channel->repeated > 0.0 && value <= channel->repeated;
-    return value <= DIM * channel->median && (smallest || fabs(power - round(power)) < EXACT);
+    return smallest || fabs(power - round(power)) < EXACT;
 }
 
-/* Suspects are zero or a floor in every channel in which they were read. Returns how many there
+static bool is_hidden(gonio_pair pair)
+{
+    const double cosine = sin(pair.incident.theta) * sin(pair.outgoing.theta) *
+                              cos(pair.outgoing.phi - pair.incident.phi) +
+                          cos(pair.incident.theta) * cos(pair.outgoing.theta);
+    return cosine > cos(NEAR_LIGHT) || fmax(pair.incident.theta, pair.outgoing.theta) > GRAZING;
+}
+
+static bool is_suspect(const search *s, size_t reading, double value, const channel_values *channel)
+{
+    const gonio_pair pair = gonio_readings_describe(s->readings)->pair[reading];
+    return !(value > 0.0) ||
+           (value <= DIM * channel->median && (is_floor(value, channel) || is_hidden(pair)));
+}
+
+/* Suspects are so in every channel in which they were read. Returns how many there
  * are. */
 static size_t find_suspects(const search *s)
 {
@@ -89,7 +110,7 @@ static size_t find_suspects(const search *s)
         const channel_values channel = values_of(s, c);
         for (size_t k = 0; k < s->count; k++) {
             const double value = gonio_readings_value(s->readings, k, c);
-            s->suspect[k] = s->suspect[k] && !(value > 0.0 && !is_floor(value, &channel));
+            s->suspect[k] = s->suspect[k] && is_suspect(s, k, value, &channel);
         }
     }
     for (size_t k = 0; k < s->count; k++) {
