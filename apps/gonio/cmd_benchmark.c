@@ -1,6 +1,7 @@
 /* gonio benchmark: how well BRDFs are completed from n readings. */
 #include "builtin_basis.h"
 #include "command_line.h"
+#include "group_command.h"
 #include "inputs.h"
 #include "json_output.h"
 #include "material_list.h"
@@ -35,8 +36,6 @@ typedef struct options {
     int no_bands;
     int render;
 } options;
-
-static const size_t rendered_sizes[] = {8, 16, 32};
 
 /* ---- lists of words and numbers ---- */
 
@@ -73,8 +72,8 @@ static bool read_sizes(const tool *t, const options *o, benchmark_setting *s)
         }
         at = end;
     }
-    for (size_t k = 0; o->render && k < sizeof rendered_sizes / sizeof *rendered_sizes; k++) {
-        if (!add_size(t, rendered_sizes[k], s)) {
+    for (size_t k = 0; o->render && k < BENCHMARK_RENDERED_SIZES; k++) {
+        if (!add_size(t, benchmark_rendered_sizes[k], s)) {
             return false;
         }
     }
@@ -278,8 +277,9 @@ static bool check(const tool *t, const options *o)
     return (o->output != NULL && *o->output != '\0') || tool_refuse(t, "no output: give -o FOLDER");
 }
 
-static int run(tool *t, const options *o, const process_group *group)
+static int run(tool *t, const void *given, const process_group *group)
 {
+    const options *o = given;
     benchmark_setting s;
     material_list list = {0};
     if (!read_setting(t, o, &s) || !check(t, o)) {
@@ -292,18 +292,6 @@ static int run(tool *t, const options *o, const process_group *group)
     }
     material_list_free(&list);
     return code;
-}
-
-/* All ranks do the same; rank 0 alone says what is not an error. */
-static int run_in_group(tool *t, void *given)
-{
-    const options *o = given;
-    process_group group;
-    if (!process_group_join(&group, t->name)) {
-        return EXIT_DATA;
-    }
-    tool_quiet = tool_quiet || group.rank != 0;
-    return process_group_leave(run(t, o, &group));
 }
 
 /* The words that options take; to be released with free(). */
@@ -382,11 +370,12 @@ int cmd_benchmark(int argc, const char **argv)
         TOOL_READINGS_OPTIONS,
         TOOL_OPTIONS};
     char *text = help_text();
+    tool_group_work work = {run, &o};
     const tool_command_line line = {.table = table,
                                     .usage = "[OPTION...] DIR|FILE... -o OUT",
                                     .text = text != NULL ? text : "",
-                                    .work = run_in_group,
-                                    .options = &o};
+                                    .work = tool_run_in_group,
+                                    .options = &work};
     const int code = tool_run(argc, argv, &line);
     free(text);
     return code;

@@ -1,5 +1,6 @@
 /* gonio reproduce: the paper's experiments on the user's database. */
 #include "command_line.h"
+#include "group_command.h"
 #include "json_output.h"
 #include "material_list.h"
 
@@ -56,8 +57,9 @@ static bool check(const tool *t, const options *o)
 }
 
 /* Runs the experiments on the given materials, by default the built-in ones. */
-static int run(const tool *t, const options *o, const process_group *group)
+static int run(tool *t, const void *given, const process_group *group)
 {
+    const options *o = given;
     static const char *const built_in[] = {"atlas:"};
     size_t count = 0;
     const char **arguments = tool_arguments(t, &count);
@@ -72,18 +74,6 @@ static int run(const tool *t, const options *o, const process_group *group)
     }
     material_list_free(&list);
     return code;
-}
-
-/* All ranks run the same code. Only rank 0 prints what is not an error. */
-static int run_in_group(tool *t, void *given)
-{
-    const options *o = given;
-    process_group group;
-    if (!process_group_join(&group, t->name)) {
-        return EXIT_DATA;
-    }
-    tool_quiet = tool_quiet || group.rank != 0;
-    return process_group_leave(run(t, o, &group));
 }
 
 int cmd_reproduce(int argc, const char **argv)
@@ -103,6 +93,7 @@ int cmd_reproduce(int argc, const char **argv)
         {"skip-bad", '\0', POPT_ARG_NONE, &o.skip_bad, 0, "Leave out materials that cannot be used",
          NULL},
         TOOL_OPTIONS};
+    tool_group_work work = {run, &o};
     const tool_command_line line = {
         .table = table,
         .usage = "[OPTION...] [DIR|FILE...] -o OUT",
@@ -111,7 +102,7 @@ int cmd_reproduce(int argc, const char **argv)
                 "files. Without DIR the built-in materials are used.\nA run that was "
                 "stopped resumes when the command is given again. With mpirun several "
                 "machines share\nthe work. Example: gonio reproduce merl -o paper",
-        .work = run_in_group,
-        .options = &o};
+        .work = tool_run_in_group,
+        .options = &work};
     return tool_run(argc, argv, &line);
 }

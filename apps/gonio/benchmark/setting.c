@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+const size_t benchmark_rendered_sizes[BENCHMARK_RENDERED_SIZES] = {8, 16, 32};
+
 void benchmark_setting_default(benchmark_setting *setting)
 {
     static const size_t sizes[] = {5, 10, 20, 40, 80, 160};

@@ -42,6 +42,10 @@ typedef struct benchmark_setting {
     const process_group *group; /* NULL for a process on its own */
 } benchmark_setting;
 
+/* The n from which renderings are compared, as published comparisons do. */
+enum { BENCHMARK_RENDERED_SIZES = 3 };
+extern const size_t benchmark_rendered_sizes[BENCHMARK_RENDERED_SIZES];
+
 /* The command line's defaults, without directions and methods. */
 void benchmark_setting_default(benchmark_setting *setting);
 

@@ -10,9 +10,6 @@
 
 #include "core/core.h"
 
-/* Published comparisons render reconstructions from so many readings. */
-static const size_t rendered_sizes[] = {8, 16, 32};
-
 /* While a trial is made. */
 typedef struct state {
     const benchmark_trial *trial;
@@ -41,8 +38,8 @@ static json_t *number(double value)
 static bool is_rendered(const state *s, size_t n)
 {
     bool wanted = false;
-    for (size_t k = 0; k < sizeof rendered_sizes / sizeof *rendered_sizes; k++) {
-        wanted = wanted || n == rendered_sizes[k];
+    for (size_t k = 0; k < BENCHMARK_RENDERED_SIZES; k++) {
+        wanted = wanted || n == benchmark_rendered_sizes[k];
     }
     return wanted && s->trial->setting->render && s->sample.table != NULL && s->trial->draw == 0;
 }
