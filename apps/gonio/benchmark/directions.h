@@ -4,7 +4,7 @@
 
 #include <jansson.h>
 
-#include "lessons.h"
+#include "bases.h"
 #include "sample.h"
 
 /* What directions are chosen for. */

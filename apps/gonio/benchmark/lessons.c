@@ -49,47 +49,15 @@ static gonio_status no_memory(gonio_context *context)
 
 /* ---- one for all ---- */
 
-static bool same_kind(const gonio_plan_basis *a, const gonio_plan_basis *b)
-{
-    return a->representation == b->representation && a->channels == b->channels &&
-           a->mapping == b->mapping && a->without_mean == b->without_mean &&
-           a->mixtures == b->mixtures;
-}
-
-/* Reads a basis file, which must be of the kind that a planning method is meant for. */
-static gonio_status read_kind(gonio_context *context, const char *path, const char *method,
-                              gonio_basis **basis)
-{
-    const gonio_status status = gonio_basis_read(context, path, basis);
-    if (status != GONIO_OK) {
-        return status;
-    }
-    const gonio_basis_view *view = gonio_basis_describe(*basis);
-    const gonio_plan_basis is = {view->representation, view->channels, view->mapping,
-                                 view->without_mean, view->mixtures > 0};
-    if (!same_kind(&is, gonio_plan_method_basis(method))) {
-        gonio_basis_free(basis);
-        return gonio_i_fail(context, GONIO_ERROR_MISMATCH,
-                            "%s: %s needs another kind of basis: give --learn a folder of "
-                            "materials",
-                            path, method);
-    }
-    return GONIO_OK;
-}
-
 /* Whether a basis that is given suits all that is asked for. */
 static gonio_status check_given(gonio_context *context, const benchmark_setting *setting)
 {
-    gonio_status status = GONIO_OK;
-    for (size_t k = 0; k < setting->direction_count && status == GONIO_OK; k++) {
+    const char *method[BENCHMARK_MOST_WORDS];
+    for (size_t k = 0; k < setting->direction_count; k++) {
         const benchmark_directions *ways = benchmark_directions_at(setting->directions[k]);
-        gonio_basis *basis = NULL;
-        status =
-            read_kind(context, setting->basis,
-                      ways->plan_method != NULL ? ways->plan_method : "expected-error", &basis);
-        gonio_basis_free(&basis);
+        method[k] = ways->plan_method != NULL ? ways->plan_method : "expected-error";
     }
-    return status;
+    return benchmark_check_basis(context, setting->basis, method, setting->direction_count);
 }
 
 static gonio_status give_all(gonio_context *context, const benchmark_setting *setting,
@@ -344,63 +312,4 @@ json_t *benchmark_lessons_json(const benchmark_lessons *lessons)
                                               file_json(lesson->basis), "materials", paths));
     }
     return list;
-}
-
-/* ---- bases ---- */
-
-void benchmark_bases_free(benchmark_bases *bases)
-{
-    for (size_t k = 0; k < bases->count; k++) {
-        gonio_basis_free(&bases->basis[k]);
-    }
-    bases->count = 0;
-}
-
-static gonio_status learn(gonio_context *context, const benchmark_bases *bases,
-                          const gonio_plan_basis *kind, gonio_basis **basis)
-{
-    const benchmark_lesson *lesson = bases->lesson;
-    gonio_recipe recipe;
-    gonio_recipe_for_grid(&recipe, kind->representation);
-    recipe.channels = kind->channels;
-    recipe.mapping = kind->mapping;
-    recipe.without_mean = kind->without_mean;
-    if (!kind->mixtures) {
-        const size_t columns = lesson->count * (kind->channels == GONIO_SEPARATE ? 3 : 1);
-        const size_t wanted = kind->representation == GONIO_FULL ? bases->most : 45;
-        recipe.mixtures = 0;
-        recipe.components = kind->without_mean ? 0 : wanted < columns ? wanted : columns - 1;
-    }
-    return gonio_learn(context, lesson->path, lesson->count, &recipe, basis);
-}
-
-static gonio_status find_or_make(gonio_context *context, benchmark_bases *bases, const char *method,
-                                 const gonio_basis **basis)
-{
-    const gonio_plan_basis *kind = gonio_plan_method_basis(method);
-    for (size_t k = 0; k < bases->count; k++) {
-        if (same_kind(&bases->kind[k], kind)) {
-            *basis = bases->basis[k];
-            return GONIO_OK;
-        }
-    }
-    gonio_basis *made = NULL;
-    const gonio_status status = bases->lesson->basis != NULL
-                                    ? read_kind(context, bases->lesson->basis, method, &made)
-                                    : learn(context, bases, kind, &made);
-    if (status == GONIO_OK) {
-        bases->basis[bases->count] = made;
-        bases->kind[bases->count++] = *kind;
-        *basis = made;
-    }
-    return status;
-}
-
-gonio_status benchmark_basis(gonio_context *context, benchmark_bases *bases, const char *method,
-                             const gonio_basis **basis)
-{
-    gonio_status status = GONIO_OK;
-#pragma omp critical(benchmark_bases)
-    status = find_or_make(context, bases, method, basis);
-    return status;
 }

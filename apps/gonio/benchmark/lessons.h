@@ -31,22 +31,6 @@ gonio_status benchmark_lessons_make(gonio_context *context, const benchmark_sett
                                     const benchmark_subjects *subjects, benchmark_lessons *lessons);
 void benchmark_lessons_free(benchmark_lessons *lessons);
 
-/* The bases of one lesson, one for each kind that methods are meant for, learned when asked for. */
-typedef struct benchmark_bases {
-    const benchmark_lesson *lesson;
-    size_t most; /* components of bases of the full grid: the largest n */
-    gonio_basis *basis[BENCHMARK_MOST_WORDS];
-    gonio_plan_basis kind[BENCHMARK_MOST_WORDS];
-    size_t count;
-} benchmark_bases;
-
-/* The basis of the kind that a planning method (gonio_plan_method_name) is meant for; it belongs to
- * `bases`. Threads may call it at the same time. Errors: those of gonio_learn and gonio_basis_read;
- * _MISMATCH if a basis was given that is of another kind. */
-gonio_status benchmark_basis(gonio_context *context, benchmark_bases *bases, const char *method,
-                             const gonio_basis **basis);
-void benchmark_bases_free(benchmark_bases *bases);
-
 /* The setting of the lessons as JSON, for the identity of a run: names and what is learned from. */
 json_t *benchmark_lessons_json(const benchmark_lessons *lessons);
 
