@@ -28,9 +28,6 @@ enum { MOST_ROUNDS = 20 };
 /* Readings as expected to which the misfit is shrunk. */
 static const double PRIOR_READINGS = 5.0;
 
-/* The cost of a reading that is set aside, in log density: one in a hundred is wrong. */
-static const double FOR_OUTLYING = 4.6;
-
 /* The variance of a reading without weight. */
 static const double NO_SAY = 1e6;
 
@@ -398,24 +395,5 @@ gonio_status gonio_i_fit_surprise(gonio_i_fit *e, double *sum)
     }
     e->misfit = (*sum + PRIOR_READINGS) / ((double)e->n + PRIOR_READINGS);
     free(difference);
-    return status;
-}
-
-gonio_status gonio_i_fit_evidence(gonio_context *context, const gonio_i_sites *sites,
-                                  const gonio_i_column *column, double alpha, double peak,
-                                  double *evidence)
-{
-    const gonio_i_model model = {GONIO_I_KERNEL_WIDTH, alpha, peak};
-    size_t outlying = 0;
-    gonio_i_fit e;
-    gonio_status status = gonio_i_fit_begin(context, sites, false, column, &e);
-    if (status == GONIO_OK) {
-        status = gonio_i_fit_solve(&e, &model);
-    }
-    if (status == GONIO_OK) {
-        status = gonio_i_fit_settle(&e, true, &outlying);
-    }
-    *evidence = e.evidence - (double)outlying * FOR_OUTLYING;
-    gonio_i_fit_end(&e);
     return status;
 }

@@ -77,10 +77,4 @@ gonio_status gonio_i_fit_settle(gonio_i_fit *fit, bool judge_outliers, size_t *o
  * badly where it was read is predicted badly elsewhere. */
 gonio_status gonio_i_fit_surprise(gonio_i_fit *fit, double *sum);
 
-/* ln of the density of a column's values under the prior with a remainder of a given alpha and
- * peak, readings that the others contradict set aside. Errors: _MEMORY, _NUMERICAL. */
-gonio_status gonio_i_fit_evidence(gonio_context *context, const gonio_i_sites *sites,
-                                  const gonio_i_column *column, double alpha, double peak,
-                                  double *evidence);
-
 #endif
