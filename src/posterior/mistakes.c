@@ -12,9 +12,14 @@
 
 #include "transform_trial.h"
 
-/* What a mistake in angles has to explain, in ln of the density of a column. Among right readings
- * the largest is below (docs/experiments.md). */
+/* What a mistake in angles has to explain, in ln of the density of a column, over the readings as
+ * they are and in any unit (docs/experiments.md). */
 static const double CONVINCING = 10.0;
+
+/* The same of a cosine, which many right readings at grazing angles seem to include: over the
+ * readings as they are, and in any unit. */
+static const double OF_COSINE = 16.0;
+static const double OF_COSINE_IN_UNITS = 6.0;
 
 /* The same where velvet and cloth are easily mistaken: they too are bright towards the light. */
 static const double OF_MIRROR = 20.0;
@@ -68,44 +73,44 @@ typedef struct hypothesis {
     gonio_i_transform transform;
     const char *name;
     double convincing; /* what it has to explain; 0 for a unit */
+    double in_units;   /* and over the readings in any unit; */
+    bool certain;      /* whatever the units and the albedo are */
     bool colours;      /* only of R, G, B */
 } hypothesis;
 
 static const hypothesis UNITS[] = {
-    {{.factor = 1.0 / M_PI}, "the values are reflectance factors; divide them by pi", 0.0, false},
-    {{.factor = 0.01}, "the values are in per cent; divide them by 100", 0.0, false},
-    {{.factor = 0.01 / M_PI},
-     "the values are reflectance factors in per cent; divide them by 100 pi",
-     0.0,
-     false},
-    {{.factor = 1.0, .merl = true},
-     "the values are numbers of a MERL file; multiply them by (1, 1.15, 1.66)/1500",
-     0.0,
-     true},
+    {.transform = {.factor = 1.0 / M_PI},
+     .name = "the values are reflectance factors; divide them by pi"},
+    {.transform = {.factor = 0.01}, .name = "the values are in per cent; divide them by 100"},
+    {.transform = {.factor = 0.01 / M_PI},
+     .name = "the values are reflectance factors in per cent; divide them by 100 pi"},
+    {.transform = {.factor = 1.0, .merl = true},
+     .name = "the values are numbers of a MERL file; multiply them by (1, 1.15, 1.66)/1500",
+     .colours = true},
 };
 
 static const hypothesis ANGLES[] = {
-    {{.factor = 1.0, .by_cosine_i = true},
-     "the values include the cosine of theta_i; divide them by it",
-     CONVINCING,
-     false},
-    {{.factor = 1.0, .by_cosine = true},
-     "the values include the cosine of theta_o; divide them by it",
-     CONVINCING,
-     false},
-    {{.factor = 1.0, .change = from_radians},
-     "the angles are in radians; write them in degrees",
-     OF_RADIANS,
-     false},
-    {{.factor = 1.0, .change = from_elevation},
-     "theta is measured from the surface; give 90 degrees less theta",
-     CONVINCING,
-     false},
-    {{.factor = 1.0, .change = from_mirror},
-     "phi_o is measured from the mirror direction; add 180 degrees to it, unless the material "
-     "is a retroreflector",
-     OF_MIRROR,
-     false},
+    {.transform = {.factor = 1.0, .by_cosine_i = true},
+     .name = "the values include the cosine of theta_i; divide them by it",
+     .convincing = OF_COSINE,
+     .in_units = OF_COSINE_IN_UNITS},
+    {.transform = {.factor = 1.0, .by_cosine = true},
+     .name = "the values include the cosine of theta_o; divide them by it",
+     .convincing = OF_COSINE,
+     .in_units = OF_COSINE_IN_UNITS},
+    {.transform = {.factor = 1.0, .change = from_radians},
+     .name = "the angles are in radians; write them in degrees",
+     .convincing = OF_RADIANS,
+     .certain = true},
+    {.transform = {.factor = 1.0, .change = from_elevation},
+     .name = "theta is measured from the surface; give 90 degrees less theta",
+     .convincing = CONVINCING,
+     .in_units = CONVINCING},
+    {.transform = {.factor = 1.0, .change = from_mirror},
+     .name = "phi_o is measured from the mirror direction; add 180 degrees to it, unless the "
+             "material is a retroreflector",
+     .convincing = OF_MIRROR,
+     .in_units = OF_MIRROR},
 };
 
 enum {
@@ -198,23 +203,31 @@ static const gonio_i_verdict *best_unit(const search *s)
     return best;
 }
 
+/* Whether a mistake explains the readings better than any unit does, with a plausible albedo. */
+static gonio_status check_units(search *s, tried *t, bool *convincing)
+{
+    gonio_status status = try_units(s);
+    const double margin = gonio_i_transform_trial_margin(&s->trial, &t->verdict, best_unit(s));
+    *convincing = margin > t->hypothesis->in_units;
+    t->worth = fmin(t->worth, margin);
+    if (*convincing && status == GONIO_OK) {
+        status = find_albedo(s, t);
+        *convincing = t->mean <= TOO_MUCH;
+    }
+    return status;
+}
+
 /* What a hypothesis is worth: the margin over no mistake; -INFINITY if that does not convince. */
 static gonio_status value_angle(search *s, tried *t)
 {
-    const double least = t->possible ? t->hypothesis->convincing : INFINITY;
-    const bool of_radians = t->hypothesis->convincing == OF_RADIANS;
-    gonio_status status = GONIO_OK;
     t->worth =
         t->possible ? gonio_i_transform_trial_margin(&s->trial, &t->verdict, &s->given) : -INFINITY;
-    if (t->worth > least && !of_radians) {
-        status = try_units(s);
-        t->worth =
-            fmin(t->worth, gonio_i_transform_trial_margin(&s->trial, &t->verdict, best_unit(s)));
+    bool convincing = t->worth > t->hypothesis->convincing;
+    gonio_status status = GONIO_OK;
+    if (convincing) {
+        status = t->hypothesis->certain ? find_albedo(s, t) : check_units(s, t, &convincing);
     }
-    if (t->worth > least && status == GONIO_OK) {
-        status = find_albedo(s, t);
-    }
-    t->worth = t->worth > least && (of_radians || t->mean <= TOO_MUCH) ? t->worth : -INFINITY;
+    t->worth = convincing ? t->worth : -INFINITY;
     return status;
 }
 

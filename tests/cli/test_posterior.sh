@@ -143,14 +143,7 @@ changed() {
     awk -F, -v OFS=, "/^[#t]/ { print; next } { d = 3.14159265358979 / 180; $1; print }" all.csv
 }
 changed '$6 *= 100; $7 *= 100; $8 *= 100' >percent.csv
-# A cosine is told at directions all over the hemisphere; planned ones are about the mirror direction.
-awk 'function below(x) { x -= int(x); c = 1 - x * 0.82; return atan2(sqrt(1 - c * c), c) * 57.29578 }
-    BEGIN { print "theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg"
-        for (k = 1; k <= 60; k++)
-            printf "%.6f,0,%.6f,%.6f\n", below(k * 0.754878), below(k * 0.569840), k * 222.49224 % 360 }' >spread.csv
-expect_ok measure spread.csv $new -o spread-readings.csv
-awk -F, -v OFS=, '/^[#t]/ { print; next }
-    { c = cos($3 * 3.14159265358979 / 180); $5 *= c; $6 *= c; $7 *= c; print }' spread-readings.csv >cosine.csv
+changed 'c = cos($3 * d); $6 *= c; $7 *= c; $8 *= c' >cosine.csv
 changed '$1 *= d; $2 *= d; $3 *= d; $4 *= d' >radians.csv
 changed '$1 = 90 - $1; $3 = 90 - $3' >elevation.csv
 expect_not_said() { # PART NAME
