@@ -83,12 +83,11 @@ static bool is_floor(double value, const channel_values *channel)
     return smallest || fabs(power - round(power)) < EXACT;
 }
 
+/* The angle between light and view is 2 theta_d. */
 static bool is_hidden(gonio_pair pair)
 {
-    const double cosine = sin(pair.incident.theta) * sin(pair.outgoing.theta) *
-                              cos(pair.outgoing.phi - pair.incident.phi) +
-                          cos(pair.incident.theta) * cos(pair.outgoing.theta);
-    return cosine > cos(NEAR_LIGHT) || fmax(pair.incident.theta, pair.outgoing.theta) > GRAZING;
+    return 2.0 * gonio_half_difference_from_pair(pair).theta_d < NEAR_LIGHT ||
+           fmax(pair.incident.theta, pair.outgoing.theta) > GRAZING;
 }
 
 static bool is_suspect(const search *s, size_t reading, double value, const channel_values *channel)
@@ -98,8 +97,7 @@ static bool is_suspect(const search *s, size_t reading, double value, const chan
            (value <= DIM * channel->median && (is_floor(value, channel) || is_hidden(pair)));
 }
 
-/* Suspects are so in every channel in which they were read. Returns how many there
- * are. */
+/* Suspects are so in every channel in which they were read. Returns how many there are. */
 static size_t find_suspects(const search *s)
 {
     size_t suspects = 0;
