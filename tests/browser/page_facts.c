@@ -1,7 +1,9 @@
 /* What the page is compared with, from the C library: page-facts ORIGINAL FOLDER writes
  *   values.json      random pairs of directions and the BRDF there
  *   sphere.json      the sphere under a lamp: radiance at the middle of each pixel
- *   deviation.binary a made-up table of standard deviations */
+ *   deviation.binary a made-up table of standard deviations
+ *   poles.binary     a made-up material that depends on phi_d where that means nothing
+ *   poles.json       its BRDF near theta_h = 0 and theta_d = 0, as values.json */
 #include <gonio/gonio.h>
 #include <jansson.h>
 #include <math.h>
@@ -29,6 +31,15 @@ static gonio_angles random_angles(gonio_i_random *random)
                           gonio_i_random_uniform(random) * 2.0 * M_PI};
 }
 
+static void add_value(const gonio_table *table, gonio_pair pair, json_t *list)
+{
+    double rho[GONIO_CHANNELS];
+    const bool found = gonio_table_value(table, gonio_half_difference_from_pair(pair), rho);
+    json_array_append_new(list, json_pack("[f,f,f,f,f,f,f,b]", pair.incident.theta,
+                                          pair.incident.phi, pair.outgoing.theta, pair.outgoing.phi,
+                                          rho[0], rho[1], rho[2], found));
+}
+
 static json_t *values(const gonio_table *table)
 {
     gonio_i_random random;
@@ -36,11 +47,25 @@ static json_t *values(const gonio_table *table)
     json_t *list = json_array();
     for (int k = 0; k < PAIRS; k++) {
         const gonio_pair pair = {random_angles(&random), random_angles(&random)};
-        double rho[GONIO_CHANNELS];
-        const bool found = gonio_table_value(table, gonio_half_difference_from_pair(pair), rho);
-        json_array_append_new(list, json_pack("[f,f,f,f,f,f,f,b]", pair.incident.theta,
-                                              pair.incident.phi, pair.outgoing.theta,
-                                              pair.outgoing.phi, rho[0], rho[1], rho[2], found));
+        add_value(table, pair, list);
+    }
+    return list;
+}
+
+/* Half of them with theta_d up to 1 degree, half with theta_h up to 0.006 degrees; the first are
+ * the poles themselves. */
+static json_t *values_at_poles(const gonio_table *table)
+{
+    gonio_i_random random;
+    gonio_i_random_seed(&random, 2, 0);
+    json_t *list = json_array();
+    for (int k = 0; k < PAIRS; k++) {
+        const double near = M_PI / 180.0 * (k < 2 ? 0.0 : gonio_i_random_uniform(&random));
+        const double wide = 1.2 * gonio_i_random_uniform(&random);
+        const double phi_d = M_PI * gonio_i_random_uniform(&random);
+        const gonio_half_difference at = {k % 2 == 0 ? wide : 0.006 * near,
+                                          k % 2 == 0 ? near : wide, phi_d};
+        add_value(table, gonio_pair_from_half_difference(at), list);
     }
     return list;
 }
@@ -107,30 +132,48 @@ static json_t *sphere(const gonio_table *table)
 }
 
 /* Grows towards grazing angles: what the file holds is the deviation itself. */
-static gonio_status read_deviation(void *self, gonio_context *context, int theta_h, double *rho)
+/* A made-up table: the value of each bin in units of s, in all channels alike. */
+typedef double (*made_value)(gonio_bin bin);
+
+static double deviation_of(gonio_bin bin)
 {
-    (void)self;
+    return 0.03 + 0.2 * bin.theta_d / 90.0;
+}
+
+static double turning_value(gonio_bin bin)
+{
+    return 100.0 * (1.5 + cos(2.0 * M_PI * (bin.phi_d + 0.5) / GONIO_PHI_D_BINS));
+}
+
+static gonio_status read_made(void *self, gonio_context *context, int theta_h, double *rho)
+{
+    const made_value *value = self;
     (void)context;
     for (int k = 0; k < GONIO_SLAB_BINS; k++) {
         const gonio_bin bin = {theta_h, k / GONIO_PHI_D_BINS, k % GONIO_PHI_D_BINS};
-        const double deviation = 0.03 + 0.2 * bin.theta_d / 90.0;
         for (int channel = 0; channel < GONIO_CHANNELS; channel++) {
             rho[channel * GONIO_SLAB_BINS + k] =
-                gonio_bin_is_valid(bin) ? deviation * gonio_log_scale(channel) : -1.0;
+                gonio_bin_is_valid(bin) ? (*value)(bin)*gonio_log_scale(channel) : -1.0;
         }
     }
     return GONIO_OK;
 }
 
-static gonio_status write_deviation(const char *folder)
+/* Writes FOLDER/NAME.binary; *table: the same to look values up, if it is not NULL. */
+static gonio_status write_made(const char *folder, const char *name, made_value value,
+                               gonio_table **table)
 {
     char path[4096];
-    snprintf(path, sizeof path, "%s/deviation.binary", folder);
+    snprintf(path, sizeof path, "%s/%s.binary", folder, name);
     gonio_material *material = NULL;
-    const gonio_material_source source = {.size = sizeof source, .read_slab = read_deviation};
-    gonio_status status = gonio_material_create(NULL, "deviation", "made", &source, &material);
+    const gonio_material_source source = {
+        .size = sizeof source, .read_slab = read_made, .self = &value};
+    gonio_status status = gonio_material_create(NULL, name, "made", &source, &material);
     if (status == GONIO_OK) {
         status = gonio_material_write_merl(NULL, material, path);
+    }
+    if (status == GONIO_OK && table != NULL) {
+        status = gonio_table_load(NULL, material, table);
     }
     gonio_material_free(&material);
     return status;
@@ -140,14 +183,18 @@ int main(int argc, char **argv)
 {
     gonio_material *material = NULL;
     gonio_table *table = NULL;
+    gonio_table *poles = NULL;
     if (argc != 3 || gonio_material_open(NULL, argv[1], &material) != GONIO_OK ||
         gonio_table_load(NULL, material, &table) != GONIO_OK ||
-        write_deviation(argv[2]) != GONIO_OK) {
+        write_made(argv[2], "deviation", deviation_of, NULL) != GONIO_OK ||
+        write_made(argv[2], "poles", turning_value, &poles) != GONIO_OK) {
         fprintf(stderr, "usage: page-facts ORIGINAL FOLDER\n");
         return 1;
     }
     write_json(values(table), argv[2], "values.json");
+    write_json(values_at_poles(poles), argv[2], "poles.json");
     write_json(sphere(table), argv[2], "sphere.json");
+    gonio_table_free(&poles);
     gonio_table_free(&table);
     gonio_material_free(&material);
     return 0;

@@ -34,6 +34,7 @@ awk 'BEGIN {
 "$GONIO" measure plan.csv "$original" -o readings.csv >/dev/null
 "$GONIO" report "$original" "$other" --readings readings.csv --deviation deviation.binary -o page.html
 "$GONIO" report "$original" -o alone.html
+"$GONIO" report poles.binary -o poles.html
 
 mkdir -p out/tables
 printf 'basis_of,component,variance,cumulative\nall,1,4,0.8\nall,2,1,1\nsplit 1,1,3,0.75\nsplit 1,2,1,1\n' \

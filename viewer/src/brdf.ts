@@ -80,6 +80,17 @@ function periodic(position: number, bins: number): [number, number, number] {
     return [wrap(low), wrap(low + 1), p - low];
 }
 
+/** Middle bins of the sectors whose mean stands for a value where phi_d means nothing. */
+export const SECTORS = 12;
+const SECTOR_BINS = PHI_D_BINS / SECTORS;
+const sectorMiddle = (sector: number) => sector * SECTOR_BINS + Math.floor(SECTOR_BINS / 2);
+
+/** How much phi_d means: 1 from the first centres of theta_h and theta_d on, 0 where either is 0. */
+function meaningOfPhiD(c: HalfDifference): number {
+    const first = binCentre(0, 0, 0);
+    return Math.min(c.thetaH / first.thetaH, 1) * Math.min(c.thetaD / first.thetaD, 1);
+}
+
 /** A BRDF (or its deviations) on the grid. rgba[bin][4], phi_d fastest; the fourth is 1 with data. */
 export class Table {
     /** `halves` are the same as half floats, which every WebGL 2 can interpolate. */
@@ -95,25 +106,38 @@ export class Table {
         return rgba[at + 3] > 0 ? [rgba[at], rgba[at + 1], rgba[at + 2]] : null;
     }
 
-    /** Trilinear between bin centres; bins without data are left out, the others count for more. */
+    /**
+     * Trilinear between bin centres; near the poles of phi_d, towards its mean. Bins without data
+     * are left out, the others count for more.
+     */
     at(c: HalfDifference): Triple | null {
         const [cosineI, cosineO] = cosines(c);
         if (cosineI <= 0 || cosineO <= 0) {
             return null;
         }
+        const p = periodic((PHI_D_BINS * c.phiD) / Math.PI, PHI_D_BINS);
+        const meaning = meaningOfPhiD(c);
+        const sum = [0, 0, 0, 0];
+        this.addPlane(c, p[0], (1 - p[2]) * meaning, sum);
+        this.addPlane(c, p[1], p[2] * meaning, sum);
+        for (let sector = 0; meaning < 1 && sector < SECTORS; sector++) {
+            this.addPlane(c, sectorMiddle(sector), (1 - meaning) / SECTORS, sum);
+        }
+        return sum[3] > 0 ? [sum[0] / sum[3], sum[1] / sum[3], sum[2] / sum[3]] : null;
+    }
+
+    /** Adds the value at a bin of phi_d, bilinear in the other two, times a share, to sum[4]. */
+    private addPlane(c: HalfDifference, phiD: number, share: number, sum: number[]) {
         const h = clamped(THETA_H_BINS * Math.sqrt(c.thetaH / QUARTER), THETA_H_BINS);
         const d = clamped((THETA_D_BINS * c.thetaD) / QUARTER, THETA_D_BINS);
-        const p = periodic((PHI_D_BINS * c.phiD) / Math.PI, PHI_D_BINS);
-        const sum = [0, 0, 0, 0];
-        for (let k = 0; k < 8; k++) {
-            const [a, b, e] = [k >> 2, (k >> 1) & 1, k & 1];
-            const weight = (a ? h[2] : 1 - h[2]) * (b ? d[2] : 1 - d[2]) * (e ? p[2] : 1 - p[2]);
-            const at = 4 * ((h[a] * THETA_D_BINS + d[b]) * PHI_D_BINS + p[e]);
+        for (let k = 0; k < 4; k++) {
+            const [a, b] = [k >> 1, k & 1];
+            const weight = share * (a ? h[2] : 1 - h[2]) * (b ? d[2] : 1 - d[2]);
+            const at = 4 * ((h[a] * THETA_D_BINS + d[b]) * PHI_D_BINS + phiD);
             for (let channel = 0; channel < 4; channel++) {
                 sum[channel] += weight * this.rgba[at + channel];
             }
         }
-        return sum[3] > 0 ? [sum[0] / sum[3], sum[1] / sum[3], sum[2] / sum[3]] : null;
     }
 
     atPair(incident: Angles, outgoing: Angles): Triple | null {

@@ -93,9 +93,23 @@ vec3 placeInTable(vec3 i, vec3 o)
     return vec3(phiD / PI, thetaD * 2.0 / PI, sqrt(max(thetaH, 0.0) * 2.0 / PI));
 }
 
+// Near the poles of phi_d, which mean nothing at theta_h = 0 and theta_d = 0, its mean takes over.
+vec4 entryAt(sampler3D table, vec3 place)
+{
+    float first = 0.5 / 90.0; // the first centres
+    float across = min(place.z / first, 1.0);
+    float meaning = across * across * min(place.y / first, 1.0);
+    vec4 value = meaning * textureLod(table, place, 0.0);
+    for (int sector = 0; meaning < 1.0 && sector < 12; sector++) {
+        vec3 middle = vec3((float(sector) + 0.5) / 12.0, place.yz);
+        value += (1.0 - meaning) / 12.0 * textureLod(table, middle, 0.0);
+    }
+    return value;
+}
+
 vec3 valueAt(sampler3D table, vec3 place)
 {
-    vec4 value = textureLod(table, place, 0.0);
+    vec4 value = entryAt(table, place);
     return value.a > 0.0 ? value.rgb / value.a : vec3(0.0);
 }
 `;

@@ -145,3 +145,25 @@ export async function changes(page, selector, action) {
         { timeout: PATIENCE },
     );
 }
+
+/**
+ * Of [theta_i, phi_i, theta_o, phi_o, R, G, B, found] of the C library: how far look-ups in the page
+ * are off at most, in steps, half of which is what rounding costs; and how often one side has none.
+ */
+export const lookUpErrors = (page, rows) =>
+    page.evaluate((pairs) => {
+        const { tables, data } = window.gonioReport;
+        const scale = [1, 1.15, 1.66].map((s) => s / 1500);
+        let [most, wrong] = [0, 0];
+        for (const [ti, pi, to, po, r, g, b, found] of pairs) {
+            const value = tables.reference.atPair([ti, pi], [to, po]);
+            wrong += (value !== null) !== found ? 1 : 0;
+            if (value && found) {
+                [r, g, b].forEach((rho, k) => {
+                    const error = Math.abs(value[k] - rho) / (rho + scale[k]) / data.reference.step;
+                    most = Math.max(most, error);
+                });
+            }
+        }
+        return { most, wrong };
+    }, rows);

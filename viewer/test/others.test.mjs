@@ -1,7 +1,16 @@
 // Other pages: figures of a reproduction, a material alone, on a phone, without WebGL.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { changes, choose, launch, looksLike, open, spheresDone } from './browser.mjs';
+import {
+    changes,
+    choose,
+    json,
+    launch,
+    lookUpErrors,
+    looksLike,
+    open,
+    spheresDone,
+} from './browser.mjs';
 
 let browser;
 before(async () => (browser = await launch()));
@@ -41,6 +50,16 @@ test('a material alone has no difference, no errors and no band', async () => {
     }
     assert.equal(await page.locator('[data-control=layer]').count(), 0);
     assert.equal(await page.locator('#lobe-key').count(), 0);
+    assert.deepEqual(complaints, []);
+    await page.close();
+});
+
+test('where phi_d means nothing its mean is looked up, as the C library does', async () => {
+    const { page, complaints } = await open(browser, 'poles.html');
+    const worst = await lookUpErrors(page, json('poles.json'));
+    assert.equal(worst.wrong, 0, 'where there are data');
+    assert.ok(worst.most < 0.52, `off by ${worst.most} steps`);
+    assert.equal(await page.locator('#problem').isHidden(), true);
     assert.deepEqual(complaints, []);
     await page.close();
 });

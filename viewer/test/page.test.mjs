@@ -10,6 +10,7 @@ import {
     hasFile,
     json,
     launch,
+    lookUpErrors,
     looksLike,
     open,
     picture,
@@ -41,24 +42,7 @@ test('every section is there, named in the navigation', async () => {
 });
 
 test('the BRDF between bins is that of the C library', async () => {
-    const rows = json('values.json');
-    const worst = await page.evaluate((pairs) => {
-        const { tables, data } = window.gonioReport;
-        const scale = [1, 1.15, 1.66].map((s) => s / 1500);
-        let [most, wrong] = [0, 0];
-        for (const [ti, pi, to, po, r, g, b, found] of pairs) {
-            const value = tables.reference.atPair([ti, pi], [to, po]);
-            wrong += (value !== null) !== found ? 1 : 0;
-            if (value && found) {
-                [r, g, b].forEach((rho, k) => {
-                    // In steps: half of one is what rounding costs.
-                    const error = Math.abs(value[k] - rho) / (rho + scale[k]) / data.reference.step;
-                    most = Math.max(most, error);
-                });
-            }
-        }
-        return { most, wrong };
-    }, rows);
+    const worst = await lookUpErrors(page, json('values.json'));
     assert.equal(worst.wrong, 0, 'where there are data');
     assert.ok(worst.most < 0.52, `off by ${worst.most} steps`);
 });
