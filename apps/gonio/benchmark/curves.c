@@ -57,6 +57,25 @@ bool benchmark_has_curves(const benchmark_summary *summary)
     return several;
 }
 
+/* A logarithmic axis a little longer than the data; gnuplot would lengthen it to powers of ten. */
+static gonio_i_axis axis_of(const char *name, const char *unit, const curve_points *points,
+                            size_t count, bool of_y)
+{
+    const double wider = 1.15;
+    gonio_i_axis axis = {
+        .name = name, .unit = unit, .logarithmic = true, .low = INFINITY, .high = 0.0};
+    for (size_t k = 0; k < count; k++) {
+        for (size_t i = 0; i < points[k].count; i++) {
+            const double value = of_y ? points[k].y[i] : points[k].x[i];
+            axis.low = fmin(axis.low, value);
+            axis.high = fmax(axis.high, value);
+        }
+    }
+    axis.low /= wider;
+    axis.high *= wider;
+    return axis;
+}
+
 static gonio_status draw(gonio_context *context, gonio_i_figures *figures,
                          const benchmark_summary *summary, size_t number, curve_points *points)
 {
@@ -73,8 +92,8 @@ static gonio_status draw(gonio_context *context, gonio_i_figures *figures,
     snprintf(name, sizeof name, "e6-%zu", number + 1);
     const gonio_i_curves figure = {.name = name,
                                    .title = summary->set[number],
-                                   .x = {.name = "directions read", .logarithmic = true},
-                                   .y = {.name = "mean error E6", .unit = "%", .logarithmic = true},
+                                   .x = axis_of("directions read", NULL, points, count, false),
+                                   .y = axis_of("mean error E6", "%", points, count, true),
                                    .count = count,
                                    .curves = curves};
     return count > 0 ? gonio_i_figure_curves(context, figures, &figure) : GONIO_OK;

@@ -97,7 +97,7 @@ def slice(material: Any, phi_d: float = np.pi / 2, *, ax: Optional[Any] = None) 
 
 
 def plan(where: Any, *, ax: Optional[Any] = None) -> Any:
-    """A plan on the hemisphere seen from above: light (yellow) and viewer (blue) of each reading, joined by a line.
+    """A plan on the hemisphere seen from above: light (orange) and viewer (blue) of each reading, joined by a line.
 
     Parameters
     ----------
@@ -113,7 +113,8 @@ def plan(where: Any, *, ax: Optional[Any] = None) -> Any:
     ax.scatter(np.ravel(phi_i), np.degrees(np.ravel(theta_i)), color="tab:orange", label="light", zorder=2, s=18)
     ax.scatter(np.ravel(phi_o), np.degrees(np.ravel(theta_o)), color="tab:blue", label="viewer", zorder=2, s=18)
     ax.set_rmax(90.0)
-    ax.legend(loc="lower right")
+    ax.set_rgrids([30.0, 60.0, 90.0], ["30°", "60°", "90°"], angle=22.5)
+    ax.legend(loc="lower left", bbox_to_anchor=(0.95, 0.95))
     return ax
 
 
