@@ -80,23 +80,37 @@ static bool read_sizes(const tool *t, const options *o, benchmark_setting *s)
     return true;
 }
 
-/* The places of the words of a text in a list, which `find` knows. */
-static bool read_words(const tool *t, const char *option, const char *text,
-                       int (*find)(const char *name), int *place, size_t *count)
+static const char *method_name(int index)
 {
+    const benchmark_method *method = benchmark_method_at(index);
+    return method != NULL ? method->name : NULL;
+}
+
+static const char *directions_name(int index)
+{
+    const benchmark_directions *ways = benchmark_directions_at(index);
+    return ways != NULL ? ways->name : NULL;
+}
+
+/* The places of the words of a text in the list that `name` has. */
+static bool read_words(const tool *t, const char *option, const char *text,
+                       const char *(*name)(int index), int *place, size_t *count)
+{
+    const char *words[BENCHMARK_MOST_WORDS + 1] = {NULL};
+    for (int k = 0; k < BENCHMARK_MOST_WORDS && name(k) != NULL; k++) {
+        words[k] = name(k);
+    }
     *count = 0;
     for (const char *at = text; at != NULL;) {
         char word[64];
         const size_t length = strcspn(at, ",");
         snprintf(word, sizeof word, "%.*s", (int)length, at);
-        const int found = find(word);
-        if (found < 0) {
-            return tool_refuse(t, "%s: there is no '%s'; see gonio benchmark -h", option, word);
-        }
         if (*count == BENCHMARK_MOST_WORDS) {
             return tool_refuse(t, "%s names more than %d", option, BENCHMARK_MOST_WORDS);
         }
-        place[(*count)++] = found;
+        if (!tool_check_word(t, option, word, words, &place[(*count)++])) {
+            return false;
+        }
         at = at[length] == ',' ? at + length + 1 : NULL;
     }
     return true;
@@ -107,8 +121,8 @@ static bool read_methods(const tool *t, const options *o, benchmark_setting *s)
     const char *usual = "posterior,interpolation,lambert-ggx";
     const int external = benchmark_method_find("external");
     bool named = false;
-    if (!read_words(t, "--methods", o->methods != NULL ? o->methods : usual, benchmark_method_find,
-                    s->method, &s->method_count)) {
+    if (!read_words(t, "--methods", o->methods != NULL ? o->methods : usual, method_name, s->method,
+                    &s->method_count)) {
         return false;
     }
     for (size_t k = 0; k < s->method_count; k++) {
@@ -164,7 +178,7 @@ static bool read_setting(const tool *t, const options *o, benchmark_setting *s)
     s->seed = (uint64_t)o->seed;
     s->render = o->render != 0;
     return read_words(t, "--directions", o->directions != NULL ? o->directions : "planned,random",
-                      benchmark_directions_find, s->directions, &s->direction_count);
+                      directions_name, s->directions, &s->direction_count);
 }
 
 /* ---- the work ---- */

@@ -105,8 +105,8 @@ expect_fail_in 'line 2 of its predictions' benchmark --learn b.gonio cloth.csv -
 
 expect_fail 2 'no output' benchmark cloth.csv
 expect_fail 2 'are needed' benchmark -o none
-expect_fail 2 "there is no 'best'" benchmark cloth.csv --methods best -o none
-expect_fail 2 "there is no 'best'" benchmark cloth.csv --directions best -o none
+expect_fail 2 "--methods: 'best' is none of posterior, interpolation, lambert-ggx" benchmark cloth.csv --methods best -o none
+expect_fail 2 "--directions: 'best' is none of planned, next, random" benchmark cloth.csv --directions best -o none
 expect_fail 2 'needs --external' benchmark cloth.csv --methods external -o none
 expect_fail 2 'takes numbers' benchmark cloth.csv -n 4,x -o none
 expect_fail 2 'reach' benchmark cloth.csv --reach 91 -o none
