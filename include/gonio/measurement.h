@@ -143,6 +143,8 @@ typedef struct gonio_readings_view {
     size_t notes;            /* number of messages of the file's reader, */
     const char *const *note; /* [notes] */
     size_t below_zero;       /* number of values of the file below zero, which were taken as 0 */
+    const double *time;      /* [count], seconds from any beginning, NaN where not known; NULL: none
+                              * is known */
 } gonio_readings_view;
 
 GONIO_API const gonio_readings_view *gonio_readings_describe(const gonio_readings *readings);
@@ -194,6 +196,10 @@ GONIO_API gonio_status gonio_readings_set_deviations(gonio_context *context,
  * number of wavelengths, the wavelengths in nm, then for each reading theta_i, phi_i, theta_o,
  * phi_o in radians and a value in 1/sr for each wavelength, with line breaks anywhere.
  *
+ * A CSV column time (seconds, minutes, a clock or a date with one) is the time of each row. Rows
+ * that a column mark calls reference or dark are no readings: a reference that was read again
+ * during the run corrects for drift, and dark rows are subtracted.
+ *
  * theta is in (-90, 90) degrees; if it is below zero, 180 degrees are added to phi. phi is any
  * number. Rows at or below the horizon are left out, and a note counts them. options may be NULL.
  * *readings is the caller's. Errors: _IO, _FORMAT (not such a file, missing columns, not a number),
@@ -202,6 +208,13 @@ GONIO_API gonio_status gonio_readings_set_deviations(gonio_context *context,
 GONIO_API gonio_status gonio_readings_read(gonio_context *context, const char *path,
                                            const gonio_readings_options *options,
                                            gonio_readings **readings);
+
+/* Reads the text of such a file from memory: text[size]. `name` stands for the path in messages.
+ * The text stays the caller's. Errors: as gonio_readings_read, except _IO. */
+GONIO_API gonio_status gonio_readings_read_text(gonio_context *context, const char *name,
+                                                const char *text, size_t size,
+                                                const gonio_readings_options *options,
+                                                gonio_readings **readings);
 
 /* Writes readings with the comments of their file: as BRDF JSON if the path ends in .json or .brdf,
  * otherwise as CSV, with the other columns of the CSV file that they came from. JSON keeps every

@@ -27,7 +27,7 @@ UNBOUND = {
         gonio_recipe_for_grid_of gonio_database_create gonio_measure gonio_table_value gonio_material_read_slab
         gonio_material_write_merl gonio_material_write_rgl gonio_material_writer_find gonio_material_name
         gonio_material_format gonio_image_create gonio_reconstruction_material gonio_reconstruct_tables
-        gonio_file_expect gonio_mesh_triangles gonio_mesh_corners gonio_readings_find
+        gonio_file_expect gonio_readings_read_text gonio_mesh_triangles gonio_mesh_corners gonio_readings_find
         gonio_reference_create gonio_reference_free gonio_reference_image gonio_reference_tone
         gonio_reference_render gonio_reference_compare gonio_page_is_built gonio_version_number""",
     "experiments with rows of matrices are for C": """gonio_plan_select gonio_plan_rows gonio_condition_number

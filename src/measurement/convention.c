@@ -1,7 +1,9 @@
 /* Conventions as words and sentences: see convention.h. */
 #include "convention.h"
 
+#include <math.h>
 #include <stddef.h>
+
 const gonio_i_convention_key gonio_i_convention_keys[GONIO_I_CONVENTION_KEYS] = {
     {"angles",
      offsetof(gonio_convention, angles),
@@ -66,5 +68,21 @@ void gonio_i_convention_print(const gonio_convention *convention, FILE *stream)
                 between = ", ";
             }
         }
+    }
+}
+
+double gonio_i_value_divisor(int kind, double theta_o)
+{
+    switch (kind) {
+    case GONIO_VALUE_FACTOR:
+        return M_PI;
+    case GONIO_VALUE_PERCENT:
+        return 100.0 * M_PI;
+    case GONIO_VALUE_COSINE:
+        return cos(theta_o);
+    case GONIO_VALUE_FACTOR_COSINE:
+        return M_PI * cos(theta_o);
+    default:
+        return 1.0;
     }
 }

@@ -25,6 +25,8 @@ void gonio_i_import_begin(gonio_i_import *import, gonio_context *context, gonio_
                                .how = gonio_i_convention_of(stated, &readings->options.as),
                                .taken_as = taken_as};
     readings->keep_angles = true;
+    readings->values = import->how.values;
+    import->latest = NAN;
 }
 
 void gonio_i_import_leniently(gonio_i_import *import)
@@ -187,28 +189,10 @@ static gonio_status check_angles(const gonio_i_import *in, const gonio_i_row *ro
 
 /* ---- values ---- */
 
-/* The number by which a value of the file is divided. */
-static double divisor(const gonio_i_import *in, const double degrees[4])
-{
-    const double cosine = cos(degrees[2] * M_PI / 180.0);
-    switch (in->how.values) {
-    case GONIO_VALUE_FACTOR:
-        return M_PI;
-    case GONIO_VALUE_PERCENT:
-        return 100.0 * M_PI;
-    case GONIO_VALUE_COSINE:
-        return cosine;
-    case GONIO_VALUE_FACTOR_COSINE:
-        return M_PI * cosine;
-    default:
-        return 1.0;
-    }
-}
-
 /* Converts the values of a row to a BRDF. Returns whether there is a value. */
 static bool take_values(gonio_i_import *in, const gonio_i_row *row, const double degrees[4])
 {
-    const double by = divisor(in, degrees);
+    const double by = gonio_i_value_divisor(in->how.values, degrees[2] * M_PI / 180.0);
     bool any = false;
     for (size_t k = 0; k < in->readings->channels; k++) {
         const bool missing = row->value[k] == 0.0 && in->how.zeros == GONIO_ZEROS_MISSING;
@@ -222,10 +206,46 @@ static bool take_values(gonio_i_import *in, const gonio_i_row *row, const double
     return any;
 }
 
+/* ---- rows ---- */
+
+/* A clock without a date begins again at midnight. */
+static const double DAY = 86400.0;
+
+/* The time of a row, after those before it; counts rows that are earlier. */
+static double take_time(gonio_i_import *in, const gonio_i_row *row)
+{
+    double time = row->timed ? row->time + in->days * DAY : NAN;
+    if (time < in->latest - DAY / 2.0 && time >= 0.0 && row->time < DAY) {
+        in->days += 1.0;
+        time += DAY;
+    }
+    if (time < in->latest) {
+        in->first_backwards = in->backwards == 0 ? row->line : in->first_backwards;
+        in->backwards++;
+    }
+    in->latest = isnan(time) ? in->latest : time;
+    return time;
+}
+
+/* A row of the reference or of the dark level. */
+static gonio_status add_marked(gonio_i_import *in, const gonio_i_row *row, double time)
+{
+    gonio_i_marked marked = {.mark = row->mark, .time = time, .line = row->line};
+    memcpy(marked.degrees, row->degrees, sizeof marked.degrees);
+    return gonio_i_marked_add(in->context, &in->marked, in->readings->channels, &marked,
+                              row->value);
+}
+
 gonio_status gonio_i_import_add(gonio_i_import *import, const gonio_i_row *row)
 {
+    const double time = take_time(import, row);
+    if (row->mark != GONIO_I_SAMPLE) {
+        return add_marked(import, row, time);
+    }
     gonio_i_reading reading = {.planned = row->planned,
                                .line = row->line,
+                               .timed = row->timed,
+                               .time = time,
                                .value = import->value,
                                .deviation = row->deviation != NULL ? import->deviation : NULL};
     const gonio_status status = check_angles(import, row);
@@ -271,6 +291,9 @@ static void move(gonio_readings *r, size_t from, size_t to)
     memmove(&r->value[to * r->channels], &r->value[from * r->channels], bytes);
     if (r->deviation != NULL) {
         memmove(&r->deviation[to * r->channels], &r->deviation[from * r->channels], bytes);
+    }
+    if (r->time != NULL) {
+        r->time[to] = r->time[from];
     }
     memmove(r->given[to], r->given[from], sizeof *r->given);
 }
@@ -325,6 +348,7 @@ static const char *const reasons[GONIO_I_REASONS] = {
     [GONIO_I_LOST] = "too low or too high near the horizon",
     [GONIO_I_REPEATED] = "repeated with the same values",
     [GONIO_I_EXTRAPOLATED] = "extrapolated",
+    [GONIO_I_NOT_THE_SAMPLE] = "of the reference or the dark level",
 };
 
 static void print_left_out(const gonio_i_import *in, FILE *stream)
@@ -377,6 +401,16 @@ static gonio_status write_note(gonio_i_import *in)
     return status;
 }
 
+static gonio_status note_backwards(const gonio_i_import *in)
+{
+    return in->backwards == 0
+               ? GONIO_OK
+               : gonio_i_readings_note(in->context, in->readings,
+                                       "the time runs backwards in %zu row%s (first in line %zu)",
+                                       in->backwards, in->backwards > 1 ? "s" : "",
+                                       in->first_backwards);
+}
+
 static gonio_status refuse_nothing(const gonio_i_import *in)
 {
     size_t rows = 0;
@@ -402,6 +436,13 @@ gonio_status gonio_i_import_end(gonio_i_import *import, gonio_status status)
     if (status == GONIO_OK && (!import->quiet || anything_changed(import))) {
         status = write_note(import);
     }
+    if (status == GONIO_OK) {
+        status = note_backwards(import);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_marked_apply(import->context, import->readings, &import->marked);
+    }
+    gonio_i_marked_free(&import->marked);
     free(import->value);
     free(import->deviation);
     import->value = NULL;

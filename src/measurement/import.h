@@ -7,15 +7,16 @@
 #ifndef GONIO_IMPORT_H
 #define GONIO_IMPORT_H
 
-#include "readings.h"
+#include "marks.h"
 
 /* Why a row is left out. */
 typedef enum gonio_i_reason {
     GONIO_I_BELOW_HORIZON,
-    GONIO_I_NOT_MEASURED, /* no value, or 0 where 0 means that */
-    GONIO_I_REPEATED,     /* the same directions and values */
-    GONIO_I_LOST,         /* cut off near the horizon, or stray light (horizon.h) */
-    GONIO_I_EXTRAPOLATED, /* the file states that the value was not measured */
+    GONIO_I_NOT_MEASURED,   /* no value, or 0 where 0 means that */
+    GONIO_I_REPEATED,       /* the same directions and values */
+    GONIO_I_LOST,           /* cut off near the horizon, or stray light (horizon.h) */
+    GONIO_I_EXTRAPOLATED,   /* the file states that the value was not measured */
+    GONIO_I_NOT_THE_SAMPLE, /* a reference or dark row that cannot be used */
     GONIO_I_REASONS
 } gonio_i_reason;
 
@@ -32,6 +33,11 @@ typedef struct gonio_i_import {
     size_t left_out[GONIO_I_REASONS];
     size_t negative;       /* values taken as 0 */
     size_t negative_theta; /* rows with a theta below zero, of readings */
+    gonio_i_marked_rows marked;
+    double latest;          /* time so far, seconds; NaN: none */
+    double days;            /* midnights that the clock has passed */
+    size_t backwards;       /* rows that are earlier than the one before */
+    size_t first_backwards; /* line */
 } gonio_i_import;
 
 /* One row. Angles in degrees (gonio_i_import_degrees), values as the file has them. */
@@ -39,6 +45,9 @@ typedef struct gonio_i_row {
     double degrees[4]; /* theta_i, phi_i, theta_o, phi_o; theta from the normal, -180 to 180 */
     int planned;       /* a channel or GONIO_ALL_CHANNELS */
     size_t line;
+    gonio_i_mark mark;
+    bool timed;              /* in all rows the same */
+    double time;             /* seconds; NaN: not known */
     const double *value;     /* [channels], NaN where nothing was read */
     const double *deviation; /* [channels] or NULL, in all rows the same */
 } gonio_i_row;

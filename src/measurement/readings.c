@@ -54,6 +54,7 @@ void gonio_readings_free(gonio_readings **readings)
     free(old->line);
     free(old->value);
     free(old->deviation);
+    free(old->time);
     free(old->wavelength);
     free(old->given);
     free(old->first_same);
@@ -73,6 +74,7 @@ void gonio_i_readings_update_view(gonio_readings *readings)
                                            .value = readings->value,
                                            .deviation = readings->deviation,
                                            .line = readings->line,
+                                           .time = readings->time,
                                            .path = readings->path,
                                            .basis = readings->basis,
                                            .components = readings->components,

@@ -25,6 +25,8 @@ struct gonio_readings {
     size_t *line;
     double *value;      /* [count][channels] */
     double *deviation;  /* [count][channels]; NULL: none is known */
+    double *time;       /* [count], seconds, NaN where not known; NULL: none is known */
+    int values;         /* gonio_value_kind of their file; 0: BRDF */
     double *wavelength; /* [channels]; NULL: colours or unnamed channels */
     bool keep_angles;   /* angles are written as they were given: */
     double (*given)[4]; /* [count], theta_i, phi_i, theta_o, phi_o in degrees; or NULL */
@@ -57,6 +59,8 @@ typedef struct gonio_i_reading {
     double degrees[4]; /* theta_i, phi_i, theta_o, phi_o; phi in [-360, 360] */
     int planned;
     size_t line;
+    bool timed;              /* in all readings the same */
+    double time;             /* seconds, NaN: not known */
     const double *value;     /* [channels] */
     const double *deviation; /* [channels] or NULL, in all readings the same */
 } gonio_i_reading;

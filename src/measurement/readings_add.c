@@ -22,7 +22,8 @@ static void *enlarge(void *block, size_t room, size_t size, bool *done)
     return more;
 }
 
-static gonio_status make_room(gonio_context *context, gonio_readings *r, bool deviations)
+static gonio_status make_room(gonio_context *context, gonio_readings *r, bool deviations,
+                              bool times)
 {
     if (r->count < r->room) {
         return GONIO_OK;
@@ -38,6 +39,9 @@ static gonio_status make_room(gonio_context *context, gonio_readings *r, bool de
     if (deviations) {
         r->deviation = enlarge(r->deviation, room, values, &done);
     }
+    if (times) {
+        r->time = enlarge(r->time, room, sizeof *r->time, &done);
+    }
     if (r->keep_angles) {
         r->given = enlarge(r->given, room, sizeof *r->given, &done);
     }
@@ -51,7 +55,7 @@ static gonio_status make_room(gonio_context *context, gonio_readings *r, bool de
 gonio_status gonio_i_readings_add(gonio_context *context, gonio_readings *r,
                                   const gonio_i_reading *reading)
 {
-    gonio_status status = make_room(context, r, reading->deviation != NULL);
+    gonio_status status = make_room(context, r, reading->deviation != NULL, reading->timed);
     if (status == GONIO_OK) {
         status = gonio_i_check_angles(context, r, reading->line, reading->degrees);
     }
@@ -73,6 +77,9 @@ gonio_status gonio_i_readings_add(gonio_context *context, gonio_readings *r,
                                      gonio_i_angles_from_degrees(d[2], d[3])};
     r->planned[r->count] = reading->planned;
     r->line[r->count] = reading->line;
+    if (reading->timed) {
+        r->time[r->count] = reading->time;
+    }
     if (r->keep_angles) {
         memcpy(r->given[r->count], d, sizeof *r->given);
     }

@@ -189,6 +189,7 @@ gonio_status gonio_readings_copy(gonio_context *context, const gonio_readings *r
     made->line = copy_array(context, r->line, r->count, sizeof *r->line, &done);
     made->value = copy_array(context, r->value, values, sizeof *r->value, &done);
     made->deviation = copy_array(context, r->deviation, values, sizeof *r->deviation, &done);
+    made->time = copy_array(context, r->time, r->count, sizeof *r->time, &done);
     made->wavelength =
         copy_array(context, r->wavelength, r->channels, sizeof *r->wavelength, &done);
     made->first_same = copy_array(context, r->first_same, r->count, sizeof *r->first_same, &done);
@@ -197,6 +198,7 @@ gonio_status gonio_readings_copy(gonio_context *context, const gonio_readings *r
         return GONIO_ERROR_MEMORY;
     }
     made->below_zero = r->below_zero;
+    made->values = r->values;
     made->basis = r->basis;
     made->components = r->components;
     gonio_i_readings_update_view(made);

@@ -113,6 +113,25 @@ static gonio_status read_text(gonio_i_readings_file *file, gonio_readings *readi
                : status;
 }
 
+/* Reads a text, which is released; status: of what came before. */
+static gonio_status read_taken(gonio_i_readings_file *file, gonio_readings *made,
+                               gonio_status status, gonio_readings **readings)
+{
+    if (status == GONIO_OK) {
+        status = gonio_i_text_make_plain(file->context, file->path, &file->text, &file->size);
+    }
+    if (status == GONIO_OK) {
+        status = read_text(file, made);
+    }
+    free(file->text);
+    if (status != GONIO_OK) {
+        gonio_readings_free(&made);
+        return status;
+    }
+    *readings = made;
+    return GONIO_OK;
+}
+
 gonio_status gonio_readings_read(gonio_context *context, const char *path,
                                  const gonio_readings_options *options, gonio_readings **readings)
 {
@@ -122,19 +141,24 @@ gonio_status gonio_readings_read(gonio_context *context, const char *path,
     if (status == GONIO_OK) {
         status = gonio_i_text_read(context, path, &file.text, &file.size);
     }
+    return read_taken(&file, made, status, readings);
+}
+
+gonio_status gonio_readings_read_text(gonio_context *context, const char *name, const char *text,
+                                      size_t size, const gonio_readings_options *options,
+                                      gonio_readings **readings)
+{
+    gonio_i_readings_file file = {.context = context, .path = name, .size = size};
+    gonio_readings *made = NULL;
+    gonio_status status = gonio_i_readings_new(context, name, options, &made);
     if (status == GONIO_OK) {
-        status = gonio_i_text_make_plain(context, path, &file.text, &file.size);
+        file.text = gonio_i_allocate(context, size + 1, 1);
+        status = file.text == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
     }
     if (status == GONIO_OK) {
-        status = read_text(&file, made);
+        memcpy(file.text, text, size);
     }
-    free(file.text);
-    if (status != GONIO_OK) {
-        gonio_readings_free(&made);
-        return status;
-    }
-    *readings = made;
-    return GONIO_OK;
+    return read_taken(&file, made, status, readings);
 }
 
 /* ---- writing ---- */

@@ -154,7 +154,8 @@ static void test_numbers_that_are_not_read(void **state)
         const char *row;
         const char *note;
     } cases[] = {
-        {"R_per_sr,time_s", "0.5,12", "columns of numbers that are not read: 'time_s'"},
+        {"R_per_sr,exposure_s", "0.5,12", "columns of numbers that are not read: 'exposure_s'"},
+        {"R_per_sr,time_s", "0.5,12", ""},
         {"R_per_sr,remark", "0.5,wet", ""},
         {"R_per_sr,expected_e6_percent", "0.5,3.2", ""},
         {"R_per_sr,", "0.5,7", "not read: column 6 without a name"},

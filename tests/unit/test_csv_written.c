@@ -98,10 +98,10 @@ static void test_written_again(void **state)
                 "B_deviation_per_sr\n10,0,20,350,1,2,3,0.5,,\n",
          "angles 'theta_i_deg', 'theta_o_deg', 'dphi'"},
         /* a line of units */
-        {"theta_i;phi_i;theta_o;phi_o;brdf;time\ndeg;deg;deg;deg;1/sr;s\n10;0;20,5;180;0,5;7\n", "",
-         "theta_i_deg;phi_i_deg;theta_o_deg;phi_o_deg;value_per_sr;time (s)\n"
+        {"theta_i;phi_i;theta_o;phi_o;brdf;exposure\ndeg;deg;deg;deg;1/sr;s\n10;0;20,5;180;0,5;7\n", "",
+         "theta_i_deg;phi_i_deg;theta_o_deg;phi_o_deg;value_per_sr;exposure (s)\n"
          "10;0;20.5;180;0.5;7\n",
-         "not read: 'time (s)'"},
+         "not read: 'exposure (s)'"},
         /* what the user said */
         {ANGLES ",R_per_sr,G_per_sr,B_per_sr\n0.5,0,1,3,0.5,1,2\n", "angles=radians,values=percent",
          ANGLES ",R_per_sr,G_per_sr,B_per_sr\n28.6478898,0,57.2957795,171.887339,0.001591549431,"

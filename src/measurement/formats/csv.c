@@ -10,6 +10,7 @@
 #include "../rules.h"
 #include "csv_kept.h"
 #include "csv_notes.h"
+#include "csv_time.h"
 #include "format.h"
 
 /* Whether the text begins with column names between commas, semicolons or tabs, or is empty. The
@@ -108,13 +109,17 @@ static gonio_status take_planned(const csv_source *s, size_t column, gonio_i_row
                : bad_cell(s, column, GONIO_ERROR_FORMAT, "is not a channel: R, G, B or all");
 }
 
-static gonio_status take_value(const csv_source *s, size_t column, size_t channel)
+static gonio_status take_value(const csv_source *s, size_t column, size_t channel,
+                               gonio_i_mark mark)
 {
     gonio_status status = GONIO_OK;
     if (is_missing(s->reader.cell[column])) {
         return GONIO_OK;
     }
     s->value[channel] = number_of(s, column);
+    if (mark == GONIO_I_DARK && isfinite(s->value[channel])) {
+        return GONIO_OK; /* noise about nothing has both signs */
+    }
     const char *problem = gonio_i_value_problem(s->value[channel], &s->readings->options, &status);
     return problem == NULL ? GONIO_OK : bad_cell(s, column, status, problem);
 }
@@ -153,9 +158,15 @@ static gonio_status take_cell(csv_source *s, size_t k, gonio_i_row *row)
     case GONIO_I_ROW_WAVELENGTH:
         return take_wavelength(s, k);
     case GONIO_I_VALUE:
-        return take_value(s, k, column->index);
+        return take_value(s, k, column->index, row->mark);
     case GONIO_I_DEVIATION:
         return take_deviation(s, k, column->index);
+    case GONIO_I_TIME:
+        row->time = gonio_i_time_of(s->reader.cell[k], s->reader.delimiter, column->scale);
+        break;
+    case GONIO_I_MARK:
+        row->mark = gonio_i_mark_of(s->reader.cell[k]);
+        break;
     case GONIO_I_OTHER:
         break;
     }
@@ -188,6 +199,8 @@ static gonio_status take_row(csv_source *s)
 {
     gonio_i_row row = {.planned = GONIO_ALL_CHANNELS,
                        .line = s->reader.line,
+                       .timed = s->columns->any_time,
+                       .time = NAN,
                        .value = s->value,
                        .deviation = s->columns->any_deviation ? s->deviation : NULL};
     for (size_t k = 0; k < s->columns->channels; k++) {
@@ -202,6 +215,10 @@ static gonio_status take_row(csv_source *s)
     gonio_i_csv_others_look(&s->others, &s->reader);
     if (status != GONIO_OK) {
         return status;
+    }
+    if (s->columns->by_wavelength && row.mark != GONIO_I_SAMPLE) {
+        gonio_i_import_leave_out(&s->in, GONIO_I_NOT_THE_SAMPLE);
+        return GONIO_OK;
     }
     return s->columns->by_wavelength ? add_long(s, &row) : gonio_i_import_add(&s->in, &row);
 }

@@ -409,6 +409,22 @@ static void find_planned(const finder *f)
     }
 }
 
+/* Finds the first column of the time and of the mark of a row. */
+static void find_time_and_mark(const finder *f)
+{
+    bool any_mark = false;
+    for (size_t k = 0; k < f->r->columns; k++) {
+        gonio_i_csv_column *column = &f->c->column[k];
+        if (f->name[k].kind == GONIO_I_TIME && !f->c->any_time) {
+            *column = (gonio_i_csv_column){.kind = GONIO_I_TIME, .scale = f->name[k].seconds};
+            f->c->any_time = true;
+        } else if (f->name[k].kind == GONIO_I_MARK && !any_mark) {
+            column->kind = GONIO_I_MARK;
+            any_mark = true;
+        }
+    }
+}
+
 /* Finds the column that states the wavelength of the row's one value. */
 static void find_row_wavelength(const finder *f)
 {
@@ -424,7 +440,8 @@ static void find_row_wavelength(const finder *f)
     }
 }
 
-/* Orders the columns: angles first, then the channel, so that errors come in this order. */
+/* Orders the columns: angles first, then the channel, so that errors come in this order. Marks come
+ * before values, deviations behind them. */
 static gonio_status order_columns(const finder *f)
 {
     gonio_i_csv_columns *c = f->c;
@@ -458,6 +475,7 @@ static gonio_status choose_columns(finder *f)
         status = find_deviations(f);
     }
     find_planned(f);
+    find_time_and_mark(f);
     find_row_wavelength(f);
     if (status == GONIO_OK && f->options->values_needed && !f->c->any_value) {
         status = refuse_no_values(f);

@@ -10,15 +10,16 @@ typedef struct gonio_i_csv_column {
     gonio_i_column_kind kind; /* GONIO_I_OTHER: not read */
     size_t index;      /* of an angle (gonio_i_column_name); of a value's channel in the file */
     double wavelength; /* of a value or deviation, as in the name; 0: none */
-    double scale;      /* of a relative deviation: factor to a fraction of the value; 0: absolute */
+    double scale;      /* of a relative deviation: factor to a fraction of the value; 0: absolute.
+                        * Of a time: seconds */
 } gonio_i_csv_column;
 
 typedef struct gonio_i_csv_columns {
     size_t count;
     gonio_i_csv_column *column; /* [count] */
     size_t reads;
-    size_t *read; /* [reads]: the columns that are read; angles, channel, wavelength, values,
-                     deviations */
+    size_t *read; /* [reads]: the columns that are read; angles, channel, wavelength, time, mark,
+                     values, deviations */
     size_t channels;
     double *wavelength; /* [channels], as the names have them; NULL: colours or unnamed channels */
     gonio_convention stated; /* by names, units and comments; 0 where nothing states it */
@@ -30,6 +31,7 @@ typedef struct gonio_i_csv_columns {
     bool own;                /* all are */
     bool any_value;
     bool any_deviation;
+    bool any_time;
 } gonio_i_csv_columns;
 
 /* Finds the columns from their names, the comments, and the units in the options. Errors: _FORMAT

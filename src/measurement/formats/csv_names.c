@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "../rules.h"
+#include "csv_time.h"
 
 static bool ends_own(const char *ending)
 {
@@ -45,6 +46,10 @@ static gonio_i_column_name name_of(const char *text)
         name.own = is_own_value(text);
         return name;
     }
+    double seconds = 0.0;
+    if (gonio_i_take_time_name(&words, &seconds)) {
+        return (gonio_i_column_name){.kind = GONIO_I_TIME, .own = true, .seconds = seconds};
+    }
     return (gonio_i_column_name){0};
 }
 
@@ -65,6 +70,9 @@ gonio_i_column_name gonio_i_column_name_of(const char *text)
 {
     if (strcasecmp(text, "channel") == 0) {
         return (gonio_i_column_name){.kind = GONIO_I_PLANNED, .own = true};
+    }
+    if (strcasecmp(text, "mark") == 0 || strcasecmp(text, "target") == 0) {
+        return (gonio_i_column_name){.kind = GONIO_I_MARK, .own = true};
     }
     const gonio_i_column_name name = name_of(text);
     return name.kind != GONIO_I_OTHER ? name : name_of_small(text);

@@ -14,6 +14,8 @@ typedef enum gonio_i_column_kind {
     GONIO_I_ANGLE,
     GONIO_I_PLANNED,
     GONIO_I_ROW_WAVELENGTH, /* of the row's value, where a row has one */
+    GONIO_I_TIME,           /* of the row */
+    GONIO_I_MARK,           /* what the row is a reading of: sample, reference, dark */
     GONIO_I_VALUE,
     GONIO_I_DEVIATION
 } gonio_i_column_kind;
@@ -42,6 +44,7 @@ typedef struct gonio_i_column_name {
     int quantity;        /* a number for each quantity; 0: none */
     int unit;            /* gonio_angle_unit or gonio_value_kind; 0: not stated */
     bool relative;       /* a deviation divided by its value */
+    double seconds;      /* of a unit of time */
 } gonio_i_column_name;
 
 /* Fills in the meaning of a name as an angle (csv_angle_names.c), and as values or deviations
