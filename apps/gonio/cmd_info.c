@@ -315,15 +315,25 @@ static int info_material(const tool *t, const char *path, json_t *results)
 
 /* ---- the atlas ---- */
 
+/* Prints a built-in material, or adds it to the results. */
+static void info_built_in(const char *name, const char *of, bool anisotropic, json_t *results)
+{
+    if (results != NULL) {
+        json_array_append_new(results, json_pack("{s:s, s:s, s:b}", "name", name, "class", of,
+                                                 "anisotropic", anisotropic));
+    } else {
+        printf("atlas:%-28s %s%s\n", name, of, anisotropic ? ", anisotropic" : "");
+    }
+}
+
 static int info_atlas(json_t *results)
 {
     for (int k = 0; k < gonio_atlas_count(); k++) {
-        if (results != NULL) {
-            json_array_append_new(results, json_pack("{s:s, s:s}", "name", gonio_atlas_name(k),
-                                                     "class", gonio_atlas_class(k)));
-        } else {
-            printf("atlas:%-28s %s\n", gonio_atlas_name(k), gonio_atlas_class(k));
-        }
+        info_built_in(gonio_atlas_name(k), gonio_atlas_class(k), false, results);
+    }
+    for (int k = 0; k < gonio_atlas_anisotropic_count(); k++) {
+        info_built_in(gonio_atlas_anisotropic_name(k), gonio_atlas_anisotropic_class(k), true,
+                      results);
     }
     return 0;
 }

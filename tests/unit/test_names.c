@@ -26,6 +26,8 @@ static const list lists[] = {
     {"writers of materials", gonio_material_writer_name, gonio_material_writer_summary, "rgl"},
     {"environments", gonio_environment_name, gonio_environment_summary, "studio"},
     {"built-in materials", gonio_atlas_name, gonio_atlas_class, "gold-polished"},
+    {"built-in anisotropic materials", gonio_atlas_anisotropic_name, gonio_atlas_anisotropic_class,
+     "steel-hairline"},
     {"formats of materials", kind_format, kind_format, "MERL .binary table"},
 };
 

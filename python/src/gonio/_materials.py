@@ -18,8 +18,17 @@ SHAPE = (lib.GONIO_THETA_H_BINS, lib.GONIO_THETA_D_BINS, lib.GONIO_PHI_D_BINS, l
 ILLUMINANTS = {"E": lib.GONIO_ILLUMINANT_E, "D65": lib.GONIO_ILLUMINANT_D65, "A": lib.GONIO_ILLUMINANT_A}
 
 
-def atlas() -> list[str]:
-    """The built-in analytic materials: names for `Material`, ``"atlas:gold-polished"`` among them."""
+def atlas(anisotropic: bool = False) -> list[str]:
+    """The built-in analytic materials: names for `Material`, ``"atlas:gold-polished"`` among them.
+
+    Parameters
+    ----------
+    anisotropic
+        The anisotropic ones instead, ``"atlas:steel-hairline"`` among them.
+    """
+    if anisotropic:
+        count, name = lib.gonio_atlas_anisotropic_count(), lib.gonio_atlas_anisotropic_name
+        return [f"atlas:{_calls.text(name(k))}" for k in range(count)]
     return [f"atlas:{_calls.text(lib.gonio_atlas_name(k))}" for k in range(lib.gonio_atlas_count())]
 
 
