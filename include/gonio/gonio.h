@@ -10,6 +10,7 @@
 #include <gonio/material.h>
 #include <gonio/database.h>
 #include <gonio/basis.h>
+#include <gonio/instrument.h>
 #include <gonio/plan.h>
 #include <gonio/measurement.h>
 #include <gonio/reconstruct.h>

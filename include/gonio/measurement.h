@@ -10,6 +10,7 @@
 #ifndef GONIO_MEASUREMENT_H
 #define GONIO_MEASUREMENT_H
 
+#include <gonio/instrument.h>
 #include <gonio/plan.h>
 
 #ifdef __cplusplus
@@ -23,13 +24,6 @@ typedef struct gonio_readings gonio_readings;
 /* Every choice is 0 for "as the file or its format states". */
 enum { GONIO_AS_STATED = 0 };
 typedef enum gonio_angle_unit { GONIO_DEGREES = 1, GONIO_RADIANS } gonio_angle_unit;
-typedef enum gonio_value_kind {
-    GONIO_VALUE_BRDF = 1,     /* f, 1/sr */
-    GONIO_VALUE_FACTOR,       /* reflectance factor, pi f */
-    GONIO_VALUE_PERCENT,      /* reflectance factor in per cent, 100 pi f */
-    GONIO_VALUE_COSINE,       /* f cos theta_o, 1/sr */
-    GONIO_VALUE_FACTOR_COSINE /* pi f cos theta_o */
-} gonio_value_kind;
 typedef enum gonio_mirror_azimuth {
     GONIO_MIRROR_180 = 1, /* the mirror direction is at phi_o = phi_i + 180 degrees, as in gonio */
     GONIO_MIRROR_0        /* the mirror direction is at phi_o = phi_i */
@@ -50,7 +44,7 @@ typedef struct gonio_convention {
         *format;     /* the word of a format (gonio_readings_format_word); NULL: judged by content
                       */
     int angles;      /* gonio_angle_unit */
-    int values;      /* gonio_value_kind */
+    int values;      /* gonio_value_kind (instrument.h) */
     int mirror;      /* gonio_mirror_azimuth */
     int wavelengths; /* gonio_wavelength_unit */
     int zeros;       /* gonio_zero_meaning */

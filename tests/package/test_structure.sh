@@ -15,7 +15,7 @@ for header in include/gonio/*.h; do
     fi
 done
 
-stages="core linalg direction metric atlas material database basis prior plan measurement posterior reconstruct evaluate render file page"
+stages="core linalg direction metric atlas material database basis prior instrument plan measurement posterior reconstruct evaluate render file page"
 # Public headers of core go by other names than their folder.
 declare -A stage_of=([status]=core [context]=core)
 declare -A place
