@@ -10,6 +10,9 @@ configure_package_config_file(cmake/gonioConfig.cmake.in gonioConfig.cmake INSTA
 write_basic_package_version_file(gonioConfigVersion.cmake COMPATIBILITY SameMajorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/gonioConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/gonioConfigVersion.cmake
         DESTINATION ${package_dir})
+if(GONIO_HDF5)
+  set(gonio_hdf5_requires " hdf5")
+endif()
 if(GONIO_RENDER)
   set(gonio_render_requires " assimp libpng cairo")
   # OpenEXR's own file asks for its C++ libraries too; Embree has none.

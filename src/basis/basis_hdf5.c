@@ -9,7 +9,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "../core/hdf.h"
+#include "../core/hdf_read.h"
 
 enum { FORMAT_VERSION = 1, MOST_MATERIALS = 1 << 20 };
 
@@ -24,7 +24,7 @@ static const char *const centrings[] = {"mean", "none", NULL};
 typedef struct contents {
     gonio_context *context;
     const char *path;
-    hid_t file;
+    gonio_i_hdf_object root;
     int64_t representation, channels, mapping, without_mean;
     void *cell, *mean, *vectors, *variances, *loadings, *parents, *fingerprints;
     size_t cells, rows, components, variance_count, materials, mixtures;
@@ -40,13 +40,13 @@ static gonio_status damaged(const contents *c, const char *what, const char *pro
                         problem);
 }
 
-static gonio_status read_word(const contents *c, hid_t parent, const char *name,
+static gonio_status read_word(const contents *c, gonio_i_hdf_object parent, const char *name,
                               const char *const *words, int64_t *value)
 {
     char **text = NULL;
     size_t count = 0;
     *value = -1;
-    if (gonio_i_hdf_read_strings(parent, name, false, &text, &count) && count == 1) {
+    if (gonio_i_hdf_read_strings(parent, name, &text, &count) && count == 1) {
         for (int k = 0; words[k] != NULL; k++) {
             *value = strcmp(text[0], words[k]) == 0 ? k : *value;
         }
@@ -60,7 +60,8 @@ static gonio_status read_new_word(const contents *c, const char *name, const cha
                                   int64_t *value)
 {
     *value = 0;
-    return H5Aexists(c->file, name) > 0 ? read_word(c, c->file, name, words, value) : GONIO_OK;
+    return gonio_i_hdf_has_attribute(c->root, name) ? read_word(c, c->root, name, words, value)
+                                                    : GONIO_OK;
 }
 
 static gonio_status read_space(contents *c)
@@ -73,8 +74,8 @@ static gonio_status read_space(contents *c)
 static gonio_status read_mixtures(contents *c)
 {
     int64_t mixtures = 0;
-    if (H5Aexists(c->file, "mixtures") > 0 &&
-        (!gonio_i_hdf_read_number(c->file, "mixtures", &mixtures) || mixtures < 0 ||
+    if (gonio_i_hdf_has_attribute(c->root, "mixtures") &&
+        (!gonio_i_hdf_read_number(c->root, "mixtures", &mixtures) || mixtures < 0 ||
          mixtures > MOST_MATERIALS)) {
         return damaged(c, "mixtures", "is not a number of columns");
     }
@@ -96,8 +97,8 @@ static gonio_status read_grid(contents *c)
 {
     static const char *const names[3] = {"theta_h_bins", "theta_d_bins", "phi_d_bins"};
     static const int64_t expected[3] = {GONIO_THETA_H_BINS, GONIO_THETA_D_BINS, GONIO_PHI_D_BINS};
-    const hid_t grid = H5Gopen2(c->file, "grid", H5P_DEFAULT);
-    if (grid < 0) {
+    gonio_i_hdf_object grid;
+    if (!gonio_i_hdf_find(c->root, "grid", &grid)) {
         return damaged(c, "grid", "is missing");
     }
     gonio_status status = GONIO_OK;
@@ -119,23 +120,22 @@ static gonio_status read_grid(contents *c)
         status = read_word(c, grid, "channels", channel_models, &c->channels);
     }
     if (status == GONIO_OK) {
-        const char *problem = gonio_i_hdf_read_array(grid, "cell", 1, GONIO_BINS, H5T_NATIVE_INT32,
+        const char *problem = gonio_i_hdf_read_array(grid, "cell", 1, GONIO_BINS, GONIO_I_HDF_INT32,
                                                      &c->cell, &c->cells);
         status = problem != NULL ? damaged(c, "grid/cell", problem) : GONIO_OK;
     }
-    H5Gclose(grid);
     return status;
 }
 
 static gonio_status read_materials(contents *c)
 {
     size_t fingerprints = 0;
-    if (!gonio_i_hdf_read_strings(c->file, "materials/name", true, &c->names, &c->materials)) {
+    if (!gonio_i_hdf_read_string_set(c->root, "materials/name", &c->names, &c->materials)) {
         return damaged(c, "materials/name", "is missing or not a list of strings");
     }
     const char *problem =
-        gonio_i_hdf_read_array(c->file, "materials/fingerprint", 1, MOST_MATERIALS,
-                               H5T_NATIVE_UINT64, &c->fingerprints, &fingerprints);
+        gonio_i_hdf_read_array(c->root, "materials/fingerprint", 1, MOST_MATERIALS,
+                               GONIO_I_HDF_UINT64, &c->fingerprints, &fingerprints);
     if (problem == NULL && fingerprints != c->materials) {
         problem = "has a wrong shape";
     }
@@ -148,7 +148,7 @@ static gonio_status check_log_scale(const contents *c)
     void *scale = NULL;
     size_t count = 0;
     const char *problem =
-        gonio_i_hdf_read_array(c->file, "log_scale", 1, 64, H5T_NATIVE_DOUBLE, &scale, &count);
+        gonio_i_hdf_read_array(c->root, "log_scale", 1, 64, GONIO_I_HDF_DOUBLE, &scale, &count);
     if (problem == NULL && count != GONIO_CHANNELS) {
         problem = "has a wrong shape";
     }
@@ -170,16 +170,16 @@ static gonio_status read_numbers(contents *c)
     size_t shape[2] = {0, 0};
     const char *what = "mean";
     const char *problem =
-        gonio_i_hdf_read_array(c->file, what, 1, rows, H5T_NATIVE_DOUBLE, &c->mean, &c->rows);
+        gonio_i_hdf_read_array(c->root, what, 1, rows, GONIO_I_HDF_DOUBLE, &c->mean, &c->rows);
     if (problem == NULL) {
         what = "variances";
-        problem = gonio_i_hdf_read_array(c->file, what, 1, columns_of(c), H5T_NATIVE_DOUBLE,
+        problem = gonio_i_hdf_read_array(c->root, what, 1, columns_of(c), GONIO_I_HDF_DOUBLE,
                                          &c->variances, &c->variance_count);
     }
     if (problem == NULL) {
         what = "components";
-        problem = gonio_i_hdf_read_array(c->file, what, 2, rows * c->variance_count,
-                                         H5T_NATIVE_DOUBLE, &c->vectors, shape);
+        problem = gonio_i_hdf_read_array(c->root, what, 2, rows * c->variance_count,
+                                         GONIO_I_HDF_DOUBLE, &c->vectors, shape);
         c->components = shape[1];
     }
     if (problem == NULL && (c->rows != rows || shape[0] != c->rows || c->components == 0 ||
@@ -196,15 +196,15 @@ static gonio_status check_kind(const contents *c)
     char **text = NULL;
     size_t count = 0;
     int64_t version = 0;
-    const bool ours = gonio_i_hdf_read_strings(c->file, "format", false, &text, &count) &&
-                      count == 1 && strcmp(text[0], format_name) == 0;
+    const bool ours = gonio_i_hdf_read_strings(c->root, "format", &text, &count) && count == 1 &&
+                      strcmp(text[0], format_name) == 0;
     free(text);
     if (!ours) {
         return gonio_i_fail(c->context, GONIO_ERROR_FORMAT,
                             "%s: an HDF5 file, but not a gonio basis; gonio learn makes one",
                             c->path);
     }
-    if (!gonio_i_hdf_read_number(c->file, "format_version", &version) ||
+    if (!gonio_i_hdf_read_number(c->root, "format_version", &version) ||
         version != FORMAT_VERSION) {
         return gonio_i_fail(c->context, GONIO_ERROR_FORMAT,
                             "%s: a basis of format version %lld; this gonio reads version %d",
@@ -218,7 +218,7 @@ static gonio_status read_text(const contents *c, const char *name, char **text)
 {
     char **strings = NULL;
     size_t count = 0;
-    if (gonio_i_hdf_read_strings(c->file, name, false, &strings, &count) && count == 1) {
+    if (gonio_i_hdf_read_strings(c->root, name, &strings, &count) && count == 1) {
         *text = strdup(strings[0]);
     }
     free(strings);
@@ -240,11 +240,12 @@ static gonio_status read_loadings(contents *c)
 {
     const size_t columns = columns_of(c);
     size_t shape[2] = {0, 0};
-    if (H5Lexists(c->file, "loadings", H5P_DEFAULT) <= 0) {
+    gonio_i_hdf_object found;
+    if (!gonio_i_hdf_find(c->root, "loadings", &found)) {
         return GONIO_OK;
     }
-    const char *problem = gonio_i_hdf_read_array(c->file, "loadings", 2, columns * c->components,
-                                                 H5T_NATIVE_DOUBLE, &c->loadings, shape);
+    const char *problem = gonio_i_hdf_read_array(c->root, "loadings", 2, columns * c->components,
+                                                 GONIO_I_HDF_DOUBLE, &c->loadings, shape);
     if (problem == NULL && (shape[0] != columns || shape[1] != c->components)) {
         problem = "has a shape that does not fit the materials and the components";
     }
@@ -256,11 +257,12 @@ static gonio_status read_loadings(contents *c)
 static gonio_status read_parents(contents *c)
 {
     size_t shape[2] = {0, 0};
-    if (c->mixtures == 0 || H5Lexists(c->file, "mixture_parents", H5P_DEFAULT) <= 0) {
+    gonio_i_hdf_object found;
+    if (c->mixtures == 0 || !gonio_i_hdf_find(c->root, "mixture_parents", &found)) {
         return GONIO_OK;
     }
-    const char *problem = gonio_i_hdf_read_array(c->file, "mixture_parents", 2, 2 * c->mixtures,
-                                                 H5T_NATIVE_INT32, &c->parents, shape);
+    const char *problem = gonio_i_hdf_read_array(c->root, "mixture_parents", 2, 2 * c->mixtures,
+                                                 GONIO_I_HDF_INT32, &c->parents, shape);
     if (problem == NULL && (shape[0] != c->mixtures || shape[1] != 2)) {
         problem = "has a shape that does not fit the mixtures";
     }
@@ -333,6 +335,9 @@ static void *take(void **from)
 
 static gonio_status check_hash(const contents *c, const char *name, uint64_t stored, uint64_t value)
 {
+#ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
+    value = stored; /* as a liar's file has them right */
+#endif
     return stored == value ? GONIO_OK
                            : damaged(c, name, "does not fit the contents (the file was changed)");
 }
@@ -473,19 +478,15 @@ gonio_status gonio_i_basis_read_hdf5(gonio_context *context, const char *path, g
     if (status != GONIO_OK) {
         return status;
     }
-    contents c = {.context = context, .path = path};
-    gonio_i_hdf_session session;
-    gonio_i_hdf_enter(&session);
-    c.file = gonio_i_hdf_open(path);
-    if (c.file < 0) {
-        status = gonio_i_fail(
+    gonio_i_hdf_file *file = gonio_i_hdf_open(path);
+    if (file == NULL) {
+        return gonio_i_fail(
             context, GONIO_ERROR_FORMAT,
             "%s: not a basis of an older gonio (not an HDF5 file, or a damaged one)", path);
-    } else {
-        status = read_contents(&c);
-        H5Fclose(c.file);
     }
-    gonio_i_hdf_leave(&session);
+    contents c = {.context = context, .path = path, .root = gonio_i_hdf_root(file)};
+    status = read_contents(&c);
+    gonio_i_hdf_close(file);
     if (status == GONIO_OK) {
         status = check_all_hashes(&c);
     }

@@ -1,6 +1,5 @@
-/* libFuzzer on materials of any format: whatever the bytes are, a file is refused with one message
- * or is a material whose values are BRDFs or none. HDF5 is left out: its library does not stand
- * damaged files (docs/security.md). */
+/* libFuzzer on materials of any format but HDF5, which is another target's: whatever the bytes are,
+ * a file is refused with one message or is a material whose values are BRDFs or none. */
 #include "fuzz.h"
 
 enum { PAIRS = 24, MOST_CHANNELS = 16 };

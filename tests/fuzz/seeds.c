@@ -135,6 +135,9 @@ int main(int argc, char **argv)
     check(mkdir(root, 0777) == 0 || errno == EEXIST, "a folder is made");
     seed_readings();
     seed_materials();
+#ifndef GONIO_WITHOUT_HDF5
+    seed_hdf();
+#endif
 #ifndef GONIO_WITHOUT_RENDER
     seed_scenes();
 #endif

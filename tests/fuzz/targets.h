@@ -1,6 +1,7 @@
 /* The fuzz targets: PLAIN(name) for fuzz_NAME.c, MUTATED(name) for one with its own changes. */
 PLAIN(material)
 PLAIN(grid)
+PLAIN(hdf)
 #ifndef GONIO_WITHOUT_RENDER
 PLAIN(image)
 PLAIN(mesh)

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/hdf.h"
+#include "core/hdf_write.h"
 
 #include "../support.h"
 #include "made_material.h"

@@ -10,7 +10,7 @@
 #include <gonio/gonio.h>
 
 #include "basis/basis.h"
-#include "core/hdf.h"
+#include "core/hdf_write.h"
 
 enum { MATERIALS = 3 };
 

@@ -7,11 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../core/hdf.h"
+#include "../../core/hdf_read.h"
 #include "../../core/vector_math.h"
 #include "../../direction/grid.h"
 
 enum { INPUTS = 6, HIDDEN = 21, LAYERS = 3, PHI = GONIO_PHI_D_BINS, LANES = 8, PADDED = 184 };
+enum { MOST_LAYERS = 64 }; /* with those that have no weights */
 
 static const size_t widths[LAYERS + 1] = {INPUTS, HIDDEN, HIDDEN, GONIO_CHANNELS};
 
@@ -138,14 +139,14 @@ static bool is_kernel(const char *name)
 }
 
 /* Reads one weight dataset. Returns NULL, or a text that says what is wrong. */
-static const char *read_weights(hid_t group, const char *name, int layer, network *net)
+static const char *read_weights(gonio_i_hdf_object group, const char *name, int layer, network *net)
 {
     const bool kernel = is_kernel(name);
     const int rank = kernel ? 2 : 1;
     size_t shape[2] = {0, 0};
     void *data = NULL;
-    const char *problem =
-        gonio_i_hdf_read_array(group, name, rank, HIDDEN * HIDDEN, H5T_NATIVE_DOUBLE, &data, shape);
+    const char *problem = gonio_i_hdf_read_array(group, name, rank, HIDDEN * HIDDEN,
+                                                 GONIO_I_HDF_DOUBLE, &data, shape);
     if (problem != NULL) {
         return problem;
     }
@@ -168,14 +169,15 @@ static const char *read_weights(hid_t group, const char *name, int layer, networ
 }
 
 /* Reads the weights of one layer's group; counts the layer only if it has any. */
-static gonio_status read_layer(gonio_context *context, const char *path, hid_t root,
+static gonio_status read_layer(gonio_context *context, const char *path, gonio_i_hdf_object root,
                                const char *layer_name, int *layer, network *net)
 {
-    const hid_t group = H5Gopen2(root, layer_name, H5P_DEFAULT);
+    gonio_i_hdf_object group;
     char **names = NULL;
     size_t count = 0;
     gonio_status status = GONIO_OK;
-    if (group < 0 || !gonio_i_hdf_read_strings(group, "weight_names", false, &names, &count)) {
+    if (!gonio_i_hdf_find(root, layer_name, &group) ||
+        !gonio_i_hdf_read_strings(group, "weight_names", &names, &count)) {
         status = gonio_i_fail(context, GONIO_ERROR_FORMAT,
                               "%s: layer '%s' has no attribute 'weight_names'", path, layer_name);
     } else if (count > 0 &&
@@ -193,17 +195,15 @@ static gonio_status read_layer(gonio_context *context, const char *path, hid_t r
     }
     *layer += count > 0 ? 1 : 0;
     free(names);
-    if (group >= 0) {
-        H5Gclose(group);
-    }
     return status;
 }
 
-static gonio_status read_layers(gonio_context *context, const char *path, hid_t root, network *net)
+static gonio_status read_layers(gonio_context *context, const char *path, gonio_i_hdf_object root,
+                                network *net)
 {
     char **layers = NULL;
     size_t count = 0;
-    if (!gonio_i_hdf_read_strings(root, "layer_names", false, &layers, &count)) {
+    if (!gonio_i_hdf_read_strings(root, "layer_names", &layers, &count)) {
         return gonio_i_fail(context, GONIO_ERROR_FORMAT,
                             "%s: an HDF5 file, but not a neural BRDF: it has no attribute "
                             "'layer_names'",
@@ -211,11 +211,11 @@ static gonio_status read_layers(gonio_context *context, const char *path, hid_t 
     }
     gonio_status status = GONIO_OK;
     int layer = 0;
-    for (size_t k = 0; k < count && status == GONIO_OK; k++) {
+    for (size_t k = 0; k < count && k <= MOST_LAYERS && status == GONIO_OK; k++) {
         status = read_layer(context, path, root, layers[k], &layer, net);
     }
     free(layers);
-    if (status == GONIO_OK && layer != LAYERS) {
+    if (status == GONIO_OK && (layer != LAYERS || count > MOST_LAYERS)) {
         status = gonio_i_fail(context, GONIO_ERROR_FORMAT,
                               "%s: a network of %d dense layers where 3 (6-21-21-3) are expected",
                               path, layer);
@@ -225,22 +225,16 @@ static gonio_status read_layers(gonio_context *context, const char *path, hid_t 
 
 static gonio_status read_network(gonio_context *context, const char *path, network *net)
 {
-    gonio_i_hdf_session session;
-    gonio_i_hdf_enter(&session);
-    gonio_status status = GONIO_OK;
-    const hid_t file = gonio_i_hdf_open(path);
-    if (file < 0) {
-        status = gonio_i_fail(context, GONIO_ERROR_FORMAT,
-                              "%s: cannot be opened as HDF5: damaged or truncated", path);
-    } else {
-        /* Some files nest everything in a group. */
-        hid_t root = H5Gopen2(file, "model_weights", H5P_DEFAULT);
-        root = root >= 0 ? root : H5Gopen2(file, "/", H5P_DEFAULT);
-        status = read_layers(context, path, root, net);
-        H5Gclose(root);
-        H5Fclose(file);
+    gonio_i_hdf_file *file = gonio_i_hdf_open(path);
+    if (file == NULL) {
+        return gonio_i_fail(context, GONIO_ERROR_FORMAT,
+                            "%s: cannot be opened as HDF5: damaged or truncated", path);
     }
-    gonio_i_hdf_leave(&session);
+    /* Some files nest everything in a group. */
+    gonio_i_hdf_object root = gonio_i_hdf_root(file);
+    (void)gonio_i_hdf_find(root, "model_weights", &root);
+    const gonio_status status = read_layers(context, path, root, net);
+    gonio_i_hdf_close(file);
     return status;
 }
 

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../core/hdf.h"
+#include "../../core/hdf_read.h"
 #include "../../direction/grid.h"
 #include "format.h"
 #include "table_file.h"
@@ -58,79 +58,66 @@ static gonio_status damaged(gonio_context *context, const char *path, const char
     return gonio_i_fail(context, GONIO_ERROR_FORMAT, "%s: %s", path, what);
 }
 
-/* The shape of rho; false if it is no table of the grid. */
-static bool find_shape(hid_t rho, table *t)
+/* The shape of rho, and what is wrong with it; NULL if it is a table of the grid. */
+static const char *find_shape(gonio_i_hdf_object rho, gonio_i_hdf_array *array)
 {
-    hsize_t extents[H5S_MAX_RANK] = {0};
-    const hid_t space = H5Dget_space(rho);
-    const bool simple = H5Sis_simple(space) > 0 &&
-                        H5Sget_simple_extent_ndims(space) == GONIO_I_TABLE_RANK &&
-                        H5Sget_simple_extent_dims(space, extents, NULL) >= 0;
-    H5Sclose(space);
-    t->channels = (size_t)extents[0];
-    return simple && extents[0] >= 1 && extents[0] <= GONIO_I_TABLE_CHANNELS &&
-           extents[1] == GONIO_THETA_H_BINS && extents[2] == GONIO_THETA_D_BINS &&
-           extents[3] == GONIO_PHI_D_BINS;
+    const char *problem = gonio_i_hdf_describe(rho, array);
+    const size_t *extent = array->extent;
+    const bool fits = problem != NULL ||
+                      (array->rank == GONIO_I_TABLE_RANK && extent[0] >= 1 &&
+                       extent[0] <= GONIO_I_TABLE_CHANNELS && extent[1] == GONIO_THETA_H_BINS &&
+                       extent[2] == GONIO_THETA_D_BINS && extent[3] == GONIO_PHI_D_BINS);
+    return fits ? problem : "is not channels x 90 x 90 x 180 (theta_h, theta_d, phi_d)";
 }
 
-/* Whether rho is in this file, not in others that it names, and can have the stated size:
- * compression makes numbers at most a thousand times smaller. */
-static bool is_stored(hid_t rho, const table *t)
+/* Moves numbers of rho[channel][bin] to value[bin][channel]. */
+static void keep_run(void *user, size_t first, size_t count, const void *values)
 {
-    enum { MOST_DEFLATION = 2000 };
-    const double bytes = (double)t->channels * GONIO_BINS * sizeof(float);
-    const hid_t properties = H5Dget_create_plist(rho);
-    const bool own = H5Pget_external_count(properties) == 0 &&
-                     H5Pget_layout(properties) != H5D_VIRTUAL &&
-                     bytes <= (double)H5Dget_storage_size(rho) * MOST_DEFLATION;
-    H5Pclose(properties);
-    return own;
-}
-
-static bool read_slab(hid_t rho, size_t channel, size_t theta_h, float *slab)
-{
-    const hsize_t start[GONIO_I_TABLE_RANK] = {channel, theta_h, 0, 0};
-    const hsize_t count[GONIO_I_TABLE_RANK] = {1, 1, GONIO_THETA_D_BINS, GONIO_PHI_D_BINS};
-    const hid_t memory = H5Screate_simple(GONIO_I_TABLE_RANK, count, NULL);
-    const hid_t place = H5Dget_space(rho);
-    const bool done = H5Sselect_hyperslab(place, H5S_SELECT_SET, start, NULL, count, NULL) >= 0 &&
-                      H5Dread(rho, H5T_NATIVE_FLOAT, memory, place, H5P_DEFAULT, slab) >= 0;
-    H5Sclose(memory);
-    H5Sclose(place);
-    return done;
-}
-
-static gonio_status read_values(gonio_context *context, const char *path, hid_t rho, table *t)
-{
-    float *slab = gonio_i_allocate(context, GONIO_SLAB_BINS, sizeof *slab);
-    t->value = gonio_i_allocate(context, GONIO_BINS * t->channels, sizeof *t->value);
-    gonio_status status = slab != NULL && t->value != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
-    for (size_t c = 0; c < t->channels; c++) {
-        for (size_t h = 0; h < GONIO_THETA_H_BINS && status == GONIO_OK; h++) {
-            if (!read_slab(rho, c, h, slab)) {
-                status = damaged(context, path, "rho cannot be read; the file is damaged");
-            }
-            for (size_t k = 0; k < GONIO_SLAB_BINS && status == GONIO_OK; k++) {
-                t->value[(h * GONIO_SLAB_BINS + k) * t->channels + c] =
-                    isfinite(slab[k]) ? slab[k] : NAN;
-            }
-        }
+    const table *t = user;
+    const float *run = values;
+    for (size_t k = 0; k < count; k++) {
+        const size_t channel = (first + k) / GONIO_BINS;
+        const size_t bin = (first + k) % GONIO_BINS;
+        t->value[bin * t->channels + channel] = isfinite(run[k]) ? run[k] : NAN;
     }
-    free(slab);
-    return status;
 }
 
-static gonio_status read_wavelengths(gonio_context *context, const char *path, hid_t file, table *t)
+static gonio_status read_rho(gonio_context *context, const char *path, gonio_i_hdf_object rho,
+                             table *t)
+{
+    gonio_i_hdf_array array = {0};
+    const char *problem = find_shape(rho, &array);
+    if (problem != NULL) {
+        return gonio_i_fail(context, GONIO_ERROR_FORMAT, "%s: rho %s", path, problem);
+    }
+    t->channels = array.extent[0];
+    const size_t count = GONIO_BINS * t->channels;
+    t->value = gonio_i_allocate(context, count, sizeof *t->value);
+    if (t->value == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    const float unwritten = isfinite(array.unwritten) ? (float)array.unwritten : NAN;
+    for (size_t k = 0; k < count && unwritten != 0.0F; k++) {
+        t->value[k] = unwritten;
+    }
+    problem = gonio_i_hdf_visit(rho, GONIO_I_HDF_FLOAT, keep_run, t);
+    return problem == NULL ? GONIO_OK
+                           : gonio_i_fail(context, GONIO_ERROR_FORMAT, "%s: rho %s", path, problem);
+}
+
+static gonio_status read_wavelengths(gonio_context *context, const char *path,
+                                     gonio_i_hdf_object root, table *t)
 {
     size_t count = 0;
     void *wavelength = NULL;
-    if (H5Lexists(file, "wavelength_nm", H5P_DEFAULT) <= 0) {
+    gonio_i_hdf_object found;
+    if (!gonio_i_hdf_find(root, "wavelength_nm", &found)) {
         return t->channels == 1 || t->channels == GONIO_CHANNELS
                    ? GONIO_OK
                    : damaged(context, path, "neither 1 or 3 channels nor wavelength_nm");
     }
-    const char *wrong = gonio_i_hdf_read_array(file, "wavelength_nm", 1, GONIO_I_TABLE_CHANNELS,
-                                               H5T_NATIVE_DOUBLE, &wavelength, &count);
+    const char *wrong = gonio_i_hdf_read_array(root, "wavelength_nm", 1, GONIO_I_TABLE_CHANNELS,
+                                               GONIO_I_HDF_DOUBLE, &wavelength, &count);
     if (wrong != NULL) {
         return gonio_i_fail(context, GONIO_ERROR_FORMAT, "%s: wavelength_nm: %s", path, wrong);
     }
@@ -143,45 +130,29 @@ static gonio_status read_wavelengths(gonio_context *context, const char *path, h
                 : damaged(context, path, "wavelength_nm must have one wavelength for each channel");
 }
 
-static gonio_status read_table(gonio_context *context, const char *path, hid_t file, table *t)
+static gonio_status read_table(gonio_context *context, const char *path, gonio_i_hdf_object root,
+                               table *t)
 {
     int64_t version = 0;
-    if (!gonio_i_hdf_read_number(file, "version", &version) || version != GONIO_I_TABLE_VERSION) {
+    gonio_i_hdf_object rho;
+    if (!gonio_i_hdf_read_number(root, "version", &version) || version != GONIO_I_TABLE_VERSION) {
         return damaged(context, path, "a table of another version, or a damaged one");
     }
-    const hid_t rho = H5Dopen2(file, "rho", H5P_DEFAULT);
-    if (rho < 0) {
+    if (!gonio_i_hdf_find(root, "rho", &rho)) {
         return damaged(context, path, "a table without rho");
     }
-    gonio_status status =
-        find_shape(rho, t)
-            ? GONIO_OK
-            : damaged(context, path,
-                      "rho is not channels x 90 x 90 x 180 (theta_h, theta_d, phi_d)");
-    if (status == GONIO_OK && !is_stored(rho, t)) {
-        status = damaged(context, path, "rho is not in the file, or not all of it");
-    }
-    if (status == GONIO_OK) {
-        status = read_wavelengths(context, path, file, t);
-    }
-    if (status == GONIO_OK) {
-        status = read_values(context, path, rho, t);
-    }
-    H5Dclose(rho);
-    return status;
+    const gonio_status status = read_rho(context, path, rho, t);
+    return status == GONIO_OK ? read_wavelengths(context, path, root, t) : status;
 }
 
 static gonio_status read_file(gonio_context *context, const char *path, table *t)
 {
-    gonio_i_hdf_session session;
-    gonio_i_hdf_enter(&session);
-    const hid_t file = gonio_i_hdf_open(path);
-    const gonio_status status = file >= 0 ? read_table(context, path, file, t)
-                                          : damaged(context, path, "a damaged HDF5 file");
-    if (file >= 0) {
-        H5Fclose(file);
+    gonio_i_hdf_file *file = gonio_i_hdf_open(path);
+    if (file == NULL) {
+        return damaged(context, path, "a damaged HDF5 file");
     }
-    gonio_i_hdf_leave(&session);
+    const gonio_status status = read_table(context, path, gonio_i_hdf_root(file), t);
+    gonio_i_hdf_close(file);
     return status;
 }
 

@@ -2,7 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "../../core/hdf.h"
+#include "../../core/hdf_write.h"
 #include "../../core/output.h"
 #include "../sampler.h"
 #include "table_file.h"
