@@ -24,25 +24,15 @@ typedef struct filler {
     const gonio_i_field_column *columns;
     size_t count;
     size_t size;   /* K + 2 n */
-    double *panel; /* [panels][size][WIDE]: c, smooth and peaked of the columns; 0 past the last */
+    double *panel; /* [panels][size][WIDE]: the columns' terms; 0 past the last */
 } filler;
-
-static double weight_of(const filler *f, const gonio_i_field_column *column, size_t term)
-{
-    const size_t components = f->sites->components;
-    if (term < components) {
-        return column->c[term];
-    }
-    const size_t i = term - components;
-    return i < f->sites->n ? column->smooth[i] : column->peaked[i - f->sites->n];
-}
 
 static void fill_panels(filler *f)
 {
     for (size_t j = 0; j < f->count; j++) {
         double *panel = f->panel + j / WIDE * f->size * WIDE + j % WIDE;
         for (size_t term = 0; term < f->size; term++) {
-            panel[term * WIDE] = weight_of(f, &f->columns[j], term);
+            panel[term * WIDE] = f->columns[j].terms[term];
         }
     }
 }

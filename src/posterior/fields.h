@@ -6,10 +6,9 @@
 
 /* What a column's field is made of. */
 typedef struct gonio_i_field_column {
-    double *smooth;  /* [n]: alpha^2 S^-1 (y - F z), the mean over the models */
-    double *peaked;  /* [n]: alpha^2 peak^2 S^-1 (y - F z), the same */
-    const double *c; /* [K], in units of the prior */
-    double *field;   /* [rows]: to be filled */
+    /* [K + 2 n]: c, in units of the prior; alpha^2 S^-1 (y - F z); alpha^2 peak^2 S^-1 (y - F z) */
+    const double *terms;
+    double *field; /* [rows]: to be filled */
 } gonio_i_field_column;
 
 /* g = m + f c + k's two parts by their weights, in every row, of columns over the same sites.

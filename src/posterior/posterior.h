@@ -46,9 +46,10 @@ typedef struct gonio_i_column {
 } gonio_i_column;
 
 typedef struct gonio_i_posterior_options {
-    double smoothness; /* alpha; negative: a mean over models */
-    bool deviation;    /* of every row wanted */
-    size_t most;       /* readings of a column that are not merged (merge.h); 0: 3,000 */
+    double smoothness;        /* alpha; negative: a mean over models */
+    bool deviation;           /* of every row wanted */
+    size_t most;              /* readings of a column that are not merged (merge.h); 0: 3,000 */
+    const double *wavelength; /* of the columns, nm: not all are fitted (neighbours.h); or NULL */
 } gonio_i_posterior_options;
 
 /* What is found; arrays belong to the caller and are filled in. */

@@ -181,23 +181,53 @@ static void copy_grey(const gonio_reconstruction *r, grid_field *f)
     }
 }
 
-/* The colours of spectra, cell by cell. weight[channel][wavelengths]. */
-static void mix_colours(const gonio_reconstruction *r, const double *weight, grid_field *f)
+/* Cells whose colours are mixed at a time, of all wavelengths. */
+enum { MIXED_CELLS = 64 };
+
+/* Light that no colour has, as infrared has none. */
+static bool is_invisible(const gonio_reconstruction *r, const double *weight, size_t wavelength)
 {
-    for (size_t k = 0; k < f->view->cells; k++) {
-        double rgb[GONIO_CHANNELS] = {0.0};
-        for (size_t j = 0; j < r->wavelengths; j++) {
-            const double g = r->field[j * f->view->rows + k];
+    bool invisible = true;
+    for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
+        invisible = invisible && weight[channel * r->wavelengths + wavelength] == 0.0;
+    }
+    return invisible;
+}
+
+static void mix_cells(const gonio_reconstruction *r, const double *weight, size_t first,
+                      size_t count, const grid_field *f)
+{
+    double rgb[GONIO_CHANNELS][MIXED_CELLS] = {{0.0}};
+    for (size_t j = 0; j < r->wavelengths; j++) {
+        const double *g = r->field + j * f->view->rows + first;
+        if (is_invisible(r, weight, j)) {
+            continue;
+        }
+        for (size_t k = 0; k < count; k++) {
             const double rho =
-                scale_of(f->basis, r, j) * expm1(fmin(fmax(g, 0.0), GONIO_I_LARGEST_LOG));
+                scale_of(f->basis, r, j) * expm1(fmin(fmax(g[k], 0.0), GONIO_I_LARGEST_LOG));
             for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
-                rgb[channel] += weight[channel * r->wavelengths + j] * rho;
+                rgb[channel][k] += weight[channel * r->wavelengths + j] * rho;
             }
         }
-        for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
-            f->g[channel * f->view->cells + k] =
-                gonio_log_from_brdf(fmax(rgb[channel], 0.0), (int)channel);
+    }
+    for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
+        for (size_t k = 0; k < count; k++) {
+            f->g[channel * f->view->cells + first + k] =
+                gonio_log_from_brdf(fmax(rgb[channel][k], 0.0), (int)channel);
         }
+    }
+}
+
+/* The colours of spectra. weight[channel][wavelengths]. */
+static void mix_colours(gonio_context *context, const gonio_reconstruction *r, const double *weight,
+                        const grid_field *f)
+{
+    const size_t cells = f->view->cells;
+#pragma omp parallel for schedule(static) num_threads(gonio_context_threads(context))
+    for (size_t first = 0; first < cells; first += MIXED_CELLS) {
+        const size_t left = cells - first;
+        mix_cells(r, weight, first, left < MIXED_CELLS ? left : MIXED_CELLS, f);
     }
 }
 
@@ -240,7 +270,7 @@ static gonio_status fill_spectra(gonio_context *context, const gonio_reconstruct
         mix_deviations(r, weight, f);
     } else if (status == GONIO_OK) {
         gonio_i_note_colours(context, "reconstruction", r->wavelength, r->wavelengths);
-        mix_colours(r, weight, f);
+        mix_colours(context, r, weight, f);
     }
     free(weight);
     return status;

@@ -68,7 +68,8 @@ static void release(next *n)
 static gonio_status find_posterior(next *n, const gonio_reconstruct_options *options)
 {
     const gonio_i_noise noise = gonio_i_posterior_noise(options);
-    const gonio_i_posterior_options how = {.smoothness = -1.0};
+    const gonio_i_posterior_options how = {.smoothness = -1.0,
+                                           .wavelength = n->readings->wavelength};
     double *dark = NULL;
     gonio_status status = gonio_i_reconstruct_check(n->context, &gonio_i_posterior_method, n->basis,
                                                     n->readings, options);

@@ -42,7 +42,8 @@ static gonio_status find(gonio_context *context, const gonio_i_prior *prior,
                          const gonio_i_columns *columns, const gonio_reconstruct_options *options,
                          gonio_reconstruction *r)
 {
-    const gonio_i_posterior_options how = {.smoothness = -1.0, .deviation = options->deviation};
+    const gonio_i_posterior_options how = {
+        .smoothness = -1.0, .deviation = options->deviation, .wavelength = r->wavelength};
     gonio_i_posterior p = {
         .coefficients = r->coefficients, .field = r->field, .deviation = r->deviation};
     const gonio_status status =

@@ -1,0 +1,46 @@
+/* Columns solved in groups that were read at the same directions: for posterior.c. */
+#ifndef GONIO_SOLVE_COLUMNS_H
+#define GONIO_SOLVE_COLUMNS_H
+
+#include "fields.h"
+#include "learned_error.h"
+#include "models.h"
+#include "neighbours.h"
+#include "parallel_for.h"
+#include "variance.h"
+
+/* What is found of a column. */
+typedef struct gonio_i_found_column {
+    gonio_i_column merged; /* its observations, if there were too many; or empty */
+    double *terms;         /* [K + 2 n]: of its field (fields.h), the mean over the models */
+    double *part[2];       /* the same by each neighbour, of a column that is not fitted */
+    double outlying;
+    double surprise;
+    double residual; /* sum of squares */
+    gonio_i_variance_sums sums;
+    double expected; /* mean square of the error to expect */
+} gonio_i_found_column;
+
+typedef struct gonio_i_finding {
+    gonio_context *context;
+    const gonio_i_prior *prior;
+    const gonio_i_posterior_options *options;
+    gonio_i_models models;
+    gonio_i_learned_error *learned; /* NULL: the Gaussian's own */
+    gonio_i_posterior *p;
+    size_t count;
+    gonio_i_column *column; /* [count]: observations, merged if there are many; owned elsewhere */
+    gonio_i_found_column *found;    /* [count] */
+    gonio_i_neighbours *neighbours; /* [count] */
+    gonio_i_steps steps;
+} gonio_i_finding;
+
+/* Finds every column: its coefficients in units of the prior, field and deviation go to all->p, as
+ * does the sum of the covariances. Errors: _MEMORY, _NUMERICAL, _CANCELLED. */
+gonio_status gonio_i_solve_columns(gonio_i_finding *all);
+
+/* The error to expect of columns of so many readings that learning takes long: from fewer, which
+ * neighbours are merged to. columns: as they were given, before merging. The same errors. */
+gonio_status gonio_i_expect_of_fewer(gonio_i_finding *all, const gonio_i_column *columns);
+
+#endif
