@@ -22,10 +22,14 @@ static double level(int k)
     return k == 0 ? 0.0 : LEAST_LEVEL * pow(2.0, 0.5 * (k - 1));
 }
 
-/* The gain in log likelihood from which levels are accepted, for three channels. Further channels
- * are not independent, so it grows with the square root of their number. Readings without a dark
- * level have a gain below 1 (docs/experiments.md). */
+/* The gain in log likelihood from which levels are accepted, for three channels and a few readings.
+ * Further channels are not independent, so it grows with the square root of their number. The
+ * leave-one-out errors of a material unlike the database are those of its model. They are common to
+ * neighbouring readings, so it grows with the number of readings. Readings without a dark level
+ * have a gain below 1 if the database resembles the material, and up to 5 for 20 readings if it
+ * does not (docs/experiments.md). */
 static const double CONVINCING = 8.0;
+static const double FEW = 20.0;
 
 /* alpha of the models, from a usual material to the most unusual one. */
 static const gonio_i_model MODELS[] = {{1.0, 0.12, 0.0}, {1.0, 0.25, 8.0}, {1.0, 0.5, 8.0}};
@@ -196,6 +200,15 @@ static double mean_level(const double score[LEVELS], double *gain)
     return mean / sum;
 }
 
+static double convincing(const search *s)
+{
+    size_t most = 0;
+    for (size_t c = 0; c < s->columns; c++) {
+        most = s->thinned[c].count > most ? s->thinned[c].count : most;
+    }
+    return CONVINCING * fmax((double)most / FEW, 1.0) * sqrt((double)s->columns / GONIO_CHANNELS);
+}
+
 /* Sets s->dark. */
 static gonio_status find(search *s, const gonio_i_columns *columns, bool *found)
 {
@@ -204,7 +217,7 @@ static gonio_status find(search *s, const gonio_i_columns *columns, bool *found)
     for (size_t c = 0; c < s->columns && status == GONIO_OK; c++) {
         s->dark[c] = mean_level(&s->score[c * LEVELS], &gain) * scale_of(s, c);
     }
-    *found = status == GONIO_OK && gain > CONVINCING * sqrt((double)s->columns / GONIO_CHANNELS);
+    *found = status == GONIO_OK && gain > convincing(s);
     return status;
 }
 
