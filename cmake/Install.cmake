@@ -14,7 +14,7 @@ if(GONIO_HDF5)
   set(gonio_hdf5_requires " hdf5")
 endif()
 if(GONIO_RENDER)
-  set(gonio_render_requires " assimp libpng cairo")
+  set(gonio_render_requires " libpng cairo")
   # OpenEXR's own file asks for its C++ libraries too; Embree has none.
   set(gonio_render_libraries " -lembree3 -lOpenEXRCore")
 endif()

@@ -5,7 +5,7 @@
 set -eu
 
 packages="gcc libc6-dev make cmake ninja-build pkg-config libopenblas-dev liblapacke-dev libhdf5-dev
-libxxhash-dev libcsv-dev libjansson-dev libpopt-dev zlib1g-dev libexpat1-dev libembree-dev libopenexr-dev libassimp-dev
+libxxhash-dev libcsv-dev libjansson-dev libpopt-dev zlib1g-dev libexpat1-dev libembree-dev libopenexr-dev
 libpng-dev libcairo2-dev"
 if [ "$2" = python ] || [ "$2" = check ]; then
     packages="$packages python3-dev python3-numpy python3-cffi python3-setuptools python3-wheel python3-pip patchelf"

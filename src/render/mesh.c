@@ -131,6 +131,7 @@ gonio_status gonio_mesh_read(gonio_context *context, const char *path, gonio_mes
     making.mesh = gonio_i_allocate(context, 1, sizeof *making.mesh);
     status = making.mesh == NULL ? GONIO_ERROR_MEMORY : read_bytes(&making, &bytes);
     gonio_i_free_bytes(&bytes);
+    free(making.polygon);
     if (status == GONIO_OK) {
         status = finish(&making);
     }

@@ -21,6 +21,9 @@ typedef struct gonio_i_mesh_making {
     size_t corner_room, triangle_room;
     size_t flat;       /* number of triangles without area, which are left out */
     bool with_normals; /* every corner has a normal */
+    uint32_t *polygon; /* [polygon_count], of the face that is being read */
+    size_t polygon_count, polygon_room;
+    size_t comparisons; /* that dividing polygons took so far */
 } gonio_i_mesh_making;
 
 /* Adds a corner; normal is NULL where there is none. Errors: _DATA if it is not finite, _MEMORY. */
@@ -29,6 +32,11 @@ gonio_status gonio_i_mesh_add_corner(gonio_i_mesh_making *making, const float po
 
 /* Adds a triangle of existing corners. Errors: _FORMAT if one does not exist, _MEMORY. */
 gonio_status gonio_i_mesh_add_triangle(gonio_i_mesh_making *making, const uint32_t corner[3]);
+
+/* Adds a face of existing corners, one by one. _end divides it into triangles; fewer than three
+ * corners are none. Errors: as above. */
+gonio_status gonio_i_mesh_add_to_polygon(gonio_i_mesh_making *making, uint32_t corner);
+gonio_status gonio_i_mesh_end_polygon(gonio_i_mesh_making *making);
 
 /* The readers. Errors: _FORMAT, and those above. */
 gonio_status gonio_i_read_obj(gonio_i_mesh_making *making, const gonio_i_bytes *bytes);

@@ -1,5 +1,4 @@
-/* PLY meshes (Turk 1994), text and binary. The code is gonio's own, because libraries do not
- * tolerate damaged files: assimp's reader never returns from some truncated files. */
+/* PLY meshes (Turk 1994), text and binary. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -238,13 +237,10 @@ static uint32_t corner_of(double value)
     return value >= 0.0 && value < (double)UINT32_MAX ? (uint32_t)value : UINT32_MAX;
 }
 
-/* Reads a list. A polygon becomes a fan of triangles about its first corner. Other lists are
- * skipped.
- */
+/* Reads a list: the corners of a polygon. Other lists are skipped. */
 static gonio_status read_list(reading *r, const property *p, bool polygon)
 {
     double count = 0.0;
-    uint32_t corner[3] = {0};
     gonio_status status = GONIO_OK;
     if (!read_value(r, p->count, &count)) {
         return fail(r, "it is cut short");
@@ -254,13 +250,9 @@ static gonio_status read_list(reading *r, const property *p, bool polygon)
         if (!read_value(r, p->value, &value)) {
             return fail(r, "it is cut short");
         }
-        corner[k < 2.0 ? (int)k : 2] = corner_of(value);
-        if (polygon && k >= 2.0) {
-            status = gonio_i_mesh_add_triangle(r->making, corner);
-            corner[1] = corner[2];
-        }
+        status = polygon ? gonio_i_mesh_add_to_polygon(r->making, corner_of(value)) : GONIO_OK;
     }
-    return status;
+    return status == GONIO_OK && polygon ? gonio_i_mesh_end_polygon(r->making) : status;
 }
 
 static gonio_status read_item(reading *r, const element *e)
