@@ -20,6 +20,7 @@ if(GONIO_RENDER)
 endif()
 configure_file(cmake/gonio.pc.in gonio.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/gonio.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+install(DIRECTORY data/ DESTINATION ${CMAKE_INSTALL_DATADIR}/gonio FILES_MATCHING PATTERN "*.json")
 install(DIRECTORY docs/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 FILES_MATCHING PATTERN "*.1")
 install(FILES completions/gonio.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
         RENAME gonio)

@@ -36,6 +36,7 @@ _gonio_values()
         --methods)  echo "posterior interpolation lambert-ggx external" ;;
         --environment|-e) echo "studio sky furnace" ;;
         --light)    echo "directional point" ;;
+        --instrument) echo "in-plane two-arms four-axis" ;;
         --start)    echo "random qr volume" ;;
         --illuminant) echo "E D65 A" ;;
         --format)   echo "merl rgl table klems zemax csv" ;;
@@ -79,6 +80,8 @@ _gonio()
     if values=$(_gonio_values "$previous" "$command"); then
         mapfile -t COMPREPLY < <(compgen -W "$values" -- "$current")
         compopt +o default +o bashdefault 2>/dev/null
+    elif [[ $command == check && $current != -* ]]; then
+        mapfile -t COMPREPLY < <(compgen -W "$(_gonio_values --instrument)" -- "$current"; compgen -f -- "$current")
     elif [[ $current == -* ]]; then
         mapfile -t COMPREPLY < <(compgen -W "$(_gonio_list_options "$command" | grep -oE -- '(^| )--?[a-zA-Z][a-z-]*')" -- "$current")
     elif [[ $current == atlas:* ]]; then

@@ -16,6 +16,7 @@ typedef struct tool_command {
     COMMAND(info, "describe materials, bases, plans, readings, meshes and images")                 \
     COMMAND(convert, "convert materials and readings to other formats")                            \
     COMMAND(learn, "learn a basis from measured materials")                                        \
+    COMMAND(check, "describe an instrument and draw what it reaches")                              \
     COMMAND(plan, "plan where to measure")                                                         \
     COMMAND(measure, "simulate an instrument that reads a known material")                         \
     COMMAND(reconstruct, "reconstruct the whole BRDF from a few readings")                         \

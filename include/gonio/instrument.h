@@ -74,7 +74,7 @@ typedef struct gonio_instrument_view {
     const char *kinematics; /* gonio_kinematics_name */
     size_t axes;
     const gonio_axis *axis; /* [axes], in the kinematics' order */
-    size_t limits;          /* ranges that have to hold, both ends included */
+    size_t limits;          /* ranges that have to hold, to within 0.02 degrees */
     const gonio_range *limit;
     size_t zones;
     const gonio_zone *zone;
@@ -180,6 +180,27 @@ GONIO_API gonio_status gonio_instrument_candidates(gonio_context *context,
                                                    const gonio_instrument *instrument,
                                                    gonio_freedom freedom, size_t most,
                                                    gonio_setting **setting, size_t *count);
+
+enum { GONIO_MOST_OBSTACLES = 64 };
+
+/* What an instrument reaches of all pairs of directions. Shares are by projected solid angle of
+ * both directions. */
+typedef struct gonio_reach {
+    double share;                  /* of the pairs that can be read, 0 to 1; 0 also where
+                                    * only a plane or single directions can */
+    double theta_i[2], theta_o[2]; /* the lowest and highest that can be read, rad */
+    double least_separation;       /* of light and detector, rad */
+    double least_from_specular;    /* distance from the mirror direction, rad */
+    size_t obstacles;              /* what keeps the others out, the most frequent first */
+    const char *obstacle[GONIO_MOST_OBSTACLES]; /* as gonio_instrument_obstacle; "kinematics" where
+                                                 * no setting of the axes makes the pair */
+    double kept_out[GONIO_MOST_OBSTACLES];      /* share of the pairs */
+} gonio_reach;
+
+/* Surveys what can be reached. Errors: _MEMORY; _DATA as for candidates. */
+GONIO_API gonio_status gonio_instrument_survey(gonio_context *context,
+                                               const gonio_instrument *instrument,
+                                               gonio_freedom freedom, gonio_reach *reach);
 
 /* ---- reading ---- */
 

@@ -44,7 +44,7 @@ UNBOUND = {
         gonio_instrument_read gonio_instrument_parse gonio_instrument_free gonio_instrument_describe
         gonio_instrument_word gonio_instrument_summary gonio_kinematics_name gonio_kinematics_summary
         gonio_value_kind_name gonio_instrument_pair gonio_instrument_obstacle gonio_instrument_settings
-        gonio_instrument_candidates gonio_instrument_deviation gonio_instrument_value_factor
+        gonio_instrument_survey gonio_instrument_candidates gonio_instrument_deviation gonio_instrument_value_factor
         gonio_instrument_aperture_samples gonio_instrument_aperture gonio_instrument_travel gonio_instrument_home
         gonio_instrument_schedule
         gonio_comparison_picture_write_png gonio_tone_apply gonio_srgb_encode""",

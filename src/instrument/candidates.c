@@ -75,8 +75,13 @@ static size_t find_levels(const gonio_instrument *instrument, double apart, doub
         return 1;
     }
     const double first = axis != NULL && axis->low > 0.0 ? axis->low : 0.0;
-    for (; count < MOST_LEVELS && first + (double)count * between < 0.5 * M_PI; count++) {
+    const double last = axis != NULL ? fmin(axis->high, 0.5 * M_PI) : 0.5 * M_PI;
+    for (; count + 1 < MOST_LEVELS && first + (double)count * between < last - GONIO_I_EDGE;
+         count++) {
         level[count] = first + (double)count * between;
+    }
+    if (last < 0.5 * M_PI) {
+        level[count++] = last;
     }
     return count;
 }
@@ -212,7 +217,7 @@ static void leave_out_repeats(search *s)
 
 /* ---- all ---- */
 
-/* From the finest levels and half vectors on, each time twice as far apart. */
+/* At 0 the finest levels and half vectors; each time one of them twice as far apart. */
 static void search_directions(search *s, int coarser)
 {
     double level[MOST_LEVELS];
@@ -235,6 +240,19 @@ static void run(search *s, int coarser)
     leave_out_repeats(s);
 }
 
+/* Ever more finely while there is room for twice as many. */
+static void search_as_finely(search *s, size_t most)
+{
+    int coarser = s->instrument->view.directions > 0 ? 0 : COARSEST;
+    run(s, coarser);
+    while (coarser > 0 && !s->out_of_memory && s->count <= most / 2) {
+        run(s, --coarser);
+    }
+    if (coarser < COARSEST && s->count > most && s->instrument->view.directions == 0) {
+        run(s, coarser + 1);
+    }
+}
+
 static gonio_status say_empty(const search *s)
 {
     const tally *t = &s->obstacles;
@@ -255,13 +273,7 @@ gonio_status gonio_instrument_candidates(gonio_context *context, const gonio_ins
                                          gonio_setting **setting, size_t *count)
 {
     search s = {.context = context, .instrument = instrument, .freedom = freedom, .most = SIZE_MAX};
-    const bool table = instrument->view.directions > 0;
-    for (int coarser = 0; coarser <= COARSEST; coarser++) {
-        run(&s, coarser);
-        if (s.out_of_memory || table || s.count <= most) {
-            break;
-        }
-    }
+    search_as_finely(&s, most);
     gonio_status status = GONIO_OK;
     if (s.out_of_memory) {
         status = gonio_i_fail(context, GONIO_ERROR_MEMORY, "out of memory for directions");

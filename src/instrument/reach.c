@@ -4,6 +4,9 @@
 
 #include "instrument.h"
 
+/* Limits are kept to within this, rad: steps of axes do not decide. */
+static const double NEAR_LIMIT = 3.5e-4;
+
 /* Positions of a list are found from angles this near, rad. */
 static const double NEAR_POSITION = 1e-3;
 
@@ -106,7 +109,7 @@ static const char *outside_limits(const gonio_instrument *instrument, const goni
     for (size_t k = 0; k < instrument->view.limits; k++) {
         const gonio_range *limit = &instrument->view.limit[k];
         const double value = value_of(instrument, limit, setting);
-        if (!(value >= limit->low - GONIO_I_EDGE && value <= limit->high + GONIO_I_EDGE)) {
+        if (!(value >= limit->low - NEAR_LIMIT && value <= limit->high + NEAR_LIMIT)) {
             return limit->quantity;
         }
     }

@@ -41,6 +41,7 @@ survives z.csv convert -q z.bsdf z.csv
 survives p.out,h.out plan -q b.gonio -n 2 -K 2 --method random --history h.out -o p.out
 survives p.out plan -q mixed.gonio -n 2 --candidates p.csv -o p.out
 survives m.out measure -q p.csv r.csv -o m.out
+survives - check -q two-arms
 survives - compare -q r.csv r.csv --json
 survives at.out reconstruct -q mixed.gonio r.csv --predict-at p.csv -o at.out
 survives n.out next -q mixed.gonio r.csv -n 1 -o n.out

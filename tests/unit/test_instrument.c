@@ -331,6 +331,29 @@ static void test_candidates_can_be_read(void **state)
     gonio_context_free(&context);
 }
 
+static void test_survey(void **state)
+{
+    (void)state;
+    gonio_context *context = support_context();
+    gonio_instrument *rig = builtin(context, "four-axis");
+    const gonio_freedom all = GONIO_ALL_FREEDOM;
+    gonio_reach reach;
+    assert_int_equal(gonio_instrument_survey(context, rig, all, &reach), GONIO_OK);
+    double sum = reach.share;
+    for (size_t k = 0; k < reach.obstacles; k++) {
+        assert_true(k == 0 || reach.kept_out[k] <= reach.kept_out[k - 1]);
+        sum += reach.kept_out[k];
+    }
+    assert_true(fabs(sum - 1.0) < 1e-9);
+    const double below = sin(75 * DEGREE) * sin(75 * DEGREE); /* of each direction */
+    assert_true(reach.share > 0.9 * below * below && reach.share <= 1.01 * below * below);
+    assert_true(reach.theta_o[1] < 75.1 * DEGREE && reach.theta_o[1] > 74 * DEGREE);
+    assert_true(reach.least_separation > 7.99 * DEGREE);
+    assert_true(reach.least_from_specular < 0.1 * DEGREE);
+    gonio_instrument_free(&rig);
+    gonio_context_free(&context);
+}
+
 /* The directions cover a disc evenly: the mean square of their distance is half that of the rim. */
 static void test_apertures_are_discs(void **state)
 {
@@ -416,6 +439,7 @@ int main(void)
                                        cmocka_unit_test(test_footprint_and_limits),
                                        cmocka_unit_test(test_table_of_directions),
                                        cmocka_unit_test(test_candidates_can_be_read),
+                                       cmocka_unit_test(test_survey),
                                        cmocka_unit_test(test_apertures_are_discs),
                                        cmocka_unit_test(test_values),
                                        cmocka_unit_test(test_times)};
