@@ -1,16 +1,20 @@
-/* gonio measure: a simulated instrument reads a known material. */
+/* gonio measure: a simulated instrument reads a known material, or a run on a real one is followed.
+ */
 #include "command_line.h"
+#include "follow/follow.h"
 #include "inputs.h"
 #include "json_output.h"
 
+#include <math.h>
 #include <stdio.h>
 
 typedef struct options {
     const char *output;
-    double noise; /* per cent */
-    double floor;
+    double noise;    /* per cent; NaN: not given */
+    double floor;    /* NaN: not given */
     double outliers; /* per cent */
     long seed;
+    follow_options follow;
 } options;
 
 /* Reports what was read. */
@@ -82,34 +86,79 @@ static bool check(const tool *t, const options *o, const char **arguments, size_
            tool_check_output(t, o->output, arguments, count);
 }
 
+/* Noise that is not given is none in a simulation, and the usual one of a real instrument. */
+static void complete(options *o)
+{
+    o->follow.output = o->output;
+    o->follow.posterior.noise = isnan(o->noise) ? o->follow.posterior.noise : o->noise;
+    o->follow.posterior.floor = isnan(o->floor) ? o->follow.posterior.floor : o->floor;
+    o->noise = isnan(o->noise) ? 0.0 : o->noise;
+    o->floor = isnan(o->floor) ? 0.0 : o->floor;
+}
+
 static int run(tool *t, void *given)
 {
-    const options *o = given;
+    options *o = given;
     size_t count = 0;
+    complete(o);
     const char **arguments = tool_arguments(t, &count);
+    if (o->follow.follow != NULL || o->follow.command != NULL) {
+        return follow_check(t, &o->follow, arguments, count)
+                   ? follow_run(t, &o->follow, arguments[0])
+                   : EXIT_USAGE;
+    }
     return check(t, o, arguments, count) ? measure(t, o, arguments[0], arguments[1]) : EXIT_USAGE;
 }
 
 int cmd_measure(int argc, const char **argv)
 {
-    options o = {0};
+    options o = {.noise = NAN, .floor = NAN, .follow.posterior = posterior_options_default()};
     const struct poptOption table[] = {
         {"output", 'o', POPT_ARG_STRING, &o.output, 0,
          "The readings to write: CSV; .json or .brdf is BRDF JSON", "READINGS"},
         {"noise", '\0', POPT_ARG_DOUBLE, &o.noise, 0,
-         "Noise in per cent of each reading, standard deviation (default: 0)", "PERCENT"},
+         "Noise in per cent of each reading, standard deviation (default: 0; 1 of a run)",
+         "PERCENT"},
         {"floor", '\0', POPT_ARG_DOUBLE, &o.floor, 0,
-         "Additive noise in 1/sr, standard deviation (default: 0)", "VALUE"},
+         "Additive noise in 1/sr, standard deviation (default: 0; 1e-5 of a run)", "VALUE"},
         {"outliers", '\0', POPT_ARG_DOUBLE, &o.outliers, 0,
          "Share of directions read ten times too high or too low (default: 0)", "PERCENT"},
         {"seed", '\0', POPT_ARG_LONG, &o.seed, 0, "Seed of noise and outliers (default: 0)", "N"},
+        {"follow", '\0', POPT_ARG_STRING, &o.follow.follow, 0,
+         "Follow a run: readings that an instrument appends to this file; - is standard input",
+         "FILE"},
+        {"exec", '\0', POPT_ARG_STRING, &o.follow.command, 0,
+         "Make a run: COMMAND is given theta_i, phi_i, theta_o, phi_o in degrees and prints values",
+         "COMMAND"},
+        {"basis", '\0', POPT_ARG_STRING, &o.follow.basis, 0,
+         "What a run is judged by (default: the basis of the built-in materials)", "BASIS"},
+        {"no-basis", '\0', POPT_ARG_NONE, &o.follow.no_basis, 0,
+         "Only record a run: no expected error, no outliers", NULL},
+        {"journal", '\0', POPT_ARG_STRING, &o.follow.journal, 0,
+         "What a run goes on from after an interruption (default: READINGS.journal)", "FILE"},
+        {"adapt", '\0', POPT_ARG_NONE, &o.follow.adapt, 0,
+         "Plan the rest of a run again after every five readings, as gonio next does", NULL},
+        {"candidates", '\0', POPT_ARG_STRING, &o.follow.candidates, 0,
+         "Adapt among the directions of this file, a plan or readings", "FILE"},
+        {"remaining", '\0', POPT_ARG_STRING, &o.follow.remaining, 0,
+         "Keep what is left to be read in this plan, repeats first", "PLAN"},
+        {"target-error", '\0', POPT_ARG_STRING, &o.follow.target, 0,
+         "End a run when the expected error (E6) is at most this", "PERCENT"},
+        {"budget", '\0', POPT_ARG_STRING, &o.follow.budget, 0,
+         "End a run after this time: 45min, 2h, 90s", "TIME"},
+        {"saturation", '\0', POPT_ARG_DOUBLE, &o.follow.posterior.saturation, 0,
+         "In a run, readings of this value or more, 1/sr, are saturated", "VALUE"},
         TOOL_READINGS_OPTIONS,
         TOOL_OPTIONS};
     const tool_command_line line = {
         .table = table,
-        .usage = "[OPTION...] PLAN MATERIAL -o READINGS",
-        .text = "MATERIAL is any material that gonio reads, or readings of a real instrument.\n"
-                "Example: gonio measure plan.csv gold.binary --noise 1 -o readings.csv",
+        .usage = "[OPTION...] PLAN MATERIAL -o READINGS\n"
+                 "   or: gonio measure [OPTION...] --follow FILE | --exec COMMAND PLAN -o READINGS",
+        .text =
+            "MATERIAL is any material that gonio reads, or readings of a real instrument.\n"
+            "A run that was ended in any way goes on with the same command line.\n"
+            "Example: gonio measure plan.csv gold.binary --noise 1 -o readings.csv\n"
+            "Example: gonio measure --follow robot.csv plan.csv --target-error 3 -o readings.csv",
         .work = run,
         .options = &o};
     return tool_run(argc, argv, &line);

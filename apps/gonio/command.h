@@ -18,7 +18,7 @@ typedef struct tool_command {
     COMMAND(learn, "learn a basis from measured materials")                                        \
     COMMAND(check, "describe an instrument and draw what it reaches")                              \
     COMMAND(plan, "plan where to measure")                                                         \
-    COMMAND(measure, "simulate an instrument that reads a known material")                         \
+    COMMAND(measure, "simulate an instrument, or follow a run on a real one")                      \
     COMMAND(reconstruct, "reconstruct the whole BRDF from a few readings")                         \
     COMMAND(next, "plan where to measure next, given the readings so far")                         \
     COMMAND(compare, "compute errors of BRDFs and readings relative to a reference")               \

@@ -23,6 +23,9 @@ gonio_status tool_open_material(const tool *t, const char *path, gonio_material 
 /* Whether --as names a format of readings. Files are then readings. */
 bool tool_names_format(const tool *t);
 
+/* Sets the convention that --as gives. */
+gonio_status tool_take_convention(const tool *t, gonio_readings_options *how);
+
 /* As gonio_readings_read, after gonio_file_expect. */
 gonio_status tool_read_readings(const tool *t, const char *path,
                                 const gonio_readings_options *options, gonio_readings **readings);

@@ -60,6 +60,11 @@ void tool_end_if_interrupted(void)
     }
 }
 
+bool tool_is_interrupted(void)
+{
+    return interrupted != 0;
+}
+
 static double now(void)
 {
     struct timespec t;

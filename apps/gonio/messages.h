@@ -14,6 +14,9 @@ void tool_catch_signals(void);
 /* Ends the program by the signal that has interrupted it, so that those who started it know. */
 void tool_end_if_interrupted(void);
 
+/* Whether an interrupt asks to end the work. */
+bool tool_is_interrupted(void);
+
 /* Whether only errors are printed. */
 extern int tool_quiet;
 

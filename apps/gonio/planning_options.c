@@ -20,8 +20,7 @@ static bool check_metric(const tool *t, const char *name)
     return tool_check_word(t, "--metric", name, names, &choice);
 }
 
-/* The number of "3" or "3%"; -1 for other text, or if it is not above 0. */
-static double percent(const char *text)
+double planning_percent(const char *text)
 {
     char *end = NULL;
     const double value = strtod(text, &end);
@@ -33,7 +32,7 @@ bool planning_options_check(const tool *t, const planning_options *o, const char
 {
     return (o->count == PLANNING_USUAL_COUNT || tool_check_count(t, "-n", o->count, 1)) &&
            (o->metric == NULL || check_metric(t, o->metric)) &&
-           (o->target == NULL || percent(o->target) > 0.0 ||
+           (o->target == NULL || planning_percent(o->target) > 0.0 ||
             tool_refuse(t, "--target-error: '%s' is not an error in per cent above 0",
                         o->target)) &&
            (o->candidates == NULL || tool_check_output(t, output, &o->candidates, 1));
@@ -65,7 +64,7 @@ gonio_status planning_options_apply(const tool *t, const planning_options *o,
 {
     how->count = o->count != PLANNING_USUAL_COUNT ? (size_t)o->count : how->count;
     how->metric = o->metric != NULL ? (gonio_metric)gonio_metric_find(o->metric) : how->metric;
-    how->target = o->target != NULL ? percent(o->target) : 0.0;
+    how->target = o->target != NULL ? planning_percent(o->target) : 0.0;
     *candidates = NULL;
     if (o->candidates == NULL) {
         return GONIO_OK;

@@ -32,6 +32,9 @@ typedef struct planning_options {
             "The metric to minimise: e6 (default), cube-root or log-relative", "METRIC"            \
     }
 
+/* The number of "3" or "3%"; -1 for other text, or if it is not above 0. */
+double planning_percent(const char *text);
+
 /* Checks the options. Returns false after an error message. `output`: the plan's file. */
 bool planning_options_check(const tool *t, const planning_options *o, const char *output);
 

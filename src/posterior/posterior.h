@@ -38,6 +38,7 @@ typedef struct gonio_i_observation {
     int channel;     /* of the row, if the basis is joint */
     int bound;       /* 0; -1: g is at most this (a reading of zero); 1: at least (saturated) */
     size_t reading;  /* its number among the readings */
+    bool wrong;      /* its direction is set aside (wrong_directions.h) */
 } gonio_i_observation;
 
 typedef struct gonio_i_column {
@@ -65,6 +66,7 @@ typedef struct gonio_i_posterior {
     double norm;        /* root of the mean over the columns of the sum of g^2 over the grid */
     size_t outlying;    /* readings that the others contradict, all columns */
     double residual;    /* root mean square of what the others leave, log units */
+    bool *contradicted; /* by number of the reading: whether a value is outlying; or NULL */
 } gonio_i_posterior;
 
 /* Errors: _MEMORY, _NUMERICAL, _CANCELLED. */

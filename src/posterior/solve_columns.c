@@ -146,6 +146,19 @@ static gonio_status find_variance(const group *g, const gonio_i_fit *e, size_t k
     return gonio_i_variance_find(e, g->rows, c, deviation, covariance, &all->found[number].sums);
 }
 
+/* Marks the readings that the others contradict. Columns have readings in common. */
+static void mark_contradicted(const gonio_i_finding *all, const gonio_i_fit *e,
+                              const gonio_i_column *column)
+{
+    for (size_t i = 0; all->p->contradicted != NULL && i < e->n; i++) {
+        const gonio_i_observation *o = &column->observation[i];
+        if (o->wrong || e->variance[i] > o->variance) {
+#pragma omp atomic write
+            all->p->contradicted[o->reading] = true;
+        }
+    }
+}
+
 static gonio_status solve_fit(const group *g, gonio_i_fit *e, size_t k)
 {
     const gonio_i_finding *all = g->all;
@@ -154,6 +167,7 @@ static gonio_status solve_fit(const group *g, gonio_i_fit *e, size_t k)
     double *c = all->p->coefficients + number * e->components;
     gonio_status status = settle(all, e, &found->outlying);
     if (status == GONIO_OK) {
+        mark_contradicted(all, e, &all->column[number]);
         status = gonio_i_fit_surprise(e, &found->surprise);
     }
     if (status == GONIO_OK) {

@@ -314,6 +314,7 @@ static size_t widen(const direction_search *d, gonio_i_column *column)
             const direction *at = &d->direction[j];
             if (at->wrong && same(&at->at, &column->observation[i].at)) {
                 column->observation[i].variance = HARDLY_A_SAY;
+                column->observation[i].wrong = true;
                 count++;
             }
         }

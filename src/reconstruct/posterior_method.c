@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "../database/layout.h"
+#include "../measurement/readings.h"
 #include "../posterior/interpret.h"
 #include "method.h"
 
@@ -44,8 +45,10 @@ static gonio_status find(gonio_context *context, const gonio_i_prior *prior,
 {
     const gonio_i_posterior_options how = {
         .smoothness = -1.0, .deviation = options->deviation, .wavelength = r->wavelength};
-    gonio_i_posterior p = {
-        .coefficients = r->coefficients, .field = r->field, .deviation = r->deviation};
+    gonio_i_posterior p = {.coefficients = r->coefficients,
+                           .field = r->field,
+                           .deviation = r->deviation,
+                           .contradicted = r->contradicted};
     const gonio_status status =
         gonio_i_posterior_find(context, prior, columns->column, columns->count, &how, &p);
     r->smoothness = p.smoothness;
@@ -83,6 +86,10 @@ static gonio_status estimate(gonio_context *context, const gonio_i_prior *prior,
 {
     const gonio_i_noise noise = gonio_i_posterior_noise(options);
     gonio_status status = keep_wavelengths(context, readings, r);
+    if (status == GONIO_OK) {
+        r->contradicted = gonio_i_allocate(context, readings->count, sizeof *r->contradicted);
+        status = r->contradicted == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    }
     if (status == GONIO_OK && !options->no_checks) {
         status = gonio_i_interpret(context, prior, readings, &noise, columns, &r->interpretation,
                                    &r->dark);

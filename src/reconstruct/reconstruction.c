@@ -13,6 +13,7 @@ void gonio_reconstruction_free(gonio_reconstruction **reconstruction)
     free((*reconstruction)->deviation);
     free((*reconstruction)->wavelength);
     free((*reconstruction)->dark);
+    free((*reconstruction)->contradicted);
     free(*reconstruction);
     *reconstruction = NULL;
 }

@@ -1,0 +1,29 @@
+/* Durations on the command line: see duration.h. */
+#include "duration.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct unit {
+    const char *name;
+    double seconds;
+} unit;
+
+static const unit units[] = {{"", 1.0},     {"s", 1.0},    {"sec", 1.0},  {"m", 60.0},
+                             {"min", 60.0}, {"h", 3600.0}, {"d", 86400.0}};
+
+bool tool_duration(const char *text, double *seconds)
+{
+    char *end = NULL;
+    const double number = strtod(text, &end);
+    end += strspn(end, " ");
+    for (size_t k = 0; k < sizeof units / sizeof *units; k++) {
+        if (strcmp(end, units[k].name) == 0) {
+            *seconds = number * units[k].seconds;
+            return number > 0.0 && isfinite(number);
+        }
+    }
+    return false;
+}

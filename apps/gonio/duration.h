@@ -1,0 +1,10 @@
+/* Durations on the command line. */
+#ifndef GONIO_DURATION_H
+#define GONIO_DURATION_H
+
+#include <stdbool.h>
+
+/* Reads "45min", "2h", "90s" or "90" (seconds), above 0. */
+bool tool_duration(const char *text, double *seconds);
+
+#endif
