@@ -264,7 +264,7 @@ static int run_benchmark(tool *t, const options *o, benchmark_setting *s)
     size_t count = 0;
     const char **arguments = tool_arguments(t, &count);
     gonio_status status = GONIO_OK;
-    if (tool_as != NULL) {
+    if (tool_as != NULL) { /* of all files alike */
         status = gonio_convention_parse(t->context, tool_as, &s->as);
     }
     if (status == GONIO_OK) {

@@ -96,7 +96,7 @@ static int run(tool *t, void *given)
     if (status != GONIO_OK) {
         return tool_exit_code(status);
     }
-    if (kind == GONIO_KIND_READINGS || tool_as != NULL) {
+    if (kind == GONIO_KIND_READINGS || tool_has_convention(arguments[0])) {
         return convert_readings(t, arguments[0], arguments[1]);
     }
     return kind == GONIO_KIND_BASIS ? convert_basis(t, arguments[0], format, arguments[1])

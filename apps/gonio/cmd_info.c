@@ -450,7 +450,7 @@ static int info(const tool *t, const char *path, json_t *results)
     if (strcmp(path, "atlas:") == 0) {
         return info_atlas(results);
     }
-    if (tool_names_format(t)) {
+    if (tool_names_format(t, path)) {
         return tool_info_readings(t, path, results);
     }
     unsigned any = 0;

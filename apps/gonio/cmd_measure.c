@@ -50,8 +50,10 @@ static gonio_status read_material(const tool *t, const options *o, const gonio_m
 
 static int measure(const tool *t, const options *o, const char *plan, const char *path)
 {
-    const gonio_readings_options how = {
-        .size = sizeof how, .values_needed = false, .negative_to_zero = true};
+    const gonio_readings_options how = {.size = sizeof how,
+                                        .values_needed = false,
+                                        .average_repeats = true,
+                                        .negative_to_zero = true};
     gonio_readings *readings = NULL;
     tool_input known = {0};
     const char *name = path;

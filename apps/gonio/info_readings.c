@@ -463,7 +463,7 @@ int tool_info_readings(const tool *t, const char *path, json_t *results)
     }
     if (status == GONIO_OK) {
         description d = {.path = path,
-                         .format = tool_as == NULL ? format : NULL,
+                         .format = tool_has_convention(path) ? NULL : format,
                          .readings = readings,
                          .view = gonio_readings_describe(readings),
                          .survey = survey};

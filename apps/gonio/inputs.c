@@ -1,8 +1,6 @@
 /* The input files of a command: see inputs.h. */
 #include "inputs.h"
 
-const char *tool_as;
-
 gonio_status tool_open_material(const tool *t, const char *path, gonio_material **material)
 {
     gonio_kind kind = GONIO_KIND_UNKNOWN;
@@ -15,15 +13,10 @@ const gonio_readings_options tool_any_values = {.size = sizeof tool_any_values,
                                                 .average_repeats = true,
                                                 .negative_to_zero = true};
 
-gonio_status tool_take_convention(const tool *t, gonio_readings_options *how)
-{
-    return tool_as != NULL ? gonio_convention_parse(t->context, tool_as, &how->as) : GONIO_OK;
-}
-
-bool tool_names_format(const tool *t)
+bool tool_names_format(const tool *t, const char *path)
 {
     gonio_readings_options how = tool_any_values;
-    return tool_take_convention(t, &how) == GONIO_OK && how.as.format != NULL;
+    return tool_convention_of(t, path, &how.as) == GONIO_OK && how.as.format != NULL;
 }
 
 gonio_status tool_read_readings(const tool *t, const char *path,
@@ -31,7 +24,7 @@ gonio_status tool_read_readings(const tool *t, const char *path,
 {
     gonio_readings_options how = *options;
     gonio_kind kind = GONIO_KIND_UNKNOWN;
-    gonio_status status = tool_take_convention(t, &how);
+    gonio_status status = tool_convention_of(t, path, &how.as);
     if (status == GONIO_OK && how.as.format == NULL) {
         status = gonio_file_expect(t->context, path, GONIO_KIND_READINGS, &kind);
     }
@@ -51,7 +44,7 @@ gonio_status tool_keep_read_channels(const tool *t, const gonio_basis *basis,
 static gonio_status find_kind(const tool *t, const char *path, gonio_kind *kind)
 {
     gonio_readings_options how = tool_any_values;
-    gonio_status status = tool_take_convention(t, &how);
+    gonio_status status = tool_convention_of(t, path, &how.as);
     if (status == GONIO_OK && how.as.format != NULL) {
         status = gonio_file_kind(t->context, path, kind, NULL);
         *kind = *kind == GONIO_KIND_MATERIAL ? *kind : GONIO_KIND_READINGS;

@@ -2,29 +2,13 @@
 #ifndef GONIO_INPUTS_H
 #define GONIO_INPUTS_H
 
-#include "command_line.h"
-
-/* The options of all commands that read readings, for their tables. */
-extern const char *tool_as;
-#define TOOL_READINGS_OPTIONS                                                                      \
-    {                                                                                              \
-        "as", '\0', POPT_ARG_STRING, &tool_as, 0,                                                  \
-            "Units and conventions of readings, where gonio takes them wrongly: "                  \
-            "angles=degrees|radians, values=brdf|factor|percent|cosine|factor-cosine, "            \
-            "mirror=180|0, "                                                                       \
-            "wavelengths=nm|um|m, zeros=missing|dark, sample=NUMBER, format=NAME; separated by "   \
-            "commas",                                                                              \
-            "LIST"                                                                                 \
-    }
+#include "readings_as.h"
 
 /* As gonio_material_open, after gonio_file_expect. */
 gonio_status tool_open_material(const tool *t, const char *path, gonio_material **material);
 
-/* Whether --as names a format of readings. Files are then readings. */
-bool tool_names_format(const tool *t);
-
-/* Sets the convention that --as gives. */
-gonio_status tool_take_convention(const tool *t, gonio_readings_options *how);
+/* Whether --as names a format of a file, which then is readings. */
+bool tool_names_format(const tool *t, const char *path);
 
 /* As gonio_readings_read, after gonio_file_expect. */
 gonio_status tool_read_readings(const tool *t, const char *path,

@@ -3,6 +3,8 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
+#include <strings.h>
 
 #include "inputs.h"
 
@@ -28,6 +30,17 @@ double planning_percent(const char *text)
     return *end == '\0' && value > 0.0 && isfinite(value) ? value : -1.0;
 }
 
+/* BRDF JSON holds readings; it has no place for what else a plan says. */
+static bool check_format(const tool *t, const char *output)
+{
+    const char *dot = output != NULL ? strrchr(output, '.') : NULL;
+    if (dot != NULL && (strcasecmp(dot, ".json") == 0 || strcasecmp(dot, ".brdf") == 0)) {
+        return tool_refuse(t, "-o %s: a plan is CSV; name it %.*s.csv", output, (int)(dot - output),
+                           output);
+    }
+    return true;
+}
+
 bool planning_options_check(const tool *t, const planning_options *o, const char *output)
 {
     return (o->count == PLANNING_USUAL_COUNT || tool_check_count(t, "-n", o->count, 1)) &&
@@ -35,6 +48,7 @@ bool planning_options_check(const tool *t, const planning_options *o, const char
            (o->target == NULL || planning_percent(o->target) > 0.0 ||
             tool_refuse(t, "--target-error: '%s' is not an error in per cent above 0",
                         o->target)) &&
+           check_format(t, output) &&
            (o->candidates == NULL || tool_check_output(t, output, &o->candidates, 1));
 }
 

@@ -1,5 +1,6 @@
 /* The simulated instrument: reads a known material at given directions, with noise. */
 #include <math.h>
+#include <stdlib.h>
 
 #include "../core/options.h"
 #include "../core/random.h"
@@ -12,8 +13,8 @@ void gonio_instrument_options_default_of(gonio_instrument_options *options, size
     gonio_i_give(&usual, sizeof usual, options, size);
 }
 
-/* The stream of random numbers of a pair of directions. Noise depends on the directions, not on the
- * line, so that equal directions give equal readings. */
+/* The stream of random numbers of a pair of directions. Noise depends on the directions and on how
+ * often they were read before, not on the line. */
 static uint64_t stream_of(const gonio_pair *pair)
 {
     const union {
@@ -27,6 +28,23 @@ static uint64_t stream_of(const gonio_pair *pair)
         stream ^= stream >> 29;
     }
     return stream;
+}
+
+/* repeat[count]: how often the directions of each reading were read before, which the caller frees;
+ * NULL: out of memory. */
+static size_t *count_repeats(gonio_context *context, const gonio_readings *readings)
+{
+    size_t *repeat = gonio_i_allocate(context, readings->count, sizeof *repeat);
+    size_t *times = gonio_i_allocate(context, readings->count, sizeof *times);
+    for (size_t k = 0; repeat != NULL && times != NULL && k < readings->count; k++) {
+        repeat[k] = times[readings->first_same[k]]++;
+    }
+    if (times == NULL) {
+        free(repeat);
+        repeat = NULL;
+    }
+    free(times);
+    return repeat;
 }
 
 /* Reports the number of directions at which the material has no data. */
@@ -48,15 +66,16 @@ static gonio_status report_holes(gonio_context *context, const gonio_readings *r
     return GONIO_OK;
 }
 
-/* Turns the true values of a direction into readings: noise, and a factor if the direction is an
- * outlier. NaN stays. */
-static void disturb(const gonio_readings *readings, size_t reading,
+/* Turns the true values of a direction into readings: noise, other noise each time it is read, and
+ * a factor if the direction is an outlier. NaN stays. */
+static void disturb(const gonio_readings *readings, size_t reading, size_t repeat,
                     const gonio_instrument_options *options, double *value)
 {
     const gonio_pair *pair = &readings->pair[reading];
     gonio_i_random random;
     gonio_i_random wrongness;
-    gonio_i_random_seed(&random, options->seed, stream_of(pair));
+    gonio_i_random_seed(&random, options->seed,
+                        stream_of(pair) + repeat * UINT64_C(0x9e3779b97f4a7c15));
     gonio_i_random_seed(&wrongness, ~options->seed, stream_of(pair));
     const bool wrong = gonio_i_random_uniform(&wrongness) < options->outliers;
     const double factor = !wrong ? 1.0 : gonio_i_random_uniform(&wrongness) < 0.5 ? 10.0 : 0.1;
@@ -68,8 +87,8 @@ static void disturb(const gonio_readings *readings, size_t reading,
 }
 
 /* Reads one direction from a table. Returns whether there are data. */
-static bool read_one(gonio_readings *readings, size_t reading, const gonio_table *table,
-                     const gonio_instrument_options *options)
+static bool read_one(gonio_readings *readings, size_t reading, size_t repeat,
+                     const gonio_table *table, const gonio_instrument_options *options)
 {
     const gonio_pair *pair = &readings->pair[reading];
     double *value = gonio_i_readings_values(readings, reading);
@@ -77,7 +96,7 @@ static bool read_one(gonio_readings *readings, size_t reading, const gonio_table
         value[0] = value[1] = value[2] = NAN;
         return false;
     }
-    disturb(readings, reading, options, value);
+    disturb(readings, reading, repeat, options, value);
     return true;
 }
 
@@ -110,14 +129,19 @@ gonio_status gonio_measure(gonio_context *context, gonio_readings *readings,
     if (status == GONIO_OK) {
         status = gonio_i_readings_set_channels(context, readings, GONIO_CHANNELS, NULL);
     }
+    size_t *repeat = count_repeats(context, readings);
     size_t holes = 0;
     size_t first = 0;
+    if (status == GONIO_OK && repeat == NULL) {
+        status = GONIO_ERROR_MEMORY;
+    }
     for (size_t k = 0; k < readings->count && status == GONIO_OK; k++) {
-        if (!read_one(readings, k, table, &how)) {
+        if (!read_one(readings, k, repeat[k], table, &how)) {
             first = holes == 0 ? k : first;
             holes++;
         }
     }
+    free(repeat);
     return status == GONIO_OK ? report_holes(context, readings, holes, first) : status;
 }
 
@@ -133,18 +157,23 @@ static gonio_status evaluate(gonio_context *context, gonio_readings *readings,
         status = gonio_material_evaluate(context, material, readings->pair, readings->count,
                                          gonio_i_readings_values(readings, 0));
     }
+    size_t *repeat = count_repeats(context, readings);
     size_t holes = 0;
     size_t first = 0;
+    if (status == GONIO_OK && repeat == NULL) {
+        status = GONIO_ERROR_MEMORY;
+    }
     for (size_t k = 0; k < readings->count && status == GONIO_OK; k++) {
         double *value = gonio_i_readings_values(readings, k);
         bool any = false;
         for (size_t c = 0; c < view->channels; c++) {
             any = any || !isnan(value[c]);
         }
-        disturb(readings, k, options, value);
+        disturb(readings, k, repeat[k], options, value);
         first = !any && holes == 0 ? k : first;
         holes += !any;
     }
+    free(repeat);
     return status == GONIO_OK ? report_holes(context, readings, holes, first) : status;
 }
 

@@ -733,7 +733,8 @@ static gonio_status begin(follower *f, const char *path)
         .size = sizeof any, .average_repeats = true, .negative_to_zero = true};
     gonio_readings_options how = tool_any_values;
     gonio_readings *plan = NULL;
-    gonio_status status = tool_take_convention(f->t, &how);
+    gonio_status status =
+        tool_convention_of(f->t, f->o->follow != NULL ? f->o->follow : "-", &how.as);
     if (status == GONIO_OK) {
         status = tool_read_readings(f->t, path, &any, &plan);
     }
