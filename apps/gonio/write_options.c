@@ -52,6 +52,7 @@ bool write_options_check(const tool *t, const write_options *options, gonio_writ
     double step[3] = {0.0};
     gonio_write_options_default(how);
     how->format = options->format;
+    how->average_azimuths = options->average_azimuths != 0;
     if (!check_format(t, options->format)) {
         return false;
     }

@@ -8,6 +8,7 @@ typedef struct write_options {
     const char *format;
     const char *steps;
     const char *illuminant;
+    int average_azimuths;
 } write_options;
 
 #define WRITE_OPTIONS(options)                                                                     \
@@ -26,6 +27,13 @@ typedef struct write_options {
          0,                                                                                        \
          "Light for the colours of spectra: E, D65 or A (default: E, equal energy)",               \
          "NAME"},                                                                                  \
+        {"average-azimuths",                                                                       \
+         '\0',                                                                                     \
+         POPT_ARG_NONE,                                                                            \
+         &(options)->average_azimuths,                                                             \
+         0,                                                                                        \
+         "Of an anisotropic material, write the mean over azimuths of the sample",                 \
+         NULL},                                                                                    \
     {                                                                                              \
         "steps", '\0', POPT_ARG_STRING, &(options)->steps, 0,                                      \
             "Steps of theta_i, theta_o and phi in degrees, for csv and zemax (default: 10,5,10 "   \

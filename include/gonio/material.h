@@ -159,6 +159,8 @@ typedef struct gonio_write_options {
         theta_i_step; /* steps of directions on a grid (csv; zemax except for theta_o), radians; */
     double theta_o_step; /* 0: the default of the format */
     double phi_step;
+    bool average_azimuths; /* write the mean over azimuths of an anisotropic material, in formats
+                            * that hold isotropic ones too */
 } gonio_write_options;
 
 /* All fields are 0 except the size. */
@@ -170,7 +172,8 @@ static inline void gonio_write_options_default(gonio_write_options *options)
 
 /* Writes a material in a format; options may be NULL. docs/formats.md says what each keeps. The
  * file appears whole or not at all. Errors: _ARGUMENT (no such format; what the format cannot
- * hold), _IO, _MEMORY, _CANCELLED, those of the source. */
+ * hold, as a MERL table an anisotropic material, unless its mean is asked for), _IO, _MEMORY,
+ * _CANCELLED, those of the source. */
 GONIO_API gonio_status gonio_material_write(gonio_context *context, const gonio_material *material,
                                             const char *path, const gonio_write_options *options);
 
@@ -183,6 +186,46 @@ GONIO_API const char *gonio_material_writer_summary(int index);
 /* The index of the format that a file is written in, as of gonio_write_options.format; -1 for an
  * unknown name. */
 GONIO_API int gonio_material_writer_find(const char *path, const char *format);
+
+/* ---- anisotropic tables ---- */
+
+/* Most orders of phi_h in an anisotropic table. */
+enum { GONIO_ANISOTROPIC_ORDERS = 32 };
+
+/* A reciprocal BRDF that depends on phi_h, on the grid of direction.h. At the centre of each cell
+ * (theta_h, theta_d, phi_d) and in each channel it is a Fourier series of phi_h in log space, with
+ * the symmetry s and N orders:
+ *
+ *     ln(rho + floor) = c[0] + sum over k = 1 .. N of c[2k-1] cos(k s phi_h) + c[2k] sin(k s phi_h)
+ *
+ * phi_h is the azimuth of the half vector (direction.h). Elongated Gaussian lobes need one order.
+ * A cell of R, G, B takes 12 + 24 N bytes: 12 cells of phi_d and 2 orders 6 MB, 36 cells and 12
+ * orders 87 MB. A table may have 1 GiB. */
+typedef struct gonio_anisotropic_table {
+    size_t size; /* sizeof(gonio_anisotropic_table) */
+    size_t channels;
+    const double *wavelength; /* [channels], nm; NULL: 3 channels are R, G, B, 1 is grey */
+    int phi_d_cells;          /* of each theta_h and theta_d: a divisor of 180, evenly spaced over
+                               * 0 .. pi; 12 are the sectors, 180 the bins */
+    int symmetry;        /* 1: none; 2: half a turn of the sample changes nothing; 4: a quarter */
+    int orders;          /* N: 0 .. GONIO_ANISOTROPIC_ORDERS; 0 is isotropic */
+    const double *floor; /* [channels], 1/sr, 0 or more */
+    /* [90 theta_h][90 theta_d][phi_d_cells][channels][1 + 2 orders]; NaN as the first of a series:
+     * no data. */
+    const float *coefficient;
+    double theta_limit; /* polar angle up to which values were measured, radians; 0: all */
+} gonio_anisotropic_table;
+
+/* Makes a material of an anisotropic table, whose arrays are copied. It is evaluated at any
+ * directions: rho is trilinear between the centres of cells, continuous at the poles of the
+ * coordinates too, and the same with both directions exchanged. Values below 0 are 0. Errors:
+ * _ARGUMENT (sizes, floors, wavelengths), _MEMORY. */
+GONIO_API gonio_status gonio_anisotropic_material(gonio_context *context, const char *name,
+                                                  const char *format,
+                                                  const gonio_anisotropic_table *table,
+                                                  gonio_material **material);
+
+/* ---- tables ---- */
 
 /* A material read whole (35 MB), for look-ups in any order. Errors of loading: _CANCELLED, _MEMORY,
  * and those of the source. */

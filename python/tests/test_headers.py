@@ -24,7 +24,7 @@ UNBOUND = {
     "files are written one by one": "gonio_outputs_hold gonio_outputs_release",
     "another function does the same": """gonio_atlas_find gonio_atlas_class gonio_atlas_value gonio_atlas_slab
         gonio_atlas_anisotropic_find gonio_atlas_anisotropic_class gonio_atlas_anisotropic_value
-        gonio_atlas_anisotropic_symmetry
+        gonio_atlas_anisotropic_symmetry gonio_anisotropic_material
         gonio_learn gonio_recipe_default gonio_recipe_paper gonio_recipe_default_of gonio_recipe_paper_of
         gonio_recipe_for_grid_of gonio_database_create gonio_measure gonio_table_value gonio_material_read_slab
         gonio_material_write_merl gonio_material_write_rgl gonio_material_writer_find gonio_material_name

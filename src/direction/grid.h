@@ -36,6 +36,11 @@ int gonio_i_bilinear(gonio_half_difference coordinates, gonio_i_stencil stencil[
 int gonio_i_trilinear(gonio_half_difference coordinates,
                       gonio_i_stencil stencil[GONIO_I_MOST_POINTS]);
 
+/* The same between the middles of runs of `depth` bins of phi_d, a divisor of 180. A run is
+ * represented by its bin depth/2. */
+int gonio_i_trilinear_runs(gonio_half_difference coordinates, int depth,
+                           gonio_i_stencil stencil[GONIO_I_MOST_POINTS]);
+
 /* The same between the centres of sectors of phi_d. A sector is represented by its middle bin. */
 int gonio_i_trilinear_sectors(gonio_half_difference coordinates,
                               gonio_i_stencil stencil[GONIO_I_MOST_POINTS]);

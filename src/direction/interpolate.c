@@ -66,9 +66,8 @@ static int blend_with_mean(const gonio_i_stencil plane[GONIO_I_BILINEAR], double
     return points;
 }
 
-/* Interpolates between the middles of runs of `depth` bins of phi_d. */
-static int trilinear(gonio_half_difference c, int depth,
-                     gonio_i_stencil stencil[GONIO_I_MOST_POINTS])
+int gonio_i_trilinear_runs(gonio_half_difference c, int depth,
+                           gonio_i_stencil stencil[GONIO_I_MOST_POINTS])
 {
     gonio_i_stencil plane[GONIO_I_BILINEAR];
     gonio_i_bilinear(c, plane);
@@ -88,10 +87,10 @@ static int trilinear(gonio_half_difference c, int depth,
 
 int gonio_i_trilinear(gonio_half_difference c, gonio_i_stencil stencil[GONIO_I_MOST_POINTS])
 {
-    return trilinear(c, 1, stencil);
+    return gonio_i_trilinear_runs(c, 1, stencil);
 }
 
 int gonio_i_trilinear_sectors(gonio_half_difference c, gonio_i_stencil stencil[GONIO_I_MOST_POINTS])
 {
-    return trilinear(c, GONIO_SECTOR_BINS, stencil);
+    return gonio_i_trilinear_runs(c, GONIO_SECTOR_BINS, stencil);
 }

@@ -92,6 +92,31 @@ static const char tree4[] =
     XML_BEGIN "TensorTree4</IncidentDataStructure></DataDefinition>" XML_BLOCK(
         "Visible", "{ 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 }") XML_END;
 
+/* The smallest anisotropic table. */
+static void seed_anisotropic_table(void)
+{
+    enum { COUNT = GONIO_THETA_H_BINS * GONIO_THETA_D_BINS * 3 };
+    static float coefficient[COUNT];
+    const double floor = 1e-4;
+    const gonio_anisotropic_table table = {.size = sizeof table,
+                                           .channels = 1,
+                                           .phi_d_cells = 1,
+                                           .symmetry = 2,
+                                           .orders = 1,
+                                           .floor = &floor,
+                                           .coefficient = coefficient};
+    gonio_material *material = NULL;
+    char path[4096];
+    for (size_t k = 0; k < COUNT; k++) {
+        coefficient[k] = 0.01F * (float)(k % 97);
+    }
+    seed_path(path, "material", "anisotropic.h5");
+    if (gonio_anisotropic_material(NULL, "seed", "seed", &table, &material) == GONIO_OK) {
+        gonio_material_write(NULL, material, path, NULL);
+    }
+    gonio_material_free(&material);
+}
+
 void seed_materials(void)
 {
     for (size_t k = 0; k < MOST_NUMBERS; k++) {
@@ -101,6 +126,7 @@ void seed_materials(void)
     seed_rgl("anisotropic.bsdf", 4, false);
     seed_rgl("spectral.bsdf", 2, true);
     seed_kaist();
+    seed_anisotropic_table();
     seed_text("material", "matrices.xml", matrices);
     seed_text("material", "spectrum.xml", spectrum);
     seed_text("material", "tree3.xml", tree3);

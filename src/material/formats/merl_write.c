@@ -1,5 +1,6 @@
 /* A material as a MERL table: its row in the table of writers. The table itself is written by
  * merl.c. */
+#include "../../core/core.h"
 #include "../colour.h"
 #include "writers.h"
 
@@ -7,7 +8,12 @@ static gonio_status write_merl(gonio_context *context, const gonio_material *mat
                                const char *path, const gonio_write_options *options)
 {
     const gonio_material_view *view = gonio_material_describe(material);
-    (void)options;
+    if (view->anisotropic && !options->average_azimuths) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "%s: anisotropic, which a MERL table cannot hold; .bsdf, .h5, .xml and "
+                            ".csv can, and --average-azimuths writes the mean",
+                            view->name);
+    }
     if (view->wavelength != NULL) {
         gonio_i_note_colours(context, view->name, view->wavelength, view->channels);
     }

@@ -5,6 +5,7 @@
 #include "../../core/hdf_write.h"
 #include "../../core/output.h"
 #include "../sampler.h"
+#include "anisotropic_file.h"
 #include "table_file.h"
 #include "writers.h"
 
@@ -186,7 +187,9 @@ static gonio_status write_table(gonio_context *context, const gonio_material *ma
                                 const char *path, const gonio_write_options *options)
 {
     gonio_i_sampler sampler;
-    (void)options;
+    if (gonio_material_describe(material)->anisotropic && !options->average_azimuths) {
+        return gonio_i_anisotropic_write(context, material, path);
+    }
     gonio_status status = gonio_i_sampler_begin(context, material, true, &sampler);
     if (status != GONIO_OK) {
         return status;
@@ -211,6 +214,6 @@ static gonio_status write_table(gonio_context *context, const gonio_material *ma
 const gonio_i_format_writer gonio_i_table_writer = {
     .name = "table",
     .extension = ".h5",
-    .summary = "table 90 x 90 x 180 of any channels, HDF5; isotropic, reciprocal",
+    .summary = "table of any channels, HDF5; 90 x 90 x 180, or series of phi_h if anisotropic; reciprocal",
     .write = write_table,
 };
