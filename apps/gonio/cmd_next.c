@@ -4,6 +4,7 @@
 #include "inputs.h"
 #include "interpretation.h"
 #include "json_output.h"
+#include "plan_run.h"
 #include "planning_options.h"
 #include "posterior_options.h"
 
@@ -33,6 +34,9 @@ static int report(const tool *t, const options *o, const answer *a)
             (json_int_t)(plan != NULL ? plan->count : 0), "expected_then_percent",
             plan != NULL ? tool_json_number(plan->expected[plan->count - 1]) : json_null());
         tool_add_interpretation(json, &a->interpretation);
+        if (plan != NULL) {
+            plan_run_add_json(plan, json);
+        }
         return tool_print_json(t, json);
     }
     if (!tool_quiet && plan == NULL) {
@@ -53,16 +57,16 @@ static gonio_status find_next(tool *t, const options *o, const gonio_basis *basi
 {
     gonio_reconstruct_options how;
     gonio_plan_options what;
-    gonio_pair *candidates = NULL;
+    planning_inputs inputs;
     gonio_reconstruct_options_default(&how);
     posterior_options_apply(&o->posterior, &how);
     gonio_plan_options_default(&what);
-    gonio_status status = planning_options_apply(t, &o->planning, &what, &candidates);
+    gonio_status status = planning_options_apply(t, &o->planning, &what, &inputs);
     if (status == GONIO_OK) {
         status = gonio_plan_next(t->context, basis, readings, &how, &what, &a->now,
                                  &a->interpretation, &a->plan);
     }
-    free(candidates);
+    planning_inputs_free(&inputs);
     return status;
 }
 

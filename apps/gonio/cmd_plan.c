@@ -3,6 +3,7 @@
 #include "command_line.h"
 #include "json_output.h"
 #include "inputs.h"
+#include "plan_run.h"
 #include "planning_options.h"
 
 #include <math.h>
@@ -25,14 +26,18 @@ static int report(const tool *t, const gonio_plan *plan, const options *o)
 {
     if (tool_json) {
         const double expected = plan->expected != NULL ? plan->expected[plan->count - 1] : INFINITY;
-        return tool_print_json(t, json_pack("{s:o, s:s, s:I, s:I, s:o, s:o}", "plan",
-                                            tool_json_text(o->output), "method", plan->method,
-                                            "readings", (json_int_t)plan->count, "components",
-                                            (json_int_t)plan->components, "condition_number",
-                                            tool_json_number(plan->condition_number),
-                                            "expected_e6_percent", tool_json_number(expected)));
+        json_t *json =
+            json_pack("{s:o, s:s, s:I, s:I, s:o, s:o}", "plan", tool_json_text(o->output), "method",
+                      plan->method, "readings", (json_int_t)plan->count, "components",
+                      (json_int_t)plan->components, "condition_number",
+                      tool_json_number(plan->condition_number), "expected_e6_percent",
+                      tool_json_number(expected));
+        plan_run_add_json(plan, json);
+        return tool_print_json(t, json);
     }
-    if (!tool_quiet && plan->expected != NULL) {
+    if (!tool_quiet && plan->run != NULL) {
+        plan_run_print(plan, o->output);
+    } else if (!tool_quiet && plan->expected != NULL) {
         fprintf(tool_results(), "%s: %zu reading%s, in order of use; expected error (E6) %.2f %%\n",
                 o->output, plan->count, tool_plural(plan->count), plan->expected[plan->count - 1]);
     } else if (!tool_quiet) {
@@ -55,8 +60,8 @@ static gonio_status make_plan(tool *t, const options *o, const char *basis_path,
     how.seed = (uint64_t)o->seed;
     how.keep_history = o->history != NULL;
     how.phi_d = o->phi_d * M_PI / 180.0;
-    gonio_pair *candidates = NULL;
-    gonio_status status = planning_options_apply(t, &o->planning, &how, &candidates);
+    planning_inputs inputs;
+    gonio_status status = planning_options_apply(t, &o->planning, &how, &inputs);
     if (status == GONIO_OK) {
         status = tool_basis(t, basis_path, o->method, &basis);
     }
@@ -64,7 +69,7 @@ static gonio_status make_plan(tool *t, const options *o, const char *basis_path,
         status = gonio_plan_create(t->context, basis, &how, plan);
     }
     gonio_basis_free(&basis);
-    free(candidates);
+    planning_inputs_free(&inputs);
     return status;
 }
 

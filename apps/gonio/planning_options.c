@@ -6,6 +6,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "duration.h"
 #include "inputs.h"
 
 /* Checks that plans can be made for a metric. */
@@ -41,6 +42,22 @@ static bool check_format(const tool *t, const char *output)
     return true;
 }
 
+static bool check_instrument(const tool *t, const planning_options *o)
+{
+    double seconds = 0.0;
+    if (o->instrument == NULL && (o->budget != NULL || o->nested)) {
+        return tool_refuse(t, "%s needs --instrument", o->budget != NULL ? "--budget" : "--nested");
+    }
+    if (o->budget != NULL && !tool_duration(o->budget, &seconds)) {
+        return tool_refuse(t, "--budget: '%s' is not a time like 45min, 2h or 900s", o->budget);
+    }
+    if (o->budget != NULL && o->target != NULL) {
+        return tool_refuse(t, "give --budget or --target-error, not both");
+    }
+    return o->instrument == NULL || o->candidates == NULL ||
+           tool_refuse(t, "give --instrument or --candidates, not both");
+}
+
 bool planning_options_check(const tool *t, const planning_options *o, const char *output)
 {
     return (o->count == PLANNING_USUAL_COUNT || tool_check_count(t, "-n", o->count, 1)) &&
@@ -48,8 +65,9 @@ bool planning_options_check(const tool *t, const planning_options *o, const char
            (o->target == NULL || planning_percent(o->target) > 0.0 ||
             tool_refuse(t, "--target-error: '%s' is not an error in per cent above 0",
                         o->target)) &&
-           check_format(t, output) &&
-           (o->candidates == NULL || tool_check_output(t, output, &o->candidates, 1));
+           check_format(t, output) && check_instrument(t, o) &&
+           (o->candidates == NULL || tool_check_output(t, output, &o->candidates, 1)) &&
+           (o->instrument == NULL || tool_check_output(t, output, &o->instrument, 1));
 }
 
 /* Reads the directions of a readings file, with or without values. */
@@ -74,17 +92,30 @@ static gonio_status read_directions(const tool *t, const char *path, gonio_pair 
 }
 
 gonio_status planning_options_apply(const tool *t, const planning_options *o,
-                                    gonio_plan_options *how, gonio_pair **candidates)
+                                    gonio_plan_options *how, planning_inputs *inputs)
 {
+    gonio_status status = GONIO_OK;
+    *inputs = (planning_inputs){NULL, NULL};
     how->count = o->count != PLANNING_USUAL_COUNT ? (size_t)o->count : how->count;
     how->metric = o->metric != NULL ? (gonio_metric)gonio_metric_find(o->metric) : how->metric;
     how->target = o->target != NULL ? planning_percent(o->target) : 0.0;
-    *candidates = NULL;
-    if (o->candidates == NULL) {
-        return GONIO_OK;
+    if (o->budget != NULL) {
+        tool_duration(o->budget, &how->budget);
     }
-    const gonio_status status =
-        read_directions(t, o->candidates, candidates, &how->candidate_count);
-    how->candidates = *candidates;
+    how->nested = o->nested != 0;
+    if (o->candidates != NULL) {
+        status = read_directions(t, o->candidates, &inputs->candidates, &how->candidate_count);
+        how->candidates = inputs->candidates;
+    }
+    if (status == GONIO_OK && o->instrument != NULL) {
+        status = gonio_instrument_read(t->context, o->instrument, &inputs->instrument);
+        how->instrument = inputs->instrument;
+    }
     return status;
+}
+
+void planning_inputs_free(planning_inputs *inputs)
+{
+    free(inputs->candidates);
+    gonio_instrument_free(&inputs->instrument);
 }

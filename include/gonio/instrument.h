@@ -236,6 +236,18 @@ GONIO_API double gonio_instrument_schedule(const gonio_instrument *instrument,
                                            const gonio_setting *setting, size_t count,
                                            double *time);
 
+/* Orders readings so that a run takes the least time, by a local search that finds the best order
+ * of few readings. Reading k can be made at the settings first[k] to first[k + 1] - 1 of setting[];
+ * first[count + 1], first[0] may be any place. start: where the axes are before; NULL: home. Fills
+ * in order[count], the readings in order, and chosen[count], their settings in this order. The same
+ * input gives the same order. Errors: _ARGUMENT (a reading without a setting), _MEMORY,
+ * _CANCELLED. */
+GONIO_API gonio_status gonio_instrument_order(gonio_context *context,
+                                              const gonio_instrument *instrument,
+                                              const gonio_setting *setting, const size_t *first,
+                                              size_t count, const gonio_setting *start,
+                                              size_t *order, gonio_setting *chosen);
+
 #ifdef __cplusplus
 }
 #endif

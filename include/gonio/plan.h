@@ -11,6 +11,7 @@
 #define GONIO_PLAN_H
 
 #include <gonio/basis.h>
+#include <gonio/instrument.h>
 #include <gonio/metric.h>
 
 #ifdef __cplusplus
@@ -33,6 +34,33 @@ typedef struct gonio_plan_step {
     double condition_number;
 } gonio_plan_step;
 
+enum { GONIO_MOST_PARTS = 16, GONIO_NAME_ROOM = 64 };
+
+/* A part of all pairs of directions. */
+typedef struct gonio_plan_part {
+    char obstacle[GONIO_NAME_ROOM]; /* what keeps the instrument out; "": what it reaches */
+    double share;                   /* of all pairs, by projected solid angle, 0 to 1 */
+    double deviation;               /* root mean square of the standard deviation there after the
+                                     * plan, relative to the BRDF (in log space) */
+} gonio_plan_part;
+
+/* How an instrument makes the readings of a plan. */
+typedef struct gonio_plan_run {
+    char instrument[GONIO_NAME_ROOM]; /* its name */
+    size_t axes;
+    char axis[GONIO_MOST_AXES][GONIO_NAME_ROOM];
+    bool shown[GONIO_MOST_AXES]; /* whether the instrument has the axis */
+    gonio_setting *setting;      /* [count] of the plan */
+    double *time;                /* [count], s from the start to the end of each reading */
+    double duration;             /* s, of the whole run */
+    double unordered;            /* s, that the same readings take in the order in which they were
+                                  * chosen */
+    double free_expected; /* expected E6 of as many readings anywhere, per cent; NAN if it was
+                           * not looked for */
+    size_t parts;
+    gonio_plan_part part[GONIO_MOST_PARTS];
+} gonio_plan_run;
+
 typedef struct gonio_plan {
     size_t count;
     gonio_plan_entry *entries; /* in ascending order of the basis's rows; by expected-error in the
@@ -48,6 +76,8 @@ typedef struct gonio_plan {
     gonio_plan_step *history; /* all restarts, in order; not kept in files */
     double *expected;         /* [count] by expected-error: the expected E6 after each reading, per
                                * cent; NULL by other methods */
+    gonio_plan_run *run;      /* of plans for an instrument, whose entries are in the order of the
+                               * run; NULL otherwise */
 } gonio_plan;
 
 /* The default number of readings: 80, at most 300 with a target error, 5 for gonio_plan_next. */
@@ -71,6 +101,13 @@ typedef struct gonio_plan_options {
     size_t candidate_count;       /* at most 100,000 */
     double target;                /* per cent: plan the fewest readings with at most this expected
                                    * E6, at most `count` of them; 0: exactly `count` */
+    const gonio_instrument *instrument; /* read by this instrument: what it reaches, with its noise
+                                         * and apertures, in the order of least time; NULL: by any.
+                                         * The sample is taken as isotropic */
+    double budget; /* s: as many readings as the instrument makes in this time (and at most `count`,
+                    * if that is set), the best for the time; 0: `count` readings */
+    bool nested; /* the first 5, 10, 20, 40 ... readings of an instrument stay good plans: they are
+                  * ordered within these blocks only */
 } gonio_plan_options;
 
 GONIO_API void gonio_plan_options_default_of(gonio_plan_options *options, size_t size);

@@ -46,7 +46,7 @@ UNBOUND = {
         gonio_value_kind_name gonio_instrument_pair gonio_instrument_obstacle gonio_instrument_settings
         gonio_instrument_survey gonio_instrument_candidates gonio_instrument_deviation gonio_instrument_value_factor
         gonio_instrument_aperture_samples gonio_instrument_aperture gonio_instrument_travel gonio_instrument_home
-        gonio_instrument_schedule
+        gonio_instrument_schedule gonio_instrument_order
         gonio_comparison_picture_write_png gonio_tone_apply gonio_srgb_encode""",
 }
 KINDS = ("basis context database environment image material mesh plan readings reconstruction survey table").split()
@@ -55,7 +55,8 @@ KINDS = ("basis context database environment image material mesh plan readings r
 OPTIONS = {
     "plan": (gonio.Basis.plan, dict(method="method", start="start", components="components", count="n",
                                     restarts="restarts", seed="seed", keep_history=None, phi_d="phi_d", metric="metric",
-                                    candidates="candidates", candidate_count="candidates", target="target_error")),
+                                    candidates="candidates", candidate_count="candidates", target="target_error",
+                                    budget=None, nested=None)),
     "reconstruct": (gonio.reconstruct, dict(components="components", all_channels="all_channels",
                                             other_basis="other_basis", method="method", eta="eta", noise="noise",
                                             floor="floor", saturation="saturation", deviation=None,

@@ -11,7 +11,7 @@
 /* Standard deviation of a reading, log units: noise and the error of the model near the reading.
  * Chosen by errors of left-out materials: with 0.03 or 0.05 plans trust single readings too much.
  * Smaller where the covariance includes a remainder. */
-static const double NOISE = 0.08;
+const double gonio_i_noise_of_readings = 0.08;
 static const double NOISE_BESIDE_REMAINDER = 0.05;
 
 /* alpha and peak of the remainder between candidates, log units (prior.h). */
@@ -99,7 +99,7 @@ gonio_status gonio_i_choices_of_rows(gonio_i_choices *p, gonio_metric metric)
     bool failed = false;
     p->rows = p->prior->view->rows;
     p->components = p->prior->components;
-    p->noise = NOISE;
+    p->noise = gonio_i_noise_of_readings;
     const gonio_status status = allocate_places(p);
     if (status != GONIO_OK) {
         return status;
@@ -233,7 +233,7 @@ gonio_status gonio_i_choices_of_candidates(gonio_i_choices *p, const gonio_plan_
 {
     const size_t most = p->known != NULL ? p->prior->components : MOST_RANK;
     p->rows = options->candidate_count;
-    p->noise = p->known != NULL ? NOISE : NOISE_BESIDE_REMAINDER;
+    p->noise = p->known != NULL ? gonio_i_noise_of_readings : NOISE_BESIDE_REMAINDER;
     p->components = p->known != NULL || p->rows > most ? most : p->rows;
     const size_t components = p->prior->components;
     float *f = gonio_i_allocate(p->context, p->rows * components, sizeof *f);

@@ -19,6 +19,9 @@ typedef struct gonio_i_choices {
     double noise;               /* standard deviation of a reading, log units */
 } gonio_i_choices;
 
+/* Standard deviation of a reading that plans reckon with, log units. */
+extern const double gonio_i_noise_of_readings;
+
 /* All rows of the basis. p->context, p->prior and p->known are set before. To be freed in any case.
  * Errors: _MEMORY. */
 gonio_status gonio_i_choices_of_rows(gonio_i_choices *p, gonio_metric metric);

@@ -6,48 +6,13 @@
 
 #include "../linalg/linalg.h"
 #include "expected_error_choices.h"
+#include "expected_error_scale.h"
 #include "expected_error_search.h"
+#include "instrument_plan.h"
 #include "method.h"
 #include "plan.h"
 
 enum { MOST_CANDIDATES = 100000 };
-
-/* Standard deviation, log units, of the error that remains whatever is read. Chosen so that the
- * expected error is that of left-out materials (docs/experiments.md). */
-static const double LEFT_OPEN = 0.05;
-
-/* The mean of 1/|g| over the measured columns of the database; |g| with the weights of the rows. */
-static gonio_status mean_reciprocal(const gonio_i_choices *p, double *mean)
-{
-    const gonio_i_prior *prior = p->prior;
-    const size_t measured = prior->view->columns - prior->view->mixtures;
-    const size_t used = prior->samples > 0 ? measured : 0;
-    double *f = gonio_i_allocate(p->context, prior->components, sizeof *f);
-    double *square = gonio_i_allocate(p->context, used + 1, sizeof *square);
-    if (f == NULL || square == NULL) {
-        free(f);
-        free(square);
-        return GONIO_ERROR_MEMORY;
-    }
-    const size_t step = p->rows / 4096 + 1; /* a sample of the rows is enough */
-    for (size_t row = 0; row < p->rows; row += step) {
-        double m = 0.0;
-        gonio_i_prior_at(prior, p->at[row], 0, &m, f);
-        for (size_t j = 0; j < used; j++) {
-            const double g =
-                m + gonio_i_dot(f, prior->sample + j * prior->components, prior->components);
-            square[j] += (double)step * p->loss[row] * g * g;
-        }
-        square[used] += (double)step * p->loss[row] * m * m;
-    }
-    *mean = used > 0 ? 0.0 : 1.0 / sqrt(square[used]);
-    for (size_t j = 0; j < used; j++) {
-        *mean += 1.0 / sqrt(fmax(square[j], 1e-300)) / (double)used;
-    }
-    free(f);
-    free(square);
-    return GONIO_OK;
-}
 
 static void fill_entry(const gonio_i_choices *p, const gonio_plan_options *options, size_t row,
                        gonio_plan_entry *entry)
@@ -107,58 +72,10 @@ static gonio_status cut(const gonio_i_choices *p, const gonio_plan_options *opti
     return GONIO_OK;
 }
 
-/* The part of E6, per cent, that remains whatever is read; `reciprocal`: 1/|g|. */
-static double open_part(const gonio_i_choices *p, double reciprocal)
-{
-    double all = 0.0;
-    for (size_t row = 0; row < p->rows; row++) {
-        all += p->loss[row];
-    }
-    return 100.0 * LEFT_OPEN * sqrt(all) * reciprocal;
-}
-
-/* From the loss that is left to E6, per cent: factor (scale loss + open^2)^(1/2). */
-typedef struct error_of_loss {
-    double factor;
-    double scale;
-    double open;
-} error_of_loss;
-
-/* Before anything was read. */
-static gonio_status find_error_of_loss(const gonio_i_choices *p, error_of_loss *e)
-{
-    double reciprocal = 0.0;
-    gonio_status status = GONIO_OK;
-    if (p->known != NULL) {
-        reciprocal = 1.0 / p->known->norm;
-    } else {
-        status = mean_reciprocal(p, &reciprocal);
-    }
-    e->factor = 1.0;
-    e->scale = 100.0 * 100.0 * reciprocal * reciprocal;
-    e->open = open_part(p, reciprocal);
-    return status;
-}
-
-/* Of a material that was read, what its covariance lets expect shrinks with the loss, down to what
- * the model leaves open; and what is expected, in proportion. */
-static void scale_to_known(const gonio_i_known *known, double loss, error_of_loss *e)
-{
-    e->scale = fmax(known->variance * known->variance - e->open * e->open, 0.0) / loss;
-    e->factor = known->expected / known->variance;
-}
-
-/* The loss that leaves the target; 0 if there is no target, or none that can be reached. */
-static double enough_for(const error_of_loss *e, double target)
-{
-    return target > e->open ? (target * target - e->open * e->open) / e->scale : 0.0;
-}
-
-static void fill_expected(const error_of_loss *e, const double *remaining, gonio_plan *plan)
+static void fill_expected(const gonio_i_error_of_loss *e, const double *remaining, gonio_plan *plan)
 {
     for (size_t k = 0; k < plan->count; k++) {
-        plan->expected[k] =
-            e->factor * sqrt(e->scale * fmax(remaining[k + 1], 0.0) + e->open * e->open);
+        plan->expected[k] = gonio_i_expected_error_of(e, remaining[k + 1]);
     }
 }
 
@@ -168,9 +85,9 @@ static gonio_status fill_plan(const gonio_i_choices *p, const gonio_plan_options
     size_t *chosen = gonio_i_allocate(p->context, plan->count, sizeof *chosen);
     double *remaining = gonio_i_allocate(p->context, plan->count + 1, sizeof *remaining);
     plan->expected = gonio_i_allocate(p->context, plan->count, sizeof *plan->expected);
-    error_of_loss error = {0};
+    gonio_i_error_of_loss error = {0};
     gonio_status status = chosen != NULL && remaining != NULL && plan->expected != NULL
-                              ? find_error_of_loss(p, &error)
+                              ? gonio_i_find_error_of_loss(p, &error)
                               : GONIO_ERROR_MEMORY;
     const gonio_i_expected_error_problem problem = {
         .context = p->context,
@@ -182,12 +99,12 @@ static gonio_status fill_plan(const gonio_i_choices *p, const gonio_plan_options
         .allowed = p->allowed,
         .variance = p->noise * p->noise,
         .count = plan->count,
-        .enough = p->known == NULL ? enough_for(&error, options->target) : 0.0};
+        .enough = p->known == NULL ? gonio_i_enough_for(&error, options->target) : 0.0};
     if (status == GONIO_OK) {
         status = gonio_i_expected_error_search(&problem, chosen, remaining, &plan->count);
     }
     if (status == GONIO_OK && p->known != NULL) {
-        scale_to_known(p->known, remaining[0], &error);
+        gonio_i_scale_to_known(p->known, remaining[0], &error);
     }
     if (status == GONIO_OK) {
         fill_expected(&error, remaining, plan);
@@ -234,6 +151,9 @@ static gonio_status make_plan(gonio_context *context, const gonio_basis *basis,
     gonio_plan *made = NULL;
     size_t count = 0;
     gonio_status status = check_options(context, basis, options);
+    if (status == GONIO_OK && options->instrument != NULL) {
+        return gonio_i_instrument_plan(context, basis, options, known, plan);
+    }
     if (status == GONIO_OK) {
         status = gonio_i_prior_create(context, basis, &p.prior);
     }
@@ -276,7 +196,7 @@ static gonio_status plan_least_error(gonio_context *context, const gonio_basis *
 }
 
 const gonio_i_method gonio_i_expected_error_method = {
-    .name = "expected-error",
+    .name = GONIO_I_EXPECTED_ERROR,
     .summary = "the readings that leave the least expected error",
     .reconstruction = "posterior",
     .basis = {.representation = GONIO_SECTORED, .channels = GONIO_SEPARATE, .mixtures = true},

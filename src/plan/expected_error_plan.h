@@ -7,6 +7,9 @@
 
 #include "../prior/prior.h"
 
+/* The name of the method. */
+#define GONIO_I_EXPECTED_ERROR "expected-error"
+
 /* What is known of a material after some readings. */
 typedef struct gonio_i_known {
     const double *covariance;          /* [K][K]: of z */

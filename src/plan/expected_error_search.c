@@ -22,7 +22,6 @@
 #include "../linalg/linalg.h"
 
 enum {
-    FIRST_BLOCK = 5,
     LEAST_RENEWED = 20, /* readings after which q and t are computed anew */
     MOST_SWEEPS = 4,
     BLOCK_ROWS = 1024,
@@ -49,6 +48,7 @@ typedef struct design {
     double *t;      /* [rows] */
     double *vector; /* [2 + 2 MOST_WAITING][k]: f, W g, and the vectors of the changes */
     bool *taken;    /* [rows] */
+    size_t *opened; /* [groups]: readings of each group */
     bool plain;     /* P is I: there is no reading yet */
     change waiting[MOST_WAITING];
     size_t waits;
@@ -57,6 +57,19 @@ typedef struct design {
 static const float *row_of(const design *d, size_t row)
 {
     return d->problem->f + row * d->k;
+}
+
+static double variance_of(const design *d, size_t row)
+{
+    return d->problem->row_variance != NULL ? d->problem->row_variance[row] : d->problem->variance;
+}
+
+/* What a reading costs: more if it is the first of its group. */
+static double price_of(const design *d, size_t row)
+{
+    const gonio_i_expected_error_problem *problem = d->problem;
+    const bool first = problem->price > 0.0 && d->opened[problem->group[row]] == 0;
+    return first ? 1.0 + problem->price : 1.0;
 }
 
 static void copy_row(const design *d, size_t row, double *f)
@@ -73,57 +86,82 @@ static void multiply(const double *matrix, const double *x, size_t n, double *y)
     }
 }
 
+/* What W is the sum of. */
+typedef struct weighted_rows {
+    gonio_context *context;
+    const float *f; /* [rows][k] */
+    size_t rows;
+    size_t k;
+    const double *loss; /* [rows] */
+} weighted_rows;
+
 /* Adds the terms of W of every LOSS_PARTS-th block of rows, from block `part` on, to w. */
-static gonio_status add_loss(const design *d, size_t part, double *w)
+static gonio_status add_loss(const weighted_rows *r, size_t part, double *w)
 {
-    gonio_context *context = d->problem->context;
-    double *block = gonio_i_allocate(context, BLOCK_ROWS * d->k, sizeof *block);
+    double *block = gonio_i_allocate(r->context, BLOCK_ROWS * r->k, sizeof *block);
     gonio_status status = block == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
-    for (size_t first = part * BLOCK_ROWS; first < d->rows && status == GONIO_OK;
+    for (size_t first = part * BLOCK_ROWS; first < r->rows && status == GONIO_OK;
          first += (size_t)LOSS_PARTS * BLOCK_ROWS) {
-        const size_t count = d->rows - first < BLOCK_ROWS ? d->rows - first : BLOCK_ROWS;
+        const size_t count = r->rows - first < BLOCK_ROWS ? r->rows - first : BLOCK_ROWS;
         for (size_t b = 0; b < count; b++) {
-            const double root = sqrt(d->problem->loss[first + b]);
-            for (size_t j = 0; j < d->k; j++) {
-                block[b * d->k + j] = root * (double)row_of(d, first + b)[j];
+            const double root = sqrt(r->loss[first + b]);
+            for (size_t j = 0; j < r->k; j++) {
+                block[b * r->k + j] = root * (double)r->f[(first + b) * r->k + j];
             }
         }
-        status = gonio_i_add_gram_rows(context, block, count, d->k, w);
+        status = gonio_i_add_gram_rows(r->context, block, count, r->k, w);
     }
     free(block);
     return status;
 }
 
-/* W = F' diag(w) F, and T. Parts of W are added in the same order on any number of threads. */
-static gonio_status find_loss(design *d)
+/* Parts of W are added in the same order on any number of threads. */
+gonio_status gonio_i_expected_error_weights(gonio_context *context, const float *f, size_t rows,
+                                            size_t components, const double *loss, double *weights)
 {
-    const size_t size = d->k * d->k;
+    const weighted_rows r = {context, f, rows, components, loss};
+    const size_t size = components * components;
     gonio_status result = GONIO_OK;
-    double *partial = gonio_i_allocate(d->problem->context, LOSS_PARTS * size, sizeof *partial);
+    double *partial = gonio_i_allocate(context, LOSS_PARTS * size, sizeof *partial);
     if (partial == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-#pragma omp parallel for schedule(dynamic, 1)                                                      \
-    num_threads(gonio_context_threads(d->problem->context))
+#pragma omp parallel for schedule(dynamic, 1) num_threads(gonio_context_threads(context))
     for (size_t part = 0; part < LOSS_PARTS; part++) {
-        const gonio_status mine = add_loss(d, part, partial + part * size);
+        const gonio_status mine = add_loss(&r, part, partial + part * size);
         if (mine != GONIO_OK) {
 #pragma omp atomic write
             result = mine;
         }
     }
+    memset(weights, 0, size * sizeof *weights);
     for (size_t part = 0; part < LOSS_PARTS; part++) {
         for (size_t i = 0; i < size; i++) {
-            d->w[i] += partial[part * size + i];
+            weights[i] += partial[part * size + i];
         }
     }
     free(partial);
-    gonio_i_mirror(d->w, d->k);
-    memcpy(d->half, d->w, d->k * d->k * sizeof *d->w);
+    gonio_i_mirror(weights, components);
+    return result;
+}
+
+/* W and T. */
+static gonio_status find_loss(design *d)
+{
+    const gonio_i_expected_error_problem *problem = d->problem;
+    const size_t size = d->k * d->k;
+    gonio_status status = GONIO_OK;
+    if (problem->weights != NULL) {
+        memcpy(d->w, problem->weights, size * sizeof *d->w);
+    } else {
+        status = gonio_i_expected_error_weights(problem->context, problem->f, problem->rows, d->k,
+                                                problem->loss, d->w);
+    }
+    memcpy(d->half, d->w, size * sizeof *d->w);
     for (size_t i = 0; i < d->k; i++) {
         d->half[i * d->k + i] *= 0.5;
     }
-    return result;
+    return status;
 }
 
 /* q and t of `count` rows, f[count][k]; fp, fpt: scratch of that size. */
@@ -256,7 +294,7 @@ static void update(design *d, size_t row, double sign)
     copy_row(d, row, f);
     multiply(d->p, f, k, c->g);
     const double scale =
-        1.0 / sqrt(fmax(d->problem->variance + sign * gonio_i_dot(f, c->g, k), 1e-12));
+        1.0 / sqrt(fmax(variance_of(d, row) + sign * gonio_i_dot(f, c->g, k), 1e-12));
     for (size_t j = 0; j < k; j++) {
         c->g[j] *= scale;
     }
@@ -279,7 +317,7 @@ static size_t find_best(design *d)
     size_t best = d->rows;
     double most = -INFINITY;
     for (size_t x = 0; x < d->rows; x++) {
-        const double gain = d->t[x] / (fmax(d->q[x], 0.0) + d->problem->variance);
+        const double gain = d->t[x] / (fmax(d->q[x], 0.0) + variance_of(d, x)) / price_of(d, x);
         const bool free_row = !d->taken[x] && d->problem->allowed[x];
         if (free_row && gain > most) {
             most = gain;
@@ -302,21 +340,28 @@ static void begin(design *d)
 static void take(design *d, size_t row)
 {
     d->taken[row] = true;
+    if (d->opened != NULL) {
+        d->opened[d->problem->group[row]]++;
+    }
     update(d, row, 1.0);
 }
 
 static void take_back(design *d, size_t row)
 {
     d->taken[row] = false;
+    if (d->opened != NULL) {
+        d->opened[d->problem->group[row]]--;
+    }
     update(d, row, -1.0);
 }
 
 /* Exchanges the readings from `first` to `end` - 1 for better ones. */
 static gonio_status exchange(design *d, size_t *chosen, size_t first, size_t end)
 {
+    const int most = d->problem->sweeps == 0 ? MOST_SWEEPS : d->problem->sweeps;
     bool changed = true;
     gonio_status status = GONIO_OK;
-    for (int sweeps = 0; sweeps < MOST_SWEEPS && changed && status == GONIO_OK; sweeps++) {
+    for (int sweeps = 0; sweeps < most && changed && status == GONIO_OK; sweeps++) {
         changed = false;
         for (size_t i = first; i < end && status == GONIO_OK; i++) {
             take_back(d, chosen[i]);
@@ -344,7 +389,7 @@ static gonio_status choose_blocks(design *d, size_t *chosen, size_t *found)
     gonio_status status = find_gains(d);
     size_t done = 0;
     size_t most = problem->count;
-    for (size_t end = FIRST_BLOCK; done < most && status == GONIO_OK; end *= 2) {
+    for (size_t end = GONIO_I_FIRST_BLOCK; done < most && status == GONIO_OK; end *= 2) {
         const size_t first = done;
         for (; done < end && done < most; done++) {
             chosen[done] = find_best(d);
@@ -372,7 +417,7 @@ static void find_remaining(design *d, const size_t *chosen, size_t count, double
         double *g = d->vector + k;
         copy_row(d, chosen[n], f);
         multiply(d->p, f, k, g);
-        const double s = d->problem->variance + gonio_i_dot(f, g, k);
+        const double s = variance_of(d, chosen[n]) + gonio_i_dot(f, g, k);
         for (size_t i = 0; i < k; i++) {
             for (size_t j = 0; j < k; j++) {
                 d->p[i * k + j] -= g[i] * g[j] / s;
@@ -382,24 +427,52 @@ static void find_remaining(design *d, const size_t *chosen, size_t count, double
     }
 }
 
+static void release(design *d)
+{
+    free(d->p);
+    free(d->w);
+    free(d->half);
+    free(d->q);
+    free(d->t);
+    free(d->vector);
+    free(d->taken);
+    free(d->opened);
+}
+
+/* Matrices and, for a search, what it keeps of rows. To be released in any case. */
+static gonio_status allocate(const gonio_i_expected_error_problem *problem, bool search, design *d)
+{
+    gonio_context *context = problem->context;
+    const size_t k = problem->components;
+    const size_t rows = problem->rows;
+    *d = (design){.problem = problem,
+                  .rows = problem->rows,
+                  .k = k,
+                  .p = gonio_i_allocate(context, k * k, sizeof *d->p),
+                  .w = gonio_i_allocate(context, k * k, sizeof *d->w),
+                  .half = gonio_i_allocate(context, k * k, sizeof *d->half),
+                  .vector =
+                      gonio_i_allocate(context, (2 + 2 * MOST_WAITING) * k, sizeof *d->vector)};
+    bool done = d->p && d->w && d->half && d->vector;
+    if (search) {
+        d->q = gonio_i_allocate(context, rows, sizeof *d->q);
+        d->t = gonio_i_allocate(context, rows, sizeof *d->t);
+        d->taken = gonio_i_allocate(context, rows, sizeof *d->taken);
+        done = done && d->q && d->t && d->taken;
+    }
+    if (search && problem->group != NULL) {
+        d->opened = gonio_i_allocate(context, problem->groups, sizeof *d->opened);
+        done = done && d->opened;
+    }
+    return done ? GONIO_OK : GONIO_ERROR_MEMORY;
+}
+
 gonio_status gonio_i_expected_error_search(const gonio_i_expected_error_problem *problem,
                                            size_t *chosen, double *remaining, size_t *found)
 {
-    gonio_context *context = problem->context;
     size_t count = 0;
-    const size_t k = problem->components;
-    design d = {.problem = problem,
-                .rows = problem->rows,
-                .k = k,
-                .p = gonio_i_allocate(context, k * k, sizeof *d.p),
-                .w = gonio_i_allocate(context, k * k, sizeof *d.w),
-                .half = gonio_i_allocate(context, k * k, sizeof *d.half),
-                .q = gonio_i_allocate(context, problem->rows, sizeof *d.q),
-                .t = gonio_i_allocate(context, problem->rows, sizeof *d.t),
-                .vector = gonio_i_allocate(context, (2 + 2 * MOST_WAITING) * k, sizeof *d.vector),
-                .taken = gonio_i_allocate(context, problem->rows, sizeof *d.taken)};
-    const bool done = d.p && d.w && d.half && d.q && d.t && d.vector && d.taken;
-    gonio_status status = done ? GONIO_OK : GONIO_ERROR_MEMORY;
+    design d;
+    gonio_status status = allocate(problem, true, &d);
     if (status == GONIO_OK) {
         begin(&d);
         status = find_loss(&d);
@@ -413,12 +486,25 @@ gonio_status gonio_i_expected_error_search(const gonio_i_expected_error_problem 
     if (status == GONIO_OK && found != NULL) {
         *found = count;
     }
-    free(d.p);
-    free(d.w);
-    free(d.half);
-    free(d.q);
-    free(d.t);
-    free(d.vector);
-    free(d.taken);
+    release(&d);
+    return status;
+}
+
+gonio_status gonio_i_expected_error_remaining(const gonio_i_expected_error_problem *problem,
+                                              const size_t *chosen, size_t count, double *remaining,
+                                              double *covariance)
+{
+    design d;
+    gonio_status status = allocate(problem, false, &d);
+    if (status == GONIO_OK) {
+        status = find_loss(&d);
+    }
+    if (status == GONIO_OK) {
+        find_remaining(&d, chosen, count, remaining);
+    }
+    if (status == GONIO_OK && covariance != NULL) {
+        memcpy(covariance, d.p, d.k * d.k * sizeof *covariance);
+    }
+    release(&d);
     return status;
 }

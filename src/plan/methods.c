@@ -69,6 +69,10 @@ static gonio_status check_values(gonio_context *context, const gonio_plan_option
                             "phi_d of %g degrees is outside [0, 180)",
                             options->phi_d * 180.0 / M_PI);
     }
+    if (options->instrument == NULL && (options->budget != 0.0 || options->nested)) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "a budget or nested blocks need an instrument");
+    }
     return GONIO_OK;
 }
 
@@ -78,7 +82,7 @@ static gonio_status take(gonio_context *context, const gonio_plan_options *asked
                          gonio_plan_options *options)
 {
     const gonio_status status = GONIO_I_TAKE(context, gonio_plan_options, asked, options);
-    if (status == GONIO_OK && options->count == GONIO_USUAL_COUNT) {
+    if (status == GONIO_OK && options->count == GONIO_USUAL_COUNT && options->budget == 0.0) {
         options->count = options->target > 0.0 ? 300 : 80;
         if (options->candidates != NULL && options->candidate_count < options->count) {
             options->count = options->candidate_count;
@@ -259,9 +263,9 @@ static size_t choose_components(const gonio_i_method *method, const gonio_basis_
 static gonio_status check_options(gonio_context *context, const gonio_basis_view *basis,
                                   size_t components, const gonio_plan_options *options)
 {
-    if (options->candidates != NULL || options->target > 0.0) {
+    if (options->candidates != NULL || options->target > 0.0 || options->instrument != NULL) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                            "candidates and target errors need the method %s",
+                            "candidates, target errors and instruments need the method %s",
                             usual_method(true)->name);
     }
     if (components > basis->components) {

@@ -66,6 +66,11 @@ void gonio_plan_free(gonio_plan **plan)
     free((*plan)->entries);
     free((*plan)->history);
     free((*plan)->expected);
+    if ((*plan)->run != NULL) {
+        free((*plan)->run->setting);
+        free((*plan)->run->time);
+    }
+    free((*plan)->run);
     free(*plan);
     *plan = NULL;
 }

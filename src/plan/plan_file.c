@@ -3,6 +3,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 
 #include "../core/core.h"
 #include "../core/csv.h"
@@ -30,6 +31,9 @@ static bool add_plan_notes(gonio_i_comments *comments, const gonio_plan *plan)
                                                           plan->expected[plan->count - 1])
                                    : gonio_i_comments_add(comments, "condition_number: %.6g",
                                                           plan->condition_number)) &&
+           (plan->run == NULL ||
+            (gonio_i_comments_add(comments, "instrument: %s", plan->run->instrument) &&
+             gonio_i_comments_add(comments, "duration_s: %.1f", plan->run->duration))) &&
            gonio_i_comments_add(comments, "grid: half/difference 90 x 90 x 180") &&
            gonio_i_comments_add(comments,
                                 "theta from the normal, phi about it, incident (i) towards "
@@ -60,6 +64,28 @@ static bool add_entry(gonio_i_csv *csv, const gonio_plan_entry *entry)
            gonio_i_csv_set(csv, row, 4, "%s", gonio_i_planned_channel_name(entry->channel));
 }
 
+/* Columns of the axes and of the time, of plans for an instrument. */
+static bool add_run_columns(gonio_i_csv *csv, const gonio_plan_run *run)
+{
+    bool done = true;
+    for (size_t k = 0; k < run->axes && done; k++) {
+        char name[GONIO_NAME_ROOM + 16];
+        snprintf(name, sizeof name, "axis_%s_deg", run->axis[k]);
+        done = !run->shown[k] || gonio_i_csv_add_column(csv, name);
+    }
+    return done && gonio_i_csv_add_column(csv, "time_s");
+}
+
+static bool add_run(gonio_i_csv *csv, const gonio_plan_run *run, size_t row, size_t column)
+{
+    bool done = true;
+    for (size_t k = 0; k < run->axes && done; k++) {
+        const double degrees = run->setting[row].axis[k] * 180.0 / M_PI;
+        done = !run->shown[k] || gonio_i_csv_set(csv, row, column++, "%.4f", degrees + 0.0);
+    }
+    return done && gonio_i_csv_set(csv, row, column, "%.1f", run->time[row]);
+}
+
 static bool fill_plan(gonio_i_csv *csv, const gonio_plan *plan, const char *command)
 {
     bool done =
@@ -67,10 +93,12 @@ static bool fill_plan(gonio_i_csv *csv, const gonio_plan *plan, const char *comm
         gonio_i_csv_add_column(csv, "theta_i_deg") && gonio_i_csv_add_column(csv, "phi_i_deg") &&
         gonio_i_csv_add_column(csv, "theta_o_deg") && gonio_i_csv_add_column(csv, "phi_o_deg") &&
         gonio_i_csv_add_column(csv, "channel") &&
-        (plan->expected == NULL || gonio_i_csv_add_column(csv, "expected_e6_percent"));
+        (plan->expected == NULL || gonio_i_csv_add_column(csv, "expected_e6_percent")) &&
+        (plan->run == NULL || add_run_columns(csv, plan->run));
     for (size_t k = 0; done && k < plan->count; k++) {
         done = add_entry(csv, &plan->entries[k]) &&
-               (plan->expected == NULL || gonio_i_csv_set(csv, k, 5, "%.4g", plan->expected[k]));
+               (plan->expected == NULL || gonio_i_csv_set(csv, k, 5, "%.4g", plan->expected[k])) &&
+               (plan->run == NULL || add_run(csv, plan->run, k, 6));
     }
     return done;
 }

@@ -33,12 +33,36 @@ expect_output '2 directions' check tables/rig.json
 printf 'theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg\n10,0,x,180\n' >tables/rows.csv
 expect_fail 1 'tables/rows.csv:2: no number in column theta_o_deg' check tables/rig.json
 
+# ---- plans ----
+
+expect_ok learn --grid bivariate --mixtures 0 atlas:oak-sawn atlas:gold-polished atlas:plaster-cast -o b.gonio
+plan() { expect_ok plan b.gonio --method expected-error --instrument "$@"; }
+plan rig.json -n 5 -o plan.csv
+expect_true 'the columns' grep -q 'axis_incidence_deg,axis_detector_deg,time_s' plan.csv
+expect_true 'the light stands' test "$(grep -c '^20.0000.*,20.0000,' plan.csv)" = 5
+expect_ok measure plan.csv atlas:oak-sawn -o read.csv
+expect_output ' in the order of choice' plan b.gonio --method expected-error --instrument four-axis -n 6 -o four.csv
+expect_also 'blind: ' 'without the limits' 'reached: '
+expect_output 'four-axis goniometer in' plan b.gonio --method expected-error --instrument four-axis --budget 3min -n 20 -o b.csv
+expect_ok next b.gonio read.csv --instrument rig.json -n 2 -o next.csv
+expect_true 'next has axes' grep -q 'axis_detector_deg' next.csv
+expect_fail 2 '--budget needs --instrument' plan b.gonio --budget 45min -o no.csv
+expect_fail 2 "'soon' is not a time like 45min" plan b.gonio --instrument four-axis --budget soon -o no.csv
+expect_fail 2 'not both' plan b.gonio --instrument four-axis --budget 1h --target-error 3 -o no.csv
+expect_fail 2 'not both' plan b.gonio --instrument four-axis --candidates plan.csv -o no.csv
+expect_fail 2 'no reading fits into' plan b.gonio --method expected-error --instrument four-axis --budget 5s -o no.csv
+expect_fail 2 'need the method expected-error' plan b.gonio --method random -n 5 --instrument four-axis -o no.csv
+
 # ---- JSON ----
 
 if command -v jq >"$root/work/jq"; then
+    holds() { jq -e "$1" "$root/work/stdout" >"$root/work/jq"; }
     expect_ok check four-axis --json
-    expect_true 'the share that is reached' jq -e '.reach.share > 0.5 and .reach.share < 1' "$root/work/stdout"
-    expect_true 'the axes' jq -e '.axes.beta.to_deg == 75 and .sensor.saturation_per_sr == null' "$root/work/stdout"
+    expect_true 'the share that is reached' holds '.reach.share > 0.5 and .reach.share < 1'
+    expect_ok plan b.gonio --method expected-error --instrument four-axis -n 5 -o four.csv --json
+    expect_true 'the run' holds '.run.duration_s <= .run.unordered_s and .run.reached_share > 0.5'
+    expect_ok check four-axis --json
+    expect_true 'the axes' holds '.axes.beta.to_deg == 75 and .sensor.saturation_per_sr == null'
 else
     skip 'JSON: no jq'
 fi

@@ -42,7 +42,7 @@ typedef struct follower {
     judge judge;
     judge_verdict verdict;
     gonio_basis *basis;
-    gonio_pair *candidates;
+    planning_inputs inputs;
     journal *journal;
     char *journal_path;
     line_source source;
@@ -718,7 +718,7 @@ static gonio_status begin_judge(follower *f)
     f->verdict.expected = NAN;
     gonio_status status = gonio_context_create(&j->silent, &silent);
     if (status == GONIO_OK) {
-        status = planning_options_apply(f->t, &planning, &j->plan, &f->candidates);
+        status = planning_options_apply(f->t, &planning, &j->plan, &f->inputs);
     }
     if (status == GONIO_OK && !f->o->no_basis) {
         status = tool_basis(f->t, f->o->basis, NULL, &f->basis);
@@ -761,7 +761,7 @@ static void end(follower *f)
     gonio_basis_free(&f->basis);
     gonio_context_free(&f->judge.silent);
     free(f->verdict.doubt);
-    free(f->candidates);
+    planning_inputs_free(&f->inputs);
     free(f->journal_path);
 }
 
