@@ -42,7 +42,7 @@ _gonio_values()
         --format)   echo "merl rgl table klems zemax csv" ;;
         *)
             case $(_gonio_value_name "$1" "$2") in
-                ''|FILE|DIR|DIR'|'BASIS|OUT|BASIS|PLAN|READINGS|PAGE) return 1 ;;
+                ''|FILE|DIR|DIR'|'BASIS|NUMBER'|'FILE|OUT|BASIS|PLAN|READINGS|PAGE) return 1 ;;
                 *) echo "" ;; # numbers, names and texts
             esac ;;
     esac

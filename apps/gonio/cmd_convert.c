@@ -4,9 +4,15 @@
 #include <strings.h>
 
 #include "command_line.h"
+#include "correction_options.h"
 #include "inputs.h"
 #include "json_output.h"
 #include "write_options.h"
+
+typedef struct options {
+    write_options write;
+    correction_options corrections;
+} options;
 
 /* Prints the result with --json, otherwise nothing. */
 static int report(const tool *t, const gonio_material *material, const char *output)
@@ -18,13 +24,13 @@ static int report(const tool *t, const gonio_material *material, const char *out
                      : 0;
 }
 
-static int convert_material(tool *t, const write_options *options, const gonio_write_options *how,
+static int convert_material(tool *t, const write_options *write, const gonio_write_options *how,
                             const char *input, const char *output)
 {
     gonio_material *material = NULL;
     gonio_status status = tool_open_material(t, input, &material);
     if (status == GONIO_OK) {
-        status = write_options_apply(t, options, material);
+        status = write_options_apply(t, write, material);
     }
     if (status == GONIO_OK) {
         status = gonio_material_write(t->context, material, output, how);
@@ -55,7 +61,8 @@ static bool names_readings(const char *output)
     return found;
 }
 
-static int convert_readings(tool *t, const char *input, const char *output)
+static int convert_readings(tool *t, const correction_options *corrections, const char *input,
+                            const char *output)
 {
     const gonio_readings_options any = {
         .size = sizeof any, .average_repeats = true, .negative_to_zero = true};
@@ -67,7 +74,10 @@ static int convert_readings(tool *t, const char *input, const char *output)
                     input);
         return EXIT_DATA;
     }
-    gonio_status status = tool_read_readings(t, input, &any, &readings);
+    gonio_reconstruct_options usual;
+    gonio_reconstruct_options_default(&usual);
+    gonio_status status =
+        tool_read_corrected(t, input, &any, corrections, usual.noise, usual.floor, &readings);
     if (status == GONIO_OK) {
         status = gonio_readings_write(t->context, readings, t->command_line, output);
     }
@@ -79,7 +89,7 @@ static int convert_readings(tool *t, const char *input, const char *output)
 
 static int run(tool *t, void *given)
 {
-    const write_options *o = given;
+    const options *o = given;
     gonio_write_options how;
     size_t count = 0;
     const char **arguments = tool_arguments(t, &count);
@@ -87,7 +97,8 @@ static int run(tool *t, void *given)
         tool_refuse(t, "IN and OUT are needed");
         return EXIT_USAGE;
     }
-    if (!tool_check_output(t, arguments[1], arguments, 1) || !write_options_check(t, o, &how)) {
+    if (!tool_check_output(t, arguments[1], arguments, 1) ||
+        !write_options_check(t, &o->write, &how)) {
         return EXIT_USAGE;
     }
     gonio_kind kind = GONIO_KIND_UNKNOWN;
@@ -97,16 +108,18 @@ static int run(tool *t, void *given)
         return tool_exit_code(status);
     }
     if (kind == GONIO_KIND_READINGS || tool_has_convention(arguments[0])) {
-        return convert_readings(t, arguments[0], arguments[1]);
+        return convert_readings(t, &o->corrections, arguments[0], arguments[1]);
     }
-    return kind == GONIO_KIND_BASIS ? convert_basis(t, arguments[0], format, arguments[1])
-                                    : convert_material(t, o, &how, arguments[0], arguments[1]);
+    return kind == GONIO_KIND_BASIS
+               ? convert_basis(t, arguments[0], format, arguments[1])
+               : convert_material(t, &o->write, &how, arguments[0], arguments[1]);
 }
 
 int cmd_convert(int argc, const char **argv)
 {
-    write_options o = {0};
-    const struct poptOption table[] = {WRITE_OPTIONS(&o), TOOL_READINGS_OPTIONS, TOOL_OPTIONS};
+    options o = {0};
+    const struct poptOption table[] = {WRITE_OPTIONS(&o.write), CORRECTION_OPTIONS(&o.corrections),
+                                       TOOL_READINGS_OPTIONS, TOOL_OPTIONS};
     const tool_command_line line = {
         .table = table,
         .usage = "[OPTION...] IN OUT",

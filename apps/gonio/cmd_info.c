@@ -4,6 +4,7 @@
 #include "info_readings.h"
 #include "inputs.h"
 #include "json_output.h"
+#include "reflectances.h"
 #include "seam.h"
 
 #include <errno.h>
@@ -14,6 +15,10 @@
 #include <string.h>
 
 enum { VALID_BINS = 1096216 };
+
+/* Of --albedo-at. */
+static const char *albedo_at;
+static tool_reflectances reflectances;
 
 /* ---- materials ---- */
 
@@ -303,10 +308,15 @@ static int info_material(const tool *t, const char *path, json_t *results)
     if (facts.evaluated) {
         status = find_reciprocity(t->context, material, &facts);
     }
+    json_t *made = NULL;
     if (status == GONIO_OK && results != NULL) {
-        json_array_append_new(results, material_json(path, material, &facts));
+        made = material_json(path, material, &facts);
+        json_array_append_new(results, made);
     } else if (status == GONIO_OK) {
         print_material(path, material, &facts);
+    }
+    if (status == GONIO_OK) {
+        status = tool_reflectances_of_material(t, &reflectances, material, made);
     }
     gonio_table_free(&table);
     gonio_material_free(&material);
@@ -478,6 +488,9 @@ static int run(tool *t, void *given)
         tool_refuse(t, "no file given");
         return EXIT_USAGE;
     }
+    if (!tool_check_albedo_at(t, albedo_at, &reflectances)) {
+        return EXIT_USAGE;
+    }
     json_t *results = tool_json ? json_array() : NULL;
     int code = 0;
     for (size_t k = 0; k < count; k++) {
@@ -493,7 +506,9 @@ static int run(tool *t, void *given)
 
 int cmd_info(int argc, const char **argv)
 {
-    const struct poptOption table[] = {TOOL_READINGS_OPTIONS, TOOL_OPTIONS};
+    albedo_at = NULL;
+    const struct poptOption table[] = {TOOL_ALBEDO_AT(&albedo_at), TOOL_READINGS_OPTIONS,
+                                       TOOL_OPTIONS};
     const tool_command_line line = {
         .table = table,
         .usage = "[OPTION...] FILE...",

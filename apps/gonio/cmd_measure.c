@@ -8,10 +8,12 @@
 #include <math.h>
 #include <stdio.h>
 
+#define NOT_GIVEN (-HUGE_VAL)
+
 typedef struct options {
     const char *output;
-    double noise;    /* per cent; NaN: not given */
-    double floor;    /* NaN: not given */
+    double noise;    /* per cent; NOT_GIVEN: none was given */
+    double floor;    /* the same */
     double outliers; /* per cent */
     long seed;
     follow_options follow;
@@ -92,10 +94,10 @@ static bool check(const tool *t, const options *o, const char **arguments, size_
 static void complete(options *o)
 {
     o->follow.output = o->output;
-    o->follow.posterior.noise = isnan(o->noise) ? o->follow.posterior.noise : o->noise;
-    o->follow.posterior.floor = isnan(o->floor) ? o->follow.posterior.floor : o->floor;
-    o->noise = isnan(o->noise) ? 0.0 : o->noise;
-    o->floor = isnan(o->floor) ? 0.0 : o->floor;
+    o->follow.posterior.noise = o->noise == NOT_GIVEN ? o->follow.posterior.noise : o->noise;
+    o->follow.posterior.floor = o->floor == NOT_GIVEN ? o->follow.posterior.floor : o->floor;
+    o->noise = o->noise == NOT_GIVEN ? 0.0 : o->noise;
+    o->floor = o->floor == NOT_GIVEN ? 0.0 : o->floor;
 }
 
 static int run(tool *t, void *given)
@@ -114,7 +116,8 @@ static int run(tool *t, void *given)
 
 int cmd_measure(int argc, const char **argv)
 {
-    options o = {.noise = NAN, .floor = NAN, .follow.posterior = posterior_options_default()};
+    options o = {
+        .noise = NOT_GIVEN, .floor = NOT_GIVEN, .follow.posterior = posterior_options_default()};
     const struct poptOption table[] = {
         {"output", 'o', POPT_ARG_STRING, &o.output, 0,
          "The readings to write: CSV; .json or .brdf is BRDF JSON", "READINGS"},

@@ -1,6 +1,7 @@
 /* gonio next: where to measure next, given what was read. */
 #include "builtin_basis.h"
 #include "command_line.h"
+#include "correction_options.h"
 #include "inputs.h"
 #include "interpretation.h"
 #include "json_output.h"
@@ -15,6 +16,7 @@ typedef struct options {
     const char *output;
     planning_options planning;
     posterior_options posterior;
+    correction_options corrections;
 } options;
 
 /* The result of gonio_plan_next. plan: NULL if the target is met. */
@@ -77,7 +79,8 @@ static int next(tool *t, const options *o, const char *basis_path, const char *p
     gonio_readings *readings = NULL;
     gonio_basis *basis = NULL;
     answer a = {0};
-    gonio_status status = tool_read_readings(t, path, &any, &readings);
+    gonio_status status = tool_read_corrected(
+        t, path, &any, &o->corrections, o->posterior.noise / 100.0, o->posterior.floor, &readings);
     if (status == GONIO_OK) {
         status = tool_basis(t, basis_path, NULL, &basis);
     }
@@ -130,6 +133,7 @@ int cmd_next(int argc, const char **argv)
         PLANNING_OPTIONS(&o.planning, "Number of readings to propose (default: 5)",
                          "If the expected error (E6) is at most this, say so and propose nothing"),
         POSTERIOR_OPTIONS(&o.posterior),
+        CORRECTION_OPTIONS(&o.corrections),
         TOOL_READINGS_OPTIONS,
         TOOL_OPTIONS};
     const tool_command_line line = {

@@ -2,10 +2,12 @@
 #include "albedos.h"
 #include "builtin_basis.h"
 #include "command_line.h"
+#include "correction_options.h"
 #include "inputs.h"
 #include "interpretation.h"
 #include "json_output.h"
 #include "posterior_options.h"
+#include "reflectances.h"
 #include "write_options.h"
 
 #include <math.h>
@@ -19,6 +21,9 @@ typedef struct options {
     const char *method;
     double eta;
     posterior_options posterior;
+    correction_options corrections;
+    const char *albedo_at;
+    tool_reflectances reflectances; /* of albedo_at */
     const char *predict_at;
     const char *deviation;
     int components;
@@ -119,6 +124,7 @@ static json_t *as_json(const gonio_reconstruction *r, const char *output, const 
                         r->residual);
     if (r->field != NULL) {
         tool_add_interpretation(made, &r->interpretation);
+        json_object_set_new(made, "database_share", tool_json_number(r->database_share));
     }
     if (e->known) {
         json_object_set_new(made, "largest_albedo", tool_json_number(e->albedo));
@@ -154,20 +160,36 @@ static void print(const gonio_reconstruction *r, const char *output, const energ
     fputc('\n', tool_results());
 }
 
+/* From this share on it is said how much of a result rests on the database. */
+static const double WORTH_SAYING = 0.01;
+
+static void print_database_share(const gonio_reconstruction *r)
+{
+    if (r->field != NULL && r->database_share >= WORTH_SAYING) {
+        fprintf(
+            tool_results(),
+            "  database     %.0f %% of the BRDF rests on the database alone: no reading is near\n",
+            100.0 * r->database_share);
+    }
+}
+
 /* Reports a result and its warnings, as a line or as an object appended to `results`. */
-static void report(const gonio_basis *basis, const gonio_reconstruction *r, const char *output,
-                   json_t *results)
+static gonio_status report(const tool *t, const options *o, const gonio_basis *basis,
+                           const gonio_reconstruction *r, const char *output, json_t *results)
 {
     if (tool_quiet && results == NULL) {
-        return;
+        return GONIO_OK;
     }
     const energy e = find_energy(basis, r);
+    json_t *made = results != NULL ? as_json(r, output, &e) : NULL;
     warn(r, output, &e);
-    if (results != NULL) {
-        json_array_append_new(results, as_json(r, output, &e));
+    if (made != NULL) {
+        json_array_append_new(results, made);
     } else {
         print(r, output, &e);
+        print_database_share(r);
     }
+    return tool_reflectances_of_reconstruction(t, &o->reflectances, basis, r, made);
 }
 
 static gonio_reconstruct_options settings(const options *o)
@@ -178,7 +200,7 @@ static gonio_reconstruct_options settings(const options *o)
                                      .other_basis = o->other_basis,
                                      .method = o->method,
                                      .eta = o->eta,
-                                     .deviation = o->deviation != NULL};
+                                     .deviation = o->deviation != NULL || o->albedo_at != NULL};
     posterior_options_apply(&o->posterior, &how);
     return how;
 }
@@ -267,7 +289,7 @@ static gonio_status reconstruct_one(tool *t, const options *o, const gonio_basis
         status = write_both(t, o, basis, made, material, output);
     }
     if (status == GONIO_OK) {
-        report(basis, made, output, results);
+        status = report(t, o, basis, made, output, results);
     }
     gonio_material_free(&material);
     gonio_reconstruction_free(&made);
@@ -294,12 +316,14 @@ static gonio_status reconstruct(tool *t, const options *o, const gonio_basis *ba
     if (made == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    const gonio_status status =
+    gonio_status reported = GONIO_OK;
+    gonio_status status =
         gonio_reconstruct_tables(t->context, basis, (const gonio_readings *const *)readings,
                                  (const char *const *)outputs, count, &how, made);
     for (size_t k = 0; k < count; k++) {
         if (made[k] != NULL) {
-            report(basis, made[k], outputs[k], results);
+            reported = report(t, o, basis, made[k], outputs[k], results);
+            status = status == GONIO_OK ? reported : status;
         }
         gonio_reconstruction_free(&made[k]);
     }
@@ -333,7 +357,8 @@ static int reconstruct_all(tool *t, const options *o, const char *basis_path,
     gonio_basis *basis = NULL;
     gonio_status status = readings == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
     for (size_t k = 0; k < count && status == GONIO_OK; k++) {
-        status = tool_read_readings(t, paths[k], &how, &readings[k]);
+        status = tool_read_corrected(t, paths[k], &how, &o->corrections, o->posterior.noise / 100.0,
+                                     o->posterior.floor, &readings[k]);
     }
     if (status == GONIO_OK) {
         const char *planned = gonio_readings_describe(readings[0])->method;
@@ -444,7 +469,9 @@ static int run(tool *t, void *given)
     options *o = given;
     size_t count = 0;
     const char **arguments = tool_arguments(t, &count);
-    if (!check(t, o, arguments, count) || !write_options_check(t, &o->write, &o->how)) {
+    if (!check(t, o, arguments, count) ||
+        !tool_check_albedo_at(t, o->albedo_at, &o->reflectances) ||
+        !write_options_check(t, &o->write, &o->how)) {
         return EXIT_USAGE;
     }
     const char *basis = count > 1 ? arguments[0] : NULL;
@@ -491,6 +518,8 @@ int cmd_reconstruct(int argc, const char **argv)
         {"all-channels", '\0', POPT_ARG_NONE, &o.all_channels, 0,
          "Use every channel that was read, not only the planned one", NULL},
         POSTERIOR_OPTIONS(&o.posterior),
+        CORRECTION_OPTIONS(&o.corrections),
+        TOOL_ALBEDO_AT(&o.albedo_at),
         {"deviation", '\0', POPT_ARG_STRING, &o.deviation, 0,
          "Also write the standard deviation of ln(1 + rho/s), as a table (posterior)", "FILE"},
         {"predict-at", '\0', POPT_ARG_STRING, &o.predict_at, 0,

@@ -33,6 +33,34 @@ GONIO_API gonio_status gonio_compare_readings(gonio_context *context,
                                               const gonio_readings *other, const bool *left_out,
                                               gonio_error *error, size_t *compared);
 
+/* ---- energy ---- */
+
+/* Directions of the detector for light from theta_i at phi_i = 0, and weights: the sum of weight
+ * times BRDF is the directional-hemispherical reflectance. Directions are denser about the mirror
+ * direction; that of a Lambertian material is exact. Both arrays are the caller's, to be freed by
+ * free(). Errors: _ARGUMENT for theta_i outside [0, pi/2); _MEMORY. */
+GONIO_API gonio_status gonio_reflectance_directions(gonio_context *context, double theta_i,
+                                                    gonio_pair **pair, double **weight,
+                                                    size_t *count);
+
+/* The directional-hemispherical reflectance (albedo) of a material: reflectance[channels] as
+ * gonio_material_describe says. Directions without data count as black; NaN if there are none with.
+ * *with_data: the share of the hemisphere with data, weighted by the cosine, in the first channel.
+ * Errors: as above, and those of the material. */
+GONIO_API gonio_status gonio_material_reflectance(gonio_context *context,
+                                                  const gonio_material *material, double theta_i,
+                                                  double *reflectance, double *with_data);
+
+/* The same of a reconstruction by posterior, with its standard deviation: reflectance[channels] and
+ * deviation[channels], channels as gonio_reconstruction_predict. The errors of all directions are
+ * taken as fully correlated, so that the deviation is rather too large. deviation may be NULL;
+ * otherwise the reconstruction has to have deviations. Errors: as above. */
+GONIO_API gonio_status gonio_reconstruction_reflectance(gonio_context *context,
+                                                        const gonio_basis *basis,
+                                                        const gonio_reconstruction *reconstruction,
+                                                        double theta_i, double *reflectance,
+                                                        double *deviation);
+
 /* ---- what readings contain ---- */
 
 /* Values of one channel, 1/sr; NaN if there are none. */

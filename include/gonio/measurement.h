@@ -52,9 +52,10 @@ typedef struct gonio_convention {
 } gonio_convention;
 
 /* Reads a convention from text: "angles=radians,values=factor,mirror=0". Keys and words:
- * angles=degrees, radians; values=brdf, factor, percent, cosine, factor-cosine; mirror=180, 0;
- * wavelengths=nm, um, m; zeros=missing, dark; sample=NUMBER; format=WORD. Fields that the text does
- * not name stay. Errors: _ARGUMENT for an unknown key or word; the message lists the known ones. */
+ * angles=degrees, radians; values=brdf, factor, percent, cosine, factor-cosine, relative;
+ * mirror=180, 0; wavelengths=nm, um, m; zeros=missing, dark; sample=NUMBER; format=WORD. Fields
+ * that the text does not name stay. Errors: _ARGUMENT for an unknown key or word; the message lists
+ * the known ones. */
 GONIO_API gonio_status gonio_convention_parse(gonio_context *context, const char *text,
                                               gonio_convention *convention);
 
@@ -234,6 +235,31 @@ GONIO_API gonio_status gonio_readings_look_up(gonio_context *context, gonio_read
  * the mean of these values, with a note. Errors: _MEMORY. */
 GONIO_API gonio_status gonio_readings_average_repeats(gonio_context *context,
                                                       gonio_readings *readings);
+
+/* Subtracts a blank run: readings of a dark sample, or with the lamp covered, in the same channels.
+ * A reading gets the blank of its own directions, the mean of repeats, otherwise the blank's
+ * median; levels are compared in the unit of the files. Values below the blank become 0. The
+ * deviations of the readings then hold that of the blank: its own, that of its repeats, or its
+ * scatter. noise (relative) and floor (1/sr): of a reading without a deviation of its own. Notes
+ * say what was subtracted, and if the blank is brighter than the sample. Errors: _MISMATCH for
+ * other channels; _MEMORY. */
+GONIO_API gonio_status gonio_readings_subtract_blank(gonio_context *context,
+                                                     gonio_readings *readings,
+                                                     const gonio_readings *blank, double noise,
+                                                     double floor);
+
+/* Reads the table of a reference: CSV with the columns theta_r_deg and brf, its reflectance factor
+ * (pi times its BRDF) at that angle of the detector. *row is sorted by angle, and the caller's, to
+ * be freed by free(). Errors: _IO, _FORMAT, _DATA (no rows, impossible numbers), _MEMORY. */
+GONIO_API gonio_status gonio_reference_read(gonio_context *context, const char *path,
+                                            gonio_reference_row **row, size_t *rows);
+
+/* Multiplies readings that are relative to a reference (GONIO_VALUE_RELATIVE), and their
+ * deviations, by its reflectance factor at theta_o: linear between rows, constant outside. Errors:
+ * _ARGUMENT without rows; _MEMORY. */
+GONIO_API gonio_status gonio_readings_times_reference(gonio_context *context,
+                                                      gonio_readings *readings,
+                                                      const gonio_reference_row *row, size_t rows);
 
 /* Drops channels in which nothing was read, with a note that names them. If some of R, G, B are
  * dropped, the others become channels without wavelengths; a single one is grey in a table.

@@ -76,6 +76,9 @@ typedef struct gonio_reconstruction {
                    * reads max(0, rho - dark/cos theta_i). The field is corrected for it. NULL if
                    * no reading is zero, if levels explain little, with an alternative, with
                    * no_checks, with a joint basis, and from rows */
+    double database_share; /* of the BRDF that rests on the database alone: the share of the grid's
+                            * bins with no reading nearer, in any channel, than the length over
+                            * which materials vary smoothly (docs/method.md); NaN from rows */
     bool *contradicted; /* [count of the readings]: whether the others contradict a value of it, so
                          * that the value is outlying; NULL from rows. Of readings at the same
                          * directions only one is marked */

@@ -20,7 +20,8 @@ UNBOUND = {
         gonio_slab_to_mapped gonio_slab_reduce gonio_grid_cells gonio_cell_bin gonio_cell_of_bin
         gonio_delta_e_itp""",
     "objects never change": """gonio_readings_set_value gonio_readings_set_values gonio_readings_set_deviations
-        gonio_readings_average_repeats gonio_readings_drop_empty_channels gonio_context_resume""",
+        gonio_readings_average_repeats gonio_readings_subtract_blank gonio_readings_times_reference
+        gonio_readings_drop_empty_channels gonio_context_resume""",
     "files are written one by one": "gonio_outputs_hold gonio_outputs_release",
     "another function does the same": """gonio_atlas_find gonio_atlas_class gonio_atlas_value gonio_atlas_slab
         gonio_atlas_anisotropic_find gonio_atlas_anisotropic_class gonio_atlas_anisotropic_value
@@ -40,7 +41,8 @@ UNBOUND = {
         gonio_fingerprint_value gonio_fingerprint_free gonio_kind_format gonio_material_writer_extension
         gonio_material_writer_summary gonio_plan_method_summary gonio_plan_method_reconstruction
         gonio_plan_method_basis gonio_plan_start_name gonio_plan_start_summary gonio_reconstruct_method_summary
-        gonio_reconstruct_method_suits_mixtures gonio_readings_format_word gonio_environment_summary
+        gonio_reconstruct_method_suits_mixtures gonio_readings_format_word gonio_reference_read gonio_reflectance_directions
+        gonio_material_reflectance gonio_reconstruction_reflectance gonio_environment_summary
         gonio_instrument_read gonio_instrument_parse gonio_instrument_free gonio_instrument_describe
         gonio_instrument_word gonio_instrument_summary gonio_kinematics_name gonio_kinematics_summary
         gonio_value_kind_name gonio_instrument_pair gonio_instrument_obstacle gonio_instrument_settings

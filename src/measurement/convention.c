@@ -20,7 +20,8 @@ const gonio_i_convention_key gonio_i_convention_keys[GONIO_I_CONVENTION_KEYS] = 
       {"percent", GONIO_VALUE_PERCENT, "reflectance factors in per cent (divided by 100 pi)"},
       {"cosine", GONIO_VALUE_COSINE, "values with cos theta_o (divided by it)"},
       {"factor-cosine", GONIO_VALUE_FACTOR_COSINE,
-       "reflectance factors with cos theta_o (divided by pi cos theta_o)"}}},
+       "reflectance factors with cos theta_o (divided by pi cos theta_o)"},
+      {"relative", GONIO_VALUE_RELATIVE, "values relative to a reference (divided by pi)"}}},
     {"wavelengths",
      offsetof(gonio_convention, wavelengths),
      {{"nm", GONIO_NANOMETRES, NULL},
@@ -75,6 +76,7 @@ double gonio_i_value_divisor(int kind, double theta_o)
 {
     switch (kind) {
     case GONIO_VALUE_FACTOR:
+    case GONIO_VALUE_RELATIVE:
         return M_PI;
     case GONIO_VALUE_PERCENT:
         return 100.0 * M_PI;

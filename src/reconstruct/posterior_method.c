@@ -24,6 +24,7 @@ static gonio_status allocate(gonio_context *context, const gonio_basis_view *vie
         return GONIO_ERROR_MEMORY;
     }
     r->columns = columns;
+    r->database_share = NAN;
     r->components = view->components;
     r->coefficients = gonio_i_allocate(context, columns * r->components, sizeof *r->coefficients);
     r->field = gonio_i_allocate(context, columns * view->rows, sizeof *r->field);
@@ -63,6 +64,61 @@ static gonio_status find(gonio_context *context, const gonio_i_prior *prior,
     return status;
 }
 
+/* ---- what no reading tells of ---- */
+
+/* A row is told of by a reading whose error there and here is correlated by at least this: one
+ * length of the smooth part of the remainder. */
+static const double TOLD = 0.6065;
+
+static gonio_status list_places(gonio_context *context, const gonio_i_columns *columns,
+                                gonio_i_place **place, size_t *count)
+{
+    size_t most = 0;
+    for (size_t k = 0; k < columns->count; k++) {
+        most = columns->column[k].count > columns->column[most].count ? k : most;
+    }
+    const gonio_i_column *column = &columns->column[most];
+    *count = column->count;
+    *place = gonio_i_allocate(context, column->count + 1, sizeof **place);
+    for (size_t i = 0; *place != NULL && i < column->count; i++) {
+        (*place)[i] = gonio_i_place_of(column->observation[i].at);
+    }
+    return *place != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
+}
+
+static bool is_told(const gonio_basis_view *view, size_t row, const gonio_i_place *place,
+                    size_t count)
+{
+    int channel = 0;
+    const gonio_i_place here = gonio_i_place_of(gonio_i_row_coordinates(view, row, &channel));
+    bool told = false;
+    for (size_t i = 0; i < count && !told; i++) {
+        told = gonio_i_smooth(&here, &place[i]) >= TOLD;
+    }
+    return told;
+}
+
+/* The share of the bins that no reading is near, from the column with most readings. */
+static gonio_status find_database_share(gonio_context *context, const gonio_basis_view *view,
+                                        const gonio_i_columns *columns, double *share)
+{
+    gonio_i_place *place = NULL;
+    size_t count = 0;
+    long untold = 0;
+    long bins = 0;
+    const gonio_status status = list_places(context, columns, &place, &count);
+#pragma omp parallel for schedule(static) reduction(+ : untold, bins)                              \
+    num_threads(gonio_context_threads(context))
+    for (size_t row = 0; row < (status == GONIO_OK ? view->rows : 0); row++) {
+        const int here = gonio_i_row_bins(view, row);
+        bins += here;
+        untold += is_told(view, row, place, count) ? 0 : here;
+    }
+    *share = bins > 0 ? (double)untold / (double)bins : NAN;
+    free(place);
+    return status;
+}
+
 static gonio_status keep_wavelengths(gonio_context *context, const gonio_readings *readings,
                                      gonio_reconstruction *r)
 {
@@ -94,6 +150,9 @@ static gonio_status estimate(gonio_context *context, const gonio_i_prior *prior,
         status = gonio_i_interpret(context, prior, readings, &noise, columns, &r->interpretation,
                                    &r->dark);
         r->suspicion = r->interpretation.alternative[0].mistake;
+    }
+    if (status == GONIO_OK) {
+        status = find_database_share(context, prior->view, columns, &r->database_share);
     }
     return status == GONIO_OK ? find(context, prior, columns, options, r) : status;
 }
