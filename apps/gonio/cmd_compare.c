@@ -52,7 +52,8 @@ static void print_headings(bool rendered)
     puts(rendered ? "   PSNR dB    dE_ITP" : "");
 }
 
-static void print_comparison(const char *path, const gonio_comparison *c,
+/* what: "bins", or "directions" of materials that depend on the azimuth. */
+static void print_comparison(const char *path, const char *what, const gonio_comparison *c,
                              const gonio_image_error *rendered, const options *o)
 {
     static const char *const channels[GONIO_CHANNELS] = {"  R", "  G", "  B"};
@@ -61,10 +62,10 @@ static void print_comparison(const char *path, const gonio_comparison *c,
         print_row(channels[k], &c->channel[k], NULL);
     }
     if (o->verbose) {
-        printf("  %lld bins compared, %lld of the reference have no data here\n",
-               (long long)c->bins, (long long)c->missing);
+        printf("  %lld %s compared, %lld of the reference have no data here\n", (long long)c->bins,
+               what, (long long)c->missing);
     } else if (c->missing > 0) {
-        printf("  (%lld bins of the reference have no data here)\n", (long long)c->missing);
+        printf("  (%lld %s of the reference have no data here)\n", (long long)c->missing, what);
     }
 }
 
@@ -85,6 +86,8 @@ static gonio_status compare_materials(tool *t, comparing *c, const tool_input *o
     gonio_comparison comparison;
     gonio_image_error error;
     const gonio_image_error *rendered = c->seen != NULL ? &error : NULL;
+    const bool turned = gonio_material_describe(c->reference.material)->anisotropic ||
+                        gonio_material_describe(other->material)->anisotropic;
     gonio_status status =
         gonio_compare(t->context, c->reference.material, other->material, &comparison);
     if (status == GONIO_OK && c->seen != NULL) {
@@ -93,7 +96,7 @@ static gonio_status compare_materials(tool *t, comparing *c, const tool_input *o
     if (status == GONIO_OK && tool_json) {
         json_array_append_new(c->results, comparison_json(other->path, &comparison, rendered));
     } else if (status == GONIO_OK) {
-        print_comparison(other->path, &comparison, rendered, c->o);
+        print_comparison(other->path, turned ? "directions" : "bins", &comparison, rendered, c->o);
     }
     return status;
 }

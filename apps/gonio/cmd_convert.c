@@ -1,5 +1,6 @@
 /* gonio convert: materials to any format that gonio writes, readings to CSV or BRDF JSON, bases of
  * an older gonio to the present format. */
+#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
@@ -24,6 +25,41 @@ static int report(const tool *t, const gonio_material *material, const char *out
                      : 0;
 }
 
+/* Says what the mean over azimuths, as it was written, lacks of an anisotropic material. */
+static gonio_status state_loss(tool *t, const gonio_material *material, const char *output)
+{
+    gonio_material *written = NULL;
+    gonio_comparison comparison;
+    gonio_status status = gonio_material_open(t->context, output, &written);
+    if (status == GONIO_OK && !gonio_material_describe(written)->anisotropic) {
+        status = gonio_compare(t->context, material, written, &comparison);
+        if (status == GONIO_OK) {
+            char text[256];
+            snprintf(text, sizeof text,
+                     "the mean over azimuths differs from the anisotropic material by %.1f %% (E6)",
+                     comparison.all.value[GONIO_E6]);
+            tool_say(&t->messages, GONIO_MESSAGE_NOTE, text);
+        }
+    }
+    gonio_material_free(&written);
+    return status;
+}
+
+/* Whether the mean over azimuths was asked for, of a material that has azimuths, as a material that
+ * can be read again. */
+static bool is_averaged(const gonio_material *material, const gonio_write_options *how,
+                        const char *output)
+{
+    static const char *const materials[] = {"merl", "rgl", "table"};
+    const char *name = gonio_material_writer_name(gonio_material_writer_find(output, how->format));
+    bool read = false;
+    for (size_t k = 0; k < sizeof materials / sizeof *materials; k++) {
+        read = read || strcmp(name, materials[k]) == 0;
+    }
+    return how->average_azimuths && read && gonio_material_describe(material)->anisotropic &&
+           strcmp(output, "-") != 0;
+}
+
 static int convert_material(tool *t, const write_options *write, const gonio_write_options *how,
                             const char *input, const char *output)
 {
@@ -34,6 +70,9 @@ static int convert_material(tool *t, const write_options *write, const gonio_wri
     }
     if (status == GONIO_OK) {
         status = gonio_material_write(t->context, material, output, how);
+    }
+    if (status == GONIO_OK && is_averaged(material, how, output)) {
+        status = state_loss(t, material, output);
     }
     const int code = status == GONIO_OK ? report(t, material, output) : tool_exit_code(status);
     gonio_material_free(&material);

@@ -1,5 +1,5 @@
 /* gonio info: what a file is and what it contains. */
-#include "albedos.h"
+#include "azimuths.h"
 #include "command_line.h"
 #include "info_readings.h"
 #include "inputs.h"
@@ -33,6 +33,7 @@ typedef struct material_facts {
     uint64_t fingerprint;
     bool evaluated;     /* at any directions; the table is sampled from it */
     double reciprocity; /* E6 of rho(o, i) against rho(i, o), per cent; of a table it is exact */
+    double turn;        /* E6 of an anisotropic material turned by 90 degrees, per cent */
 } material_facts;
 
 static gonio_status fingerprint_of(const gonio_table *table, uint64_t *value)
@@ -142,6 +143,21 @@ static gonio_status find_reciprocity(gonio_context *context, const gonio_materia
     return status;
 }
 
+/* The albedos of an anisotropic material, in place of those of its mean on the grid. */
+static gonio_status find_azimuths(gonio_context *context, const gonio_material *material,
+                                  material_facts *facts)
+{
+    tool_azimuths found;
+    const gonio_status status = tool_find_azimuths(context, material, &found);
+    if (status == GONIO_OK) {
+        memcpy(facts->albedo, found.albedo, sizeof facts->albedo);
+        memcpy(facts->share, found.share, sizeof facts->share);
+        facts->largest_albedo = found.largest;
+        facts->turn = found.turn;
+    }
+    return status;
+}
+
 static json_t *wavelengths_json(const gonio_material_view *view)
 {
     json_t *list = view->wavelength != NULL ? json_array() : json_null();
@@ -157,6 +173,8 @@ static void add_view(json_t *object, const gonio_material_view *view, const mate
     json_object_set_new(object, "channels", json_integer((json_int_t)view->channels));
     json_object_set_new(object, "wavelengths_nm", wavelengths_json(view));
     json_object_set_new(object, "anisotropic", json_boolean(view->anisotropic));
+    json_object_set_new(object, "turned_90_e6_percent",
+                        view->anisotropic ? tool_json_number(facts->turn) : json_null());
     json_object_set_new(object, "theta_limit_deg",
                         view->theta_limit > 0.0 ? json_real(view->theta_limit * 180.0 / M_PI)
                                                 : json_null());
@@ -182,7 +200,7 @@ static void add_steps(json_t *object, const gonio_material_view *view, const mat
     json_object_set_new(object, "phi_d_step_elsewhere", tool_json_number(facts->seam.elsewhere));
 }
 
-static void print_view(const gonio_material_view *view)
+static void print_view(const gonio_material_view *view, const material_facts *facts)
 {
     if (view->wavelength != NULL) {
         double least = INFINITY;
@@ -200,7 +218,8 @@ static void print_view(const gonio_material_view *view)
         printf("  measured to  %.4g degrees from the normal\n", view->theta_limit * 180.0 / M_PI);
     }
     if (view->anisotropic) {
-        printf("  anisotropic  below, the mean over 8 azimuths\n");
+        printf("  anisotropic  turned by 90 degrees it differs by %.1f %% (E6)\n", facts->turn);
+        printf("               bins below are means over 8 azimuths, and so are albedos\n");
     }
 }
 
@@ -280,7 +299,7 @@ static void print_material(const char *path, const gonio_material *material,
 {
     printf("%s: %s\n", path, gonio_material_format(material));
     printf("  name         %s\n", gonio_material_name(material));
-    print_view(gonio_material_describe(material));
+    print_view(gonio_material_describe(material), facts);
     printf("  valid bins   %" PRId64 " of %d (%.1f %%)\n", facts->bins, (int)VALID_BINS,
            100.0 * (double)facts->bins / VALID_BINS);
     printf("  peak         %.4g 1/sr\n", facts->peak);
@@ -307,6 +326,9 @@ static int info_material(const tool *t, const char *path, json_t *results)
     facts.evaluated = status == GONIO_OK && gonio_material_describe(material)->evaluated;
     if (facts.evaluated) {
         status = find_reciprocity(t->context, material, &facts);
+    }
+    if (status == GONIO_OK && gonio_material_describe(material)->anisotropic) {
+        status = find_azimuths(t->context, material, &facts);
     }
     json_t *made = NULL;
     if (status == GONIO_OK && results != NULL) {

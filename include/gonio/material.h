@@ -140,13 +140,14 @@ GONIO_API void gonio_fingerprint_free(gonio_fingerprint **fingerprint);
 GONIO_API gonio_status gonio_material_write_merl(gonio_context *context,
                                                  const gonio_material *material, const char *path);
 
-/* Writes an isotropic material as an RGL .bsdf, which Mitsuba 3 and pbrt-v4 render as `measured`:
- * RGB, or spectra where the material has wavelengths (ascending, at most 512). Evaluated at 26
- * incidences and 84 x 84 places, 32 x 32 or more for spectra. Where the material has no data, the
- * nearest places with data are used. A material that was read from an RGL .bsdf, anisotropic or
- * not, is written unchanged. The file appears whole or not at all.
- * Errors: _ARGUMENT (another anisotropic material, too many wavelengths), _IO, _MEMORY, _CANCELLED,
- * and those of the source. */
+/* Writes a material as an RGL .bsdf, which Mitsuba 3 and pbrt-v4 render as `measured`: RGB, or
+ * spectra where the material has wavelengths (ascending, at most 512). An isotropic one is
+ * evaluated at 26 incidences and 84 x 84 places, 32 x 32 or more for spectra; an anisotropic one at
+ * 21 incidences, 13 azimuths of these over half a turn (25 over a whole one, unless half a turn of
+ * the sample changes nothing) and up to 48 x 48 places. Where the material has no data, the nearest
+ * places with data are used. A material that was read from an RGL .bsdf, anisotropic or not, is
+ * written unchanged. The file appears whole or not at all.
+ * Errors: _ARGUMENT (too many wavelengths), _IO, _MEMORY, _CANCELLED, and those of the source. */
 GONIO_API gonio_status gonio_material_write_rgl(gonio_context *context,
                                                 const gonio_material *material, const char *path);
 

@@ -6,12 +6,7 @@
 #include "../core/core.h"
 #include "../direction/grid.h"
 #include "../metric/metric.h"
-
-typedef struct slab_sums {
-    gonio_i_error_sums channel[GONIO_CHANNELS];
-    int64_t bins;
-    int64_t missing;
-} slab_sums;
+#include "compare_sums.h"
 
 /* One thread's scratch. */
 typedef struct scratch {
@@ -59,7 +54,7 @@ static void sum_channel(const scratch *s, int channel, gonio_i_error_sums *sums)
 
 static gonio_status sum_slab(gonio_context *context, const gonio_material *reference,
                              const gonio_material *other, int theta_h, const scratch *s,
-                             slab_sums *sums)
+                             gonio_i_slab_sums *sums)
 {
     gonio_status status = gonio_material_read_slab(context, reference, theta_h, s->reference);
     if (status == GONIO_OK) {
@@ -87,7 +82,8 @@ static gonio_status sum_slab(gonio_context *context, const gonio_material *refer
 }
 
 static gonio_status sum_slabs(gonio_context *context, const gonio_material *reference,
-                              const gonio_material *other, slab_sums slabs[GONIO_THETA_H_BINS])
+                              const gonio_material *other,
+                              gonio_i_slab_sums slabs[GONIO_THETA_H_BINS])
 {
     gonio_status result = GONIO_OK;
     gonio_context *shared = gonio_i_shared_context_begin(context);
@@ -112,12 +108,15 @@ static gonio_status sum_slabs(gonio_context *context, const gonio_material *refe
 gonio_status gonio_compare(gonio_context *context, const gonio_material *reference,
                            const gonio_material *other, gonio_comparison *comparison)
 {
-    slab_sums *slabs = gonio_i_allocate(context, GONIO_THETA_H_BINS, sizeof *slabs);
+    gonio_i_slab_sums *slabs = gonio_i_allocate(context, GONIO_THETA_H_BINS, sizeof *slabs);
     if (slabs == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    const gonio_status status = sum_slabs(context, reference, other, slabs);
-    slab_sums sums = {0};
+    const bool turned = gonio_material_describe(reference)->anisotropic ||
+                        gonio_material_describe(other)->anisotropic;
+    const gonio_status status = turned ? gonio_i_compare_turned(context, reference, other, slabs)
+                                       : sum_slabs(context, reference, other, slabs);
+    gonio_i_slab_sums sums = {0};
     gonio_i_error_sums all = {0};
     for (int theta_h = 0; theta_h < GONIO_THETA_H_BINS; theta_h++) {
         sums.bins += slabs[theta_h].bins;

@@ -80,5 +80,12 @@ gonio_status gonio_material_write(gonio_context *context, const gonio_material *
                             "no format is called '%s'; materials are written as one of: %s",
                             how.format, known);
     }
+    const gonio_material_view *view = gonio_material_describe(material);
+    if (writers[writer]->isotropic && view->anisotropic && !how.average_azimuths) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "%s: anisotropic, which files of '%s' cannot hold; .bsdf, .h5, .xml "
+                            "and .csv can, and --average-azimuths writes the mean",
+                            view->name, writers[writer]->name);
+    }
     return writers[writer]->write(context, material, path, &how);
 }

@@ -282,7 +282,7 @@ static void test_made_from_materials(void **state)
     support_remove(folder);
 }
 
-/* A MERL table cannot hold what depends on phi_h. */
+/* MERL tables and Zemax files of one rotation cannot hold what depends on phi_h. */
 static void test_isotropic_formats_refuse(void **state)
 {
     (void)state;
@@ -290,9 +290,13 @@ static void test_isotropic_formats_refuse(void **state)
     char path[4096];
     gonio_material *wild = make_wild(2);
     gonio_context *context = support_context();
-    snprintf(path, sizeof path, "%s/a.binary", folder);
-    assert_int_equal(gonio_material_write(context, wild, path, NULL), GONIO_ERROR_ARGUMENT);
-    assert_non_null(strstr(support_message(), "--average-azimuths"));
+    static const char *const formats[] = {"merl", "zemax"};
+    snprintf(path, sizeof path, "%s/a", folder);
+    for (size_t k = 0; k < 2; k++) {
+        const gonio_write_options how = {.size = sizeof how, .format = formats[k]};
+        assert_int_equal(gonio_material_write(context, wild, path, &how), GONIO_ERROR_ARGUMENT);
+        assert_non_null(strstr(support_message(), "--average-azimuths"));
+    }
     gonio_context_free(&context);
     gonio_material_free(&wild);
     support_remove(folder);

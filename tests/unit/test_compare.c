@@ -128,6 +128,29 @@ static void test_threads_do_not_matter(void **state)
     }
 }
 
+/* Materials that depend on phi_h are compared over it; against itself there is no error, and the
+ * mean over azimuths has one. */
+static void test_anisotropic_materials(void **state)
+{
+    (void)state;
+    gonio_material *steel = NULL;
+    gonio_material *brass = NULL;
+    gonio_comparison same;
+    gonio_comparison other;
+    gonio_comparison swapped;
+    assert_int_equal(gonio_material_open(NULL, "atlas:steel-belt-ground", &steel), GONIO_OK);
+    assert_int_equal(gonio_material_open(NULL, "atlas:brass-satin", &brass), GONIO_OK);
+    assert_int_equal(gonio_compare(NULL, steel, steel, &same), GONIO_OK);
+    assert_int_equal(gonio_compare(NULL, steel, brass, &other), GONIO_OK);
+    assert_int_equal(gonio_compare(NULL, brass, steel, &swapped), GONIO_OK);
+    assert_true(same.all.value[GONIO_E6] == 0.0);
+    assert_true(other.all.value[GONIO_E6] > 5.0);
+    assert_true(same.bins > 2500000 && same.missing == 0);
+    assert_int_equal(swapped.bins + swapped.missing, other.bins + other.missing);
+    gonio_material_free(&steel);
+    gonio_material_free(&brass);
+}
+
 static void assert_incomparable(gonio_material *reference, gonio_material *other)
 {
     gonio_comparison c;
@@ -166,6 +189,7 @@ int main(void)
         cmocka_unit_test(test_a_material_does_not_differ_from_itself),
         cmocka_unit_test(test_a_scaled_material),
         cmocka_unit_test(test_holes_do_not_count),
+        cmocka_unit_test(test_anisotropic_materials),
         cmocka_unit_test(test_threads_do_not_matter),
         cmocka_unit_test(test_what_cannot_be_compared),
         cmocka_unit_test(test_bivariate_average),

@@ -264,6 +264,49 @@ static void test_a_material_written_and_read(void **state)
     support_remove(folder);
 }
 
+/* Anisotropic materials keep their azimuths, over half a turn or a whole one. */
+static void check_written_azimuths(const char *name, size_t azimuths, const char *path)
+{
+    gonio_material *original = NULL;
+    gonio_material *written = NULL;
+    gonio_comparison comparison;
+    gonio_i_tensor_file file;
+    const gonio_write_options mean = {
+        .size = sizeof mean, .format = "rgl", .average_azimuths = true};
+    assert_int_equal(gonio_material_open(NULL, name, &original), GONIO_OK);
+    assert_int_equal(gonio_material_write(NULL, original, path, NULL), GONIO_OK);
+    assert_int_equal(gonio_i_tensor_open(NULL, path, &file), GONIO_OK);
+    static const char *const fields[] = {"phi_i", "vndf", "luminance", "rgb"};
+    for (size_t k = 0; k < sizeof fields / sizeof *fields; k++) {
+        assert_int_equal(gonio_i_tensor_find(&file, fields[k])->shape[0], azimuths);
+    }
+    gonio_i_tensor_close(&file);
+    assert_int_equal(gonio_material_open(NULL, path, &written), GONIO_OK);
+    assert_int_equal(gonio_compare(NULL, original, written, &comparison), GONIO_OK);
+    print_message("%s: E6 %.2f %%\n", name, comparison.all.value[GONIO_E6]);
+    assert_true(gonio_material_describe(written)->anisotropic);
+    assert_true(comparison.all.value[GONIO_E6] < 0.5);
+    gonio_material_free(&written);
+    assert_int_equal(gonio_material_write(NULL, original, path, &mean), GONIO_OK);
+    assert_int_equal(gonio_material_open(NULL, path, &written), GONIO_OK);
+    assert_int_equal(gonio_compare(NULL, original, written, &comparison), GONIO_OK);
+    assert_false(gonio_material_describe(written)->anisotropic);
+    assert_true(comparison.all.value[GONIO_E6] > 2.0);
+    gonio_material_free(&original);
+    gonio_material_free(&written);
+}
+
+static void test_an_anisotropic_material_written_and_read(void **state)
+{
+    (void)state;
+    char *folder = support_folder();
+    char path[4096];
+    snprintf(path, sizeof path, "%s/x.bsdf", folder);
+    check_written_azimuths("atlas:steel-hairline", 13, path);
+    check_written_azimuths("atlas:maple-curly-varnished", 25, path);
+    support_remove(folder);
+}
+
 static float *read_floats(const gonio_i_tensor_file *file, const char *name)
 {
     float *values = NULL;
@@ -429,6 +472,7 @@ int main(void)
         cmocka_unit_test(test_a_warp_and_its_inverse),
         cmocka_unit_test(test_the_density_of_a_warp),
         cmocka_unit_test(test_a_material_written_and_read),
+        cmocka_unit_test(test_an_anisotropic_material_written_and_read),
         cmocka_unit_test(test_samples_count_alike),
         cmocka_unit_test(test_a_file_is_copied),
     };

@@ -1,6 +1,5 @@
 /* A material as a MERL table: its row in the table of writers. The table itself is written by
  * merl.c. */
-#include "../../core/core.h"
 #include "../colour.h"
 #include "writers.h"
 
@@ -8,12 +7,7 @@ static gonio_status write_merl(gonio_context *context, const gonio_material *mat
                                const char *path, const gonio_write_options *options)
 {
     const gonio_material_view *view = gonio_material_describe(material);
-    if (view->anisotropic && !options->average_azimuths) {
-        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                            "%s: anisotropic, which a MERL table cannot hold; .bsdf, .h5, .xml and "
-                            ".csv can, and --average-azimuths writes the mean",
-                            view->name);
-    }
+    (void)options;
     if (view->wavelength != NULL) {
         gonio_i_note_colours(context, view->name, view->wavelength, view->channels);
     }
@@ -24,5 +18,6 @@ const gonio_i_format_writer gonio_i_merl_writer = {
     .name = "merl",
     .extension = ".binary",
     .summary = "MERL table 90 x 90 x 180 of R, G, B; isotropic, reciprocal",
+    .isotropic = true,
     .write = write_merl,
 };

@@ -31,8 +31,7 @@ static place set_direction(const gonio_i_rgl_writing *w, size_t t, size_t node, 
                    .measured = theta_i <= w->limit && to.outgoing.theta <= w->limit};
 }
 
-/* Fills empty places with the mean of their neighbours, ring by ring, in all channels. */
-static void fill_empty(double *value, size_t side, size_t channels, bool *known)
+void gonio_i_rgl_fill_empty(double *value, size_t side, size_t channels, bool *known)
 {
     const size_t nodes = side * side;
     bool more = true;
@@ -65,6 +64,19 @@ static void fill_empty(double *value, size_t side, size_t channels, bool *known)
     }
 }
 
+void gonio_i_rgl_find_order(const gonio_material_view *view, size_t channels, size_t *order)
+{
+    const double *wavelength = view->wavelength;
+    for (size_t c = 0; c < channels; c++) {
+        size_t before = 0;
+        for (size_t k = 0; wavelength != NULL && k < channels; k++) {
+            const double apart = wavelength[k] - wavelength[c];
+            before += apart < 0.0 || (apart == 0.0 && k < c) ? 1 : 0;
+        }
+        order[wavelength != NULL ? before : c] = view->channels == 1 ? 0 : c;
+    }
+}
+
 /* rho of an incidence at all places: [node][view->channels], holes filled. Of channels without data
  * 0 if others have some. *any: whether there are data at all; without, rho is 0. */
 static gonio_status read_incidence(const gonio_i_rgl_writing *w, const gonio_pair *pairs,
@@ -85,7 +97,7 @@ static gonio_status read_incidence(const gonio_i_rgl_writing *w, const gonio_pai
         *any = *any || known[k];
     }
     if (status == GONIO_OK && *any) {
-        fill_empty(rho, w->side, channels, known);
+        gonio_i_rgl_fill_empty(rho, w->side, channels, known);
     }
     return status;
 }

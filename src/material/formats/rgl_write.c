@@ -1,4 +1,4 @@
-/* Writing isotropic materials as RGL .bsdf files (rgl.c has the format's equations).
+/* Writing RGL .bsdf files, and isotropic materials as such (rgl.c has the format's equations).
  *
  * The file's values at a place s are rho cos theta_o 4 sigma / ndf in the direction that s is
  * warped to, so any ndf that is positive and any warp represent any material. The better ndf
@@ -78,20 +78,6 @@ static size_t choose_side(size_t channels)
     return (size_t)fmin(fmax(side, COARSE), GONIO_I_RGL_SIDE);
 }
 
-/* The material's channel of each channel of the file, whose wavelengths ascend. */
-static void find_order(gonio_i_rgl_writing *w)
-{
-    const double *wavelength = w->view->wavelength;
-    for (size_t c = 0; c < w->channels; c++) {
-        size_t before = 0;
-        for (size_t k = 0; wavelength != NULL && k < w->channels; k++) {
-            const double apart = wavelength[k] - wavelength[c];
-            before += apart < 0.0 || (apart == 0.0 && k < c) ? 1 : 0;
-        }
-        w->order[wavelength != NULL ? before : c] = w->view->channels == 1 ? 0 : c;
-    }
-}
-
 static gonio_status begin(gonio_i_rgl_writing *w, const gonio_material *material)
 {
     w->view = gonio_material_describe(material);
@@ -122,7 +108,7 @@ static gonio_status begin(gonio_i_rgl_writing *w, const gonio_material *material
     for (size_t c = 0; c < w->channels; c++) {
         w->weight[c] = spectral ? 1.0 / (double)w->channels : rgb[c];
     }
-    find_order(w);
+    gonio_i_rgl_find_order(w->view, w->channels, w->order);
     return gonio_i_sampler_begin(w->context, material, true, &w->sampler);
 }
 
@@ -136,13 +122,9 @@ static void end(gonio_i_rgl_writing *w)
     free(w->weight);
 }
 
-gonio_status gonio_material_write_rgl(gonio_context *context, const gonio_material *material,
-                                      const char *path)
+static gonio_status write_isotropic(gonio_context *context, const gonio_material *material,
+                                    const char *path)
 {
-    const gonio_i_rgl *same = gonio_i_rgl_of(material);
-    if (same != NULL && same->luminance != NULL) {
-        return gonio_i_rgl_copy(context, same, gonio_material_name(material), path);
-    }
     gonio_i_rgl_writing *w = gonio_i_allocate(context, 1, sizeof *w);
     if (w == NULL) {
         return GONIO_ERROR_MEMORY;
@@ -170,16 +152,29 @@ gonio_status gonio_material_write_rgl(gonio_context *context, const gonio_materi
     return status;
 }
 
+gonio_status gonio_material_write_rgl(gonio_context *context, const gonio_material *material,
+                                      const char *path)
+{
+    const gonio_i_rgl *same = gonio_i_rgl_of(material);
+    if (same != NULL && same->luminance != NULL) {
+        return gonio_i_rgl_copy(context, same, gonio_material_name(material), path);
+    }
+    return gonio_material_describe(material)->anisotropic
+               ? gonio_i_rgl_write_anisotropic(context, material, path)
+               : write_isotropic(context, material, path);
+}
+
 static gonio_status write_rgl(gonio_context *context, const gonio_material *material,
                               const char *path, const gonio_write_options *options)
 {
-    (void)options;
-    return gonio_material_write_rgl(context, material, path);
+    return options->average_azimuths && gonio_material_describe(material)->anisotropic
+               ? write_isotropic(context, material, path)
+               : gonio_material_write_rgl(context, material, path);
 }
 
 const gonio_i_format_writer gonio_i_rgl_writer = {
     .name = "rgl",
     .extension = ".bsdf",
-    .summary = "RGL BSDF of RGB or spectra, for Mitsuba 3 and pbrt-v4 (measured); isotropic",
+    .summary = "RGL BSDF of RGB or spectra, for Mitsuba 3 and pbrt-v4 (measured); isotropic or not",
     .write = write_rgl,
 };

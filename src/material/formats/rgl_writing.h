@@ -41,6 +41,17 @@ static inline size_t gonio_i_bytes_of_bits(size_t bits)
     return (bits + 7) / 8;
 }
 
+/* The material's channel of each channel of the file, whose wavelengths ascend: order[channels]. */
+void gonio_i_rgl_find_order(const gonio_material_view *view, size_t channels, size_t *order);
+
+/* Fills empty places with the mean of their neighbours, ring by ring, in all channels:
+ * value[side side][channels]. side: at most GONIO_I_RGL_SIDE. */
+void gonio_i_rgl_fill_empty(double *value, size_t side, size_t channels, bool *known);
+
+/* Writes an anisotropic material. Errors: as gonio_material_write_rgl. */
+gonio_status gonio_i_rgl_write_anisotropic(gonio_context *context, const gonio_material *material,
+                                           const char *path);
+
 /* Fill in w->ndf, w->sigma, and w->vndf with w->warp, in this order. Errors: _MEMORY, those of the
  * material. */
 gonio_status gonio_i_rgl_find_ndf(gonio_i_rgl_writing *w);

@@ -3,6 +3,8 @@
 #ifndef GONIO_WRITERS_H
 #define GONIO_WRITERS_H
 
+#include <stdbool.h>
+
 #include <gonio/material.h>
 
 /* Most wavelengths of a .bsdf. */
@@ -17,6 +19,7 @@ typedef struct gonio_i_format_writer {
     const char *name;      /* for --format */
     const char *extension; /* of files, with its dot */
     const char *summary;
+    bool isotropic; /* cannot hold anisotropic materials, but for their mean over azimuths */
     gonio_i_write write;
 } gonio_i_format_writer;
 

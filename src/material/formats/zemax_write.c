@@ -224,5 +224,6 @@ const gonio_i_format_writer gonio_i_zemax_writer = {
     .name = "zemax",
     .extension = ".bsdf",
     .summary = "Zemax BSDF text about the mirror direction; isotropic",
+    .isotropic = true,
     .write = write_zemax,
 };

@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# Anisotropic materials on the command line: listed, described, compared over phi_h, written in
+# formats that hold them, refused by others, averaged if that is asked for.
+. "$(dirname "$0")/lib.sh"
+
+steel=atlas:steel-hairline
+
+expect_output 'atlas:steel-hairline               brushed metal, anisotropic' info atlas:
+expect_output '"anisotropic": true' info --json $steel
+expect_also '"conserves_energy": true' '"turned_90_e6_percent": '
+expect_output 'turned by 90 degrees it differs by' info atlas:crimson-satin
+
+expect_fail 2 'cannot hold; .bsdf, .h5, .xml and .csv can' convert $steel a.binary
+expect_fail 2 'cannot hold; .bsdf, .h5, .xml and .csv can' convert $steel --format zemax a.bsdf
+
+expect_ok convert $steel a.bsdf
+expect_output 'RGL anisotropic BSDF, RGB, 48 x 48 at 273 incidences' info a.bsdf
+expect_output ' directions compared, ' compare -v $steel a.bsdf
+expect_ok convert a.bsdf b.bsdf
+expect_output '0.000     0.000    0.0000' compare a.bsdf b.bsdf
+if full; then
+    expect_ok convert $steel a.h5
+    expect_output 'gonio anisotropic BRDF table 90 x 90 x 36, 13 orders of phi_h, 2-fold' info a.h5
+fi
+
+# The mean, with what it lacks.
+run convert $steel --average-azimuths mean.binary
+grep -q 'the mean over azimuths differs from the anisotropic material by' "$root/work/stderr" ||
+    failed 'the loss of the mean is not stated'
+expect_output 'MERL table' info mean.binary
+
+# Readings see the azimuth of the sample.
+printf 'theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg\n30,0,50,180\n30,90,50,270\n' >two.csv
+expect_ok measure two.csv $steel -o readings.csv
+values=$(grep -v '^#' readings.csv | tail -n 2 | cut -d , -f 5 | sort -u | wc -l)
+[ "$values" -eq 2 ] || failed 'two azimuths have one value'
+
+finish
