@@ -16,6 +16,7 @@ typedef struct options {
     double floor;    /* the same */
     double outliers; /* per cent */
     long seed;
+    const char *instrument; /* NULL: none */
     follow_options follow;
 } options;
 
@@ -50,6 +51,45 @@ static gonio_status read_material(const tool *t, const options *o, const gonio_m
     return gonio_measure_material(t->context, plan, material, &instrument);
 }
 
+/* Writes the run of an instrument, and says how long it takes. */
+static gonio_status rehearse(const tool *t, const options *o, const gonio_material *material,
+                             const gonio_readings *plan, const char **name)
+{
+    gonio_instrument *instrument = NULL;
+    double duration = 0.0;
+    *name = gonio_material_name(material);
+    gonio_status status = gonio_instrument_read(t->context, o->instrument, &instrument);
+    if (status == GONIO_OK) {
+        status = gonio_rehearse(t->context, plan, material, instrument, (uint64_t)o->seed,
+                                t->command_line, o->output, &duration);
+    }
+    if (status == GONIO_OK && !tool_quiet && !tool_json) {
+        fprintf(tool_results(), "%s: a run of %.1f min\n",
+                gonio_instrument_describe(instrument)->name, duration / 60.0);
+    }
+    gonio_instrument_free(&instrument);
+    return status;
+}
+
+/* Reads the input by the plan, and writes what was read. */
+static gonio_status read_and_write(const tool *t, const options *o, const tool_input *known,
+                                   gonio_readings *readings, const char **name)
+{
+    gonio_status status = GONIO_OK;
+    if (o->instrument != NULL && known->material == NULL) {
+        tool_refuse(t, "%s: these are readings; --instrument reads a material", known->path);
+        return GONIO_ERROR_DATA;
+    }
+    if (o->instrument != NULL) {
+        return rehearse(t, o, known->material, readings, name);
+    }
+    status = known->readings != NULL ? gonio_readings_look_up(t->context, readings, known->readings)
+                                     : read_material(t, o, known->material, readings, name);
+    return status == GONIO_OK
+               ? gonio_readings_write(t->context, readings, t->command_line, o->output)
+               : status;
+}
+
 static int measure(const tool *t, const options *o, const char *plan, const char *path)
 {
     const gonio_readings_options how = {.size = sizeof how,
@@ -64,12 +104,7 @@ static int measure(const tool *t, const options *o, const char *plan, const char
         status = tool_open_input(t, path, &known);
     }
     if (status == GONIO_OK) {
-        status = known.readings != NULL
-                     ? gonio_readings_look_up(t->context, readings, known.readings)
-                     : read_material(t, o, known.material, readings, &name);
-    }
-    if (status == GONIO_OK) {
-        status = gonio_readings_write(t->context, readings, t->command_line, o->output);
+        status = read_and_write(t, o, &known, readings, &name);
     }
     const int code = status == GONIO_OK ? report(t, o, readings, name) : tool_exit_code(status);
     tool_close_input(&known);
@@ -85,7 +120,12 @@ static bool check(const tool *t, const options *o, const char **arguments, size_
     if (!(o->outliers >= 0.0 && o->outliers <= 100.0)) {
         return tool_refuse(t, "--outliers must be 0 to 100 per cent");
     }
-    return tool_check_not_negative(t, "--noise", o->noise) &&
+    if (o->instrument != NULL && (o->noise > 0.0 || o->floor > 0.0 || o->outliers > 0.0)) {
+        return tool_refuse(t, "the instrument has its own noise: give --instrument, or --noise, "
+                              "--floor and --outliers");
+    }
+    return (o->instrument == NULL || tool_check_output(t, o->output, &o->instrument, 1)) &&
+           tool_check_not_negative(t, "--noise", o->noise) &&
            tool_check_not_negative(t, "--floor", o->floor) &&
            tool_check_output(t, o->output, arguments, count);
 }
@@ -129,6 +169,10 @@ int cmd_measure(int argc, const char **argv)
         {"outliers", '\0', POPT_ARG_DOUBLE, &o.outliers, 0,
          "Share of directions read ten times too high or too low (default: 0)", "PERCENT"},
         {"seed", '\0', POPT_ARG_LONG, &o.seed, 0, "Seed of noise and outliers (default: 0)", "N"},
+        {"instrument", '\0', POPT_ARG_STRING, &o.instrument, 0,
+         "Write the run of this instrument, a file or in-plane, two-arms or four-axis: apertures, "
+         "noise, drift, reference and dark lines, times (CSV)",
+         "INSTRUMENT"},
         {"follow", '\0', POPT_ARG_STRING, &o.follow.follow, 0,
          "Follow a run: readings that an instrument appends to this file; - is standard input",
          "FILE"},

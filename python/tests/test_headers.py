@@ -48,7 +48,7 @@ UNBOUND = {
         gonio_value_kind_name gonio_instrument_pair gonio_instrument_obstacle gonio_instrument_settings
         gonio_instrument_survey gonio_instrument_candidates gonio_instrument_deviation gonio_instrument_value_factor
         gonio_instrument_aperture_samples gonio_instrument_aperture gonio_instrument_travel gonio_instrument_home
-        gonio_instrument_schedule gonio_instrument_order
+        gonio_instrument_schedule gonio_instrument_order gonio_rehearse
         gonio_comparison_picture_write_png gonio_tone_apply gonio_srgb_encode""",
 }
 KINDS = ("basis context database environment image material mesh plan readings reconstruction survey table").split()

@@ -53,6 +53,25 @@ expect_fail 2 'not both' plan b.gonio --instrument four-axis --candidates plan.c
 expect_fail 2 'no reading fits into' plan b.gonio --method expected-error --instrument four-axis --budget 5s -o no.csv
 expect_fail 2 'need the method expected-error' plan b.gonio --method random -n 5 --instrument four-axis -o no.csv
 
+# ---- a rehearsed run ----
+
+expect_output 'a run of ' measure four.csv atlas:oak-sawn --instrument four-axis --seed 3 -o run.csv
+expect_true 'reference lines' grep -q ',reference,' run.csv
+expect_output 'drift corrected' info run.csv
+expect_output '6 directions, 6 measured' info run.csv
+expect_ok measure four.csv atlas:oak-sawn --instrument four-axis --seed 3 -o same.csv
+expect_true 'the same seed, the same run' diff <(grep -v '^# command' run.csv) <(grep -v '^# command' same.csv)
+expect_ok reconstruct b.gonio run.csv -o run.binary
+expect_output 'E6' compare atlas:oak-sawn run.binary
+expect_ok plan b.gonio --method expected-error --instrument two-arms -n 4 -o arms.csv
+expect_ok measure arms.csv atlas:plaster-cast --instrument two-arms -o factors.csv
+expect_true 'factors' grep -q '^# values: reflectance factor' factors.csv
+expect_true 'dark lines' grep -q ',dark,' factors.csv
+expect_output 'reflectance factors' info factors.csv
+expect_fail 1 'cannot read this direction' measure four.csv atlas:oak-sawn --instrument in-plane -o no.csv
+expect_fail 2 'its own noise' measure four.csv atlas:oak-sawn --instrument four-axis --noise 1 -o no.csv
+expect_fail 1 'these are readings' measure four.csv read.csv --instrument four-axis -o no.csv
+
 # ---- JSON ----
 
 if command -v jq >"$root/work/jq"; then

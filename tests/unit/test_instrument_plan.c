@@ -284,6 +284,51 @@ static void test_plan_files_have_axes(void **state)
     support_remove(folder);
 }
 
+/* Without noise the readings of a matt material come back, in the instrument's unit; the mirror
+ * peak is flattened by the apertures. */
+static void test_rehearsed_runs(void **state)
+{
+    fixture *f = *state;
+    char *folder = support_folder();
+    char path[256];
+    gonio_instrument *rig = NULL;
+    gonio_readings *plan = NULL;
+    gonio_readings *read = NULL;
+    gonio_readings *plain = NULL;
+    gonio_material *gold = NULL;
+    double duration = 0.0;
+    const gonio_pair pairs[2] = {{{0.5, 0.0}, {0.9, 0.0}}, {{0.5, 0.0}, {0.5, M_PI}}};
+    const gonio_readings_arrays arrays = {
+        .size = sizeof arrays, .count = 2, .channels = 3, .pair = pairs};
+    const gonio_readings_options how = {.size = sizeof how, .values_needed = true};
+    const char *text =
+        "{\"gonio_instrument\": 1, \"kinematics\": \"in-plane\", \"values\": \"factor-cosine\", "
+        "\"axes\": {\"incidence\": {\"from_deg\": 0, \"to_deg\": 80}, \"detector\": "
+        "{\"from_deg\": -80, \"to_deg\": 80, \"speed_deg_per_s\": 10}}, "
+        "\"apertures\": {\"detector_half_angle_deg\": 2}, \"times\": {\"exposure_s\": 1}}";
+    snprintf(path, sizeof path, "%s/run.csv", folder);
+    assert_int_equal(gonio_instrument_parse(f->context, text, "rig.json", &rig), GONIO_OK);
+    assert_int_equal(gonio_material_open(f->context, "atlas:gold-polished", &gold), GONIO_OK);
+    assert_int_equal(gonio_readings_create(f->context, &arrays, NULL, &plan), GONIO_OK);
+    assert_int_equal(gonio_rehearse(f->context, plan, gold, rig, 1, NULL, path, &duration),
+                     GONIO_OK);
+    assert_true(duration > 2.0);
+    assert_int_equal(gonio_readings_read(f->context, path, &how, &read), GONIO_OK);
+    assert_int_equal(gonio_readings_copy(f->context, plan, &plain), GONIO_OK);
+    assert_int_equal(gonio_measure_material(f->context, plain, gold, NULL), GONIO_OK);
+    const double away = gonio_readings_value(read, 0, 0) / gonio_readings_value(plain, 0, 0);
+    const double peak = gonio_readings_value(read, 1, 0) / gonio_readings_value(plain, 1, 0);
+    print_message("away from the peak %.3f, at the peak %.3f\n", away, peak);
+    assert_true(fabs(away - 1.0) < 0.2 && peak < 0.9);
+    assert_true(gonio_readings_describe(read)->time[1] > gonio_readings_describe(read)->time[0]);
+    gonio_readings_free(&plain);
+    gonio_readings_free(&read);
+    gonio_readings_free(&plan);
+    gonio_material_free(&gold);
+    gonio_instrument_free(&rig);
+    support_remove(folder);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -292,6 +337,7 @@ int main(void)
         cmocka_unit_test(test_plans_keep_to_the_reach),
         cmocka_unit_test(test_plans_keep_to_the_time),
         cmocka_unit_test(test_options_that_contradict),
-        cmocka_unit_test(test_plan_files_have_axes)};
+        cmocka_unit_test(test_plan_files_have_axes),
+        cmocka_unit_test(test_rehearsed_runs)};
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

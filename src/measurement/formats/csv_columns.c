@@ -379,6 +379,7 @@ static const char *number_not_read(const finder *f)
     for (size_t k = 0; k < f->r->cells; k++) {
         if (f->c->column[k].kind == GONIO_I_OTHER && f->r->name[k][0] != '\0' &&
             strcasecmp(f->r->name[k], "expected_e6_percent") != 0 &&
+            strncasecmp(f->r->name[k], "axis_", 5) != 0 &&
             gonio_i_csv_is_number(f->r->cell[k], f->r->delimiter, &value)) {
             return f->r->name[k];
         }

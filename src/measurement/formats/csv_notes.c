@@ -116,7 +116,7 @@ void gonio_i_csv_others_look(gonio_i_csv_others *others, const gonio_i_csv_reade
 /* Whether gonio writes a column only for the record. */
 static bool is_for_the_record(const char *name)
 {
-    return strcasecmp(name, "expected_e6_percent") == 0;
+    return strcasecmp(name, "expected_e6_percent") == 0 || strncasecmp(name, "axis_", 5) == 0;
 }
 
 gonio_status gonio_i_csv_others_note(gonio_i_csv_others *others, const gonio_i_csv_reader *reader,
