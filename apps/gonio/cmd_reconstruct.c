@@ -173,23 +173,62 @@ static void print_database_share(const gonio_reconstruction *r)
     }
 }
 
+/* The energies of several results, one on each thread, or one after the other on all threads where
+ * there are fewer. */
+static void find_energies(const gonio_basis *basis, gonio_reconstruction *const *made, size_t count,
+                          energy *found)
+{
+    const gonio_context_options own = {.size = sizeof own, .threads = tool_threads};
+    gonio_context *context = NULL;
+    (void)gonio_context_create(&context, &own);
+    const size_t threads = (size_t)gonio_context_threads(context);
+    gonio_context_free(&context);
+#pragma omp parallel for schedule(dynamic, 1) if (count >= threads) num_threads((int)threads)
+    for (size_t k = 0; k < count; k++) {
+        found[k] = made[k] != NULL ? find_energy(basis, made[k]) : (energy){0};
+    }
+}
+
 /* Reports a result and its warnings, as a line or as an object appended to `results`. */
+static gonio_status report_one(const tool *t, const options *o, const gonio_basis *basis,
+                               const gonio_reconstruction *r, const char *output, const energy *e,
+                               json_t *results)
+{
+    json_t *made = results != NULL ? as_json(r, output, e) : NULL;
+    warn(r, output, e);
+    if (made != NULL) {
+        json_array_append_new(results, made);
+    } else {
+        print(r, output, e);
+        print_database_share(r);
+    }
+    return tool_reflectances_of_reconstruction(t, &o->reflectances, basis, r, made);
+}
+
+/* Reports results. NULL stands for one that was not made. Errors: _MEMORY, those of reflectances,
+ * of the last that has any. */
 static gonio_status report(const tool *t, const options *o, const gonio_basis *basis,
-                           const gonio_reconstruction *r, const char *output, json_t *results)
+                           gonio_reconstruction *const *made, char *const *outputs, size_t count,
+                           json_t *results)
 {
     if (tool_quiet && results == NULL) {
         return GONIO_OK;
     }
-    const energy e = find_energy(basis, r);
-    json_t *made = results != NULL ? as_json(r, output, &e) : NULL;
-    warn(r, output, &e);
-    if (made != NULL) {
-        json_array_append_new(results, made);
-    } else {
-        print(r, output, &e);
-        print_database_share(r);
+    energy *found = calloc(count, sizeof *found);
+    if (found == NULL) {
+        return GONIO_ERROR_MEMORY;
     }
-    return tool_reflectances_of_reconstruction(t, &o->reflectances, basis, r, made);
+    gonio_status status = GONIO_OK;
+    find_energies(basis, made, count, found);
+    for (size_t k = 0; k < count; k++) {
+        if (made[k] != NULL) {
+            const gonio_status reported =
+                report_one(t, o, basis, made[k], outputs[k], &found[k], results);
+            status = reported != GONIO_OK ? reported : status;
+        }
+    }
+    free(found);
+    return status;
 }
 
 static gonio_reconstruct_options settings(const options *o)
@@ -275,8 +314,7 @@ static gonio_status write_both(tool *t, const options *o, const gonio_basis *bas
 
 /* Reconstructs one file of readings when more than the table is wanted. */
 static gonio_status reconstruct_one(tool *t, const options *o, const gonio_basis *basis,
-                                    const gonio_readings *readings, const char *output,
-                                    json_t *results)
+                                    const gonio_readings *readings, char *output, json_t *results)
 {
     const gonio_reconstruct_options how = settings(o);
     gonio_reconstruction *made = NULL;
@@ -289,7 +327,7 @@ static gonio_status reconstruct_one(tool *t, const options *o, const gonio_basis
         status = write_both(t, o, basis, made, material, output);
     }
     if (status == GONIO_OK) {
-        status = report(t, o, basis, made, output, results);
+        status = report(t, o, basis, &made, &output, 1, results);
     }
     gonio_material_free(&material);
     gonio_reconstruction_free(&made);
@@ -316,15 +354,12 @@ static gonio_status reconstruct(tool *t, const options *o, const gonio_basis *ba
     if (made == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    gonio_status reported = GONIO_OK;
     gonio_status status =
         gonio_reconstruct_tables(t->context, basis, (const gonio_readings *const *)readings,
                                  (const char *const *)outputs, count, &how, made);
+    const gonio_status reported = report(t, o, basis, made, outputs, count, results);
+    status = status == GONIO_OK ? reported : status;
     for (size_t k = 0; k < count; k++) {
-        if (made[k] != NULL) {
-            reported = report(t, o, basis, made[k], outputs[k], results);
-            status = status == GONIO_OK ? reported : status;
-        }
         gonio_reconstruction_free(&made[k]);
     }
     free(made);

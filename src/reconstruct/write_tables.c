@@ -3,6 +3,7 @@
 
 #include "../core/core.h"
 #include "../material/formats/merl.h"
+#include "solve_many.h"
 
 typedef struct batch {
     gonio_context *context;
@@ -13,20 +14,6 @@ typedef struct batch {
     gonio_i_tables_progress progress;
     gonio_status status; /* of the first that failed */
 } batch;
-
-/* Solves in order, so that the first failure is reported. Returns the number before it. */
-static size_t solve(batch *all, const gonio_readings *const *readings, size_t count,
-                    const gonio_reconstruct_options *options)
-{
-    for (size_t k = 0; k < count; k++) {
-        all->status =
-            gonio_reconstruct(all->context, all->basis, readings[k], options, &all->made[k]);
-        if (all->status != GONIO_OK) {
-            return k;
-        }
-    }
-    return count;
-}
 
 /* Writes table k all but the last step. */
 static gonio_status write_table(batch *all, gonio_context *shared, size_t k, gonio_i_output *output)
@@ -91,9 +78,9 @@ gonio_status gonio_reconstruct_tables(gonio_context *context, const gonio_basis 
     for (size_t k = 0; k < count; k++) {
         made[k] = NULL;
     }
-    const size_t solved = solve(&all, readings, count, options);
-    const gonio_status unsolved = all.status;
-    all.status = GONIO_OK;
+    size_t solved = 0;
+    const gonio_status unsolved =
+        gonio_i_solve_many(context, basis, readings, count, options, made, &solved);
     all.progress = (gonio_i_tables_progress){"reconstructing", 0, solved};
     write_tables(&all, solved);
     if (all.status == GONIO_OK) {
