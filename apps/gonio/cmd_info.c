@@ -382,15 +382,15 @@ static json_t *basis_json(const char *path, const gonio_basis *basis)
         json_array_append_new(names, tool_json_text(view->names[k]));
     }
     return json_pack(
-        "{s:o, s:s, s:s, s:b, s:b, s:s, s:s, s:I, s:I, s:I, s:f, s:o, s:s, s:s, s:o}", "file",
+        "{s:o, s:s, s:s, s:b, s:b, s:s, s:s, s:I, s:I, s:I, s:I, s:f, s:o, s:s, s:s, s:o}", "file",
         tool_json_text(path), "kind", "basis", "mapping", gonio_mapping_name(view->mapping), "mean",
         !view->without_mean, "loadings", view->loadings != NULL, "representation",
         gonio_representation_name(view->representation), "channels",
         gonio_channel_model_name(view->channels), "components", (json_int_t)view->components,
-        "cells", (json_int_t)view->cells, "mixtures", (json_int_t)view->mixtures,
-        "explained_variance", gonio_basis_cumulative_variance(basis, view->components), "materials",
-        names, "fingerprint", fingerprint, "program", view->program, "command",
-        tool_json_text(view->command));
+        "cells", (json_int_t)view->cells, "mixtures", (json_int_t)view->mixtures, "analytic",
+        (json_int_t)view->analytic, "explained_variance",
+        gonio_basis_cumulative_variance(basis, view->components), "materials", names, "fingerprint",
+        fingerprint, "program", view->program, "command", tool_json_text(view->command));
 }
 
 static void print_basis(const char *path, const gonio_basis *basis)
@@ -405,6 +405,9 @@ static void print_basis(const char *path, const gonio_basis *basis)
            view->rows);
     if (view->mixtures > 0) {
         printf("  mixtures     %zu, beside the materials\n", view->mixtures);
+    }
+    if (view->analytic > 0) {
+        printf("  analytic     %zu columns of random materials\n", view->analytic);
     }
     printf("  variance     ");
     for (size_t k = 1; k < view->components; k = k < 5 ? 5 : 2 * k) {

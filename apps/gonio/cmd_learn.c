@@ -19,6 +19,7 @@ typedef struct options {
     int no_mean;
     int components;
     int mixtures; /* UNSET: the default of the recipe */
+    int analytic; /* the same */
     long seed;
 } options;
 
@@ -122,6 +123,7 @@ static bool choose_recipe(const tool *t, const options *o, gonio_recipe *recipe)
     recipe->without_mean = o->no_mean;
     recipe->components = (size_t)o->components;
     recipe->mixtures = o->mixtures != UNSET ? (size_t)o->mixtures : recipe->mixtures;
+    recipe->analytic = o->analytic != UNSET ? (size_t)o->analytic : recipe->analytic;
     recipe->seed = (uint64_t)o->seed;
     return true;
 }
@@ -133,6 +135,7 @@ static bool check(const tool *t, const options *o, size_t count, gonio_recipe *r
     }
     return tool_check_count(t, "--components", o->components, o->components == 0 ? 0 : 1) &&
            (o->mixtures == UNSET || tool_check_count(t, "--mixtures", o->mixtures, 0)) &&
+           (o->analytic == UNSET || tool_check_count(t, "--analytic", o->analytic, 0)) &&
            choose_recipe(t, o, recipe);
 }
 
@@ -174,7 +177,7 @@ static int run(tool *t, void *given)
 
 int cmd_learn(int argc, const char **argv)
 {
-    options o = {.mixtures = UNSET};
+    options o = {.mixtures = UNSET, .analytic = UNSET};
     const struct poptOption table[] = {
         {"output", 'o', POPT_ARG_STRING, &o.output, 0, "The basis file to write", "BASIS"},
         {"components", 'K', POPT_ARG_INT, &o.components, 0,
@@ -192,6 +195,10 @@ int cmd_learn(int argc, const char **argv)
         {"mixtures", '\0', POPT_ARG_INT, &o.mixtures, 0,
          "Number of computed columns, each a mixture of two measured ones (default: 1000 on the "
          "sectored grid, otherwise 0)",
+         "N"},
+        {"analytic", '\0', POPT_ARG_INT, &o.analytic, 0,
+         "Number of random analytic materials to learn from, with a small weight (default: 200 "
+         "beside the default mixtures, otherwise 0)",
          "N"},
         {"seed", '\0', POPT_ARG_LONG, &o.seed, 0, "Seed of the mixtures (default: 0)", "N"},
         {"mapping", '\0', POPT_ARG_STRING, &o.mapping, 0,

@@ -5,7 +5,10 @@
  *
  * Beside them stand anisotropic materials (brushed metals, weaves, grained woods, laminates), which
  * open under such names too. They have indices of their own, and are in no basis that gonio learns
- * by itself. */
+ * by itself.
+ *
+ * And there are random isotropic materials, of the same model with parameters drawn at random, from
+ * which a basis is learned too (gonio_recipe). They open as "atlas:random-0000" and so on. */
 #ifndef GONIO_ATLAS_H
 #define GONIO_ATLAS_H
 
@@ -15,8 +18,12 @@
 extern "C" {
 #endif
 
-/* How many materials there are (at least 100), numbered from 0. */
+/* How many named materials there are (at least 100), numbered from 0. */
 GONIO_API int gonio_atlas_count(void);
+
+/* Random material k, k = 0 .. GONIO_ATLAS_RANDOM_COUNT - 1, has the index GONIO_ATLAS_RANDOM + k,
+ * the class "random", and no name, but gonio_atlas_find finds it by "random-0000" ... */
+enum { GONIO_ATLAS_RANDOM = 10000, GONIO_ATLAS_RANDOM_COUNT = 10000 };
 
 /* A material's name ("gold-polished") and class ("metal"); NULL for an index out of range.
  * Names are lower-case words joined by hyphens and unique. */

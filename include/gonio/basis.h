@@ -31,7 +31,12 @@ typedef struct gonio_basis gonio_basis;
  *
  * where ln f and ln t are normal with standard deviations 0.3 and 0.25. All mixtures together have
  * the weight of all measured columns: m is the mean of the two groups' means, and every column of
- * H - m is multiplied by the square root of its weight (on average 1). */
+ * H - m is multiplied by the square root of its weight (on average 1).
+ *
+ * Analytic columns are those of random analytic materials (atlas.h). All together have a share of
+ * 5 %; measured columns and mixtures share the rest. So the basis spans materials unlike the
+ * database's, too: of real tables of another instrument, errors are a tenth to a quarter smaller
+ * (docs/experiments.md). */
 enum { GONIO_DEFAULT_MIXTURES = 1000, GONIO_MIXTURE_COMPONENTS = 300 };
 
 enum { GONIO_DEFAULT_COMPONENTS = 45 };
@@ -39,6 +44,12 @@ enum { GONIO_DEFAULT_COMPONENTS = 45 };
 /* Number of mixtures: GONIO_DEFAULT_MIXTURES on the sectored grid with separate channels, the log
  * mapping and a mean; none otherwise. */
 #define GONIO_USUAL_MIXTURES SIZE_MAX
+
+/* Number of analytic materials: GONIO_DEFAULT_ANALYTIC beside the usual mixtures if there are some;
+ * none otherwise. */
+#define GONIO_USUAL_ANALYTIC SIZE_MAX
+
+enum { GONIO_DEFAULT_ANALYTIC = 200 };
 
 typedef struct gonio_basis_options {
     size_t size;          /* of this struct, which gonio_basis_options_default sets */
@@ -50,6 +61,8 @@ typedef struct gonio_basis_options {
     size_t mixtures;   /* computed columns beside the measured ones; GONIO_USUAL_MIXTURES by
                         * default */
     uint64_t seed;     /* of the mixtures */
+    size_t analytic;   /* random materials beside the measured ones; GONIO_USUAL_ANALYTIC by
+                        * default; at most GONIO_ATLAS_RANDOM_COUNT */
 } gonio_basis_options;
 
 GONIO_API void gonio_basis_options_default_of(gonio_basis_options *options, size_t size);
@@ -64,8 +77,9 @@ static inline void gonio_basis_options_default(gonio_basis_options *options)
  * of threads. Memory: the basis, and a few MB a thread.
  * options may be NULL. *basis is the caller's; the database need not outlive it.
  * Errors: _ARGUMENT if K > columns - 1 (without mean, > columns), for mixtures of another kind of
- * database and for a material of the subset that it does not have; _DATA if the columns span fewer
- * than K dimensions; _MEMORY; those of gonio_database_read_rows. */
+ * database, for analytic materials without a mean and for a material of the subset that it does not
+ * have; _DATA if the columns span fewer than K dimensions; _MEMORY; those of
+ * gonio_database_read_rows. */
 GONIO_API gonio_status gonio_basis_learn(gonio_context *context, const gonio_database *database,
                                          const gonio_basis_options *options, gonio_basis **basis);
 
@@ -80,9 +94,10 @@ typedef struct gonio_recipe {
     size_t mixtures;     /* GONIO_USUAL_MIXTURES by default */
     uint64_t seed;       /* of the mixtures; 0 by default */
     const char *scratch; /* folder for scratch files; NULL for $TMPDIR or /tmp */
+    size_t analytic;     /* GONIO_USUAL_ANALYTIC by default */
 } gonio_recipe;
 
-/* The default recipe: sectored, separate, 1000 mixtures, 300 components. */
+/* The default recipe: sectored, separate, 1000 mixtures, 200 analytic materials, 300 components. */
 GONIO_API void gonio_recipe_default_of(gonio_recipe *recipe, size_t size);
 static inline void gonio_recipe_default(gonio_recipe *recipe)
 {
@@ -140,7 +155,7 @@ typedef struct gonio_basis_view {
     bool without_mean;
     size_t materials;
     size_t mixtures;
-    size_t columns; /* materials, or 3 x materials if separate; plus mixtures */
+    size_t columns; /* materials, or 3 x materials if separate; plus mixtures, plus analytic */
     const char *const *names;
     const uint64_t *fingerprints; /* of the materials */
     size_t cells;
@@ -157,6 +172,7 @@ typedef struct gonio_basis_view {
     uint64_t checksum;       /* of every bit of cells, mean, V and variances */
     const char *program;     /* "gonio 0.1.0" that learned it */
     const char *command;     /* "" if unknown */
+    size_t analytic;         /* columns of random analytic materials, which come last */
 } gonio_basis_view;
 
 GONIO_API const gonio_basis_view *gonio_basis_describe(const gonio_basis *basis);

@@ -73,7 +73,7 @@ OPTIONS = {
     "readings": (gonio.Readings.load, {"values_needed": "values_needed", "average_repeats": "average_repeats",
                                        "negative_to_zero": "negative_to_zero", "as": "convention"}),
     "basis": (gonio.learn, dict(components="components", subset=None, subset_count=None, without_mean="mean",
-                                mixtures="mixtures", seed="seed")),
+                                mixtures="mixtures", seed="seed", analytic="analytic")),
     "database": (gonio.learn, dict(representation="grid", channels="channels", scratch="scratch", mapping="mapping")),
     "context": (gonio.settings.__init__, dict(message=None, progress=None, user=None, threads=None)),
 }

@@ -22,6 +22,7 @@
 
 #include "../core/core.h"
 #include "materials.h"
+#include "random_materials.h"
 
 static const double PI = 3.14159265358979323846;
 
@@ -58,23 +59,51 @@ int gonio_atlas_count(void)
     return gonio_i_atlas_material_count;
 }
 
-static const gonio_i_atlas_material *material_at(int index)
+static bool is_named(int index)
 {
-    if (index < 0 || index >= gonio_i_atlas_material_count)
-        return NULL;
-    return &gonio_i_atlas_materials[index];
+    return index >= 0 && index < gonio_i_atlas_material_count;
+}
+
+/* The parameters of a material; false for an index out of range. */
+static bool material_at(int index, gonio_i_atlas_material *material)
+{
+    if (is_named(index)) {
+        *material = gonio_i_atlas_materials[index];
+        return true;
+    }
+    if (index >= GONIO_ATLAS_RANDOM && index - GONIO_ATLAS_RANDOM < GONIO_ATLAS_RANDOM_COUNT) {
+        *material = gonio_i_random_material(index - GONIO_ATLAS_RANDOM);
+        return true;
+    }
+    return false;
 }
 
 const char *gonio_atlas_name(int index)
 {
-    const gonio_i_atlas_material *material = material_at(index);
-    return material ? material->name : NULL;
+    return is_named(index) ? gonio_i_atlas_materials[index].name : NULL;
 }
 
 const char *gonio_atlas_class(int index)
 {
-    const gonio_i_atlas_material *material = material_at(index);
-    return material ? material->material_class : NULL;
+    gonio_i_atlas_material material;
+    return material_at(index, &material) ? material.material_class : NULL;
+}
+
+/* The index of random-0000 .. random-9999, or -1. */
+static int find_random(const char *name)
+{
+    static const char first[] = "random-";
+    const size_t digits = 4;
+    if (strncmp(name, first, sizeof first - 1) != 0 ||
+        strspn(name + sizeof first - 1, "0123456789") != digits ||
+        strlen(name) != sizeof first - 1 + digits) {
+        return -1;
+    }
+    int number = 0;
+    for (const char *at = name + sizeof first - 1; *at != '\0'; at++) {
+        number = 10 * number + (*at - '0');
+    }
+    return GONIO_ATLAS_RANDOM + number;
 }
 
 int gonio_atlas_find(const char *name)
@@ -85,7 +114,7 @@ int gonio_atlas_find(const char *name)
         if (strcmp(gonio_i_atlas_materials[i].name, name) == 0)
             return i;
     }
-    return -1;
+    return find_random(name);
 }
 
 static double fifth_power(double x)
@@ -333,19 +362,19 @@ static void evaluate(bin_row *row, const gonio_i_atlas_material *material, const
 
 void gonio_atlas_value(int index, gonio_half_difference coordinates, double rho[GONIO_CHANNELS])
 {
-    const gonio_i_atlas_material *material = material_at(index);
+    gonio_i_atlas_material material;
     bin_row one;
 
     for (int c = 0; c < GONIO_CHANNELS; c++)
         rho[c] = 0.0;
     gonio_cosines(coordinates, &one.incident[0], &one.outgoing[0]);
-    if (!material || !(one.incident[0] > 0.0 && one.outgoing[0] > 0.0))
+    if (!material_at(index, &material) || !(one.incident[0] > 0.0 && one.outgoing[0] > 0.0))
         return;
 
-    half_terms half = half_terms_at(material, coordinates.theta_h);
-    difference_terms difference = difference_terms_at(material, coordinates.theta_d);
+    half_terms half = half_terms_at(&material, coordinates.theta_h);
+    difference_terms difference = difference_terms_at(&material, coordinates.theta_d);
     one.count = 1;
-    evaluate(&one, material, &half, &difference);
+    evaluate(&one, &material, &half, &difference);
     for (int c = 0; c < GONIO_CHANNELS; c++)
         rho[c] = one.rho[c][0];
 }
@@ -381,27 +410,27 @@ static void store_row(const bin_row *row, const bool valid[GONIO_PHI_D_BINS], in
 
 void gonio_atlas_slab(int index, int theta_h, double *rho)
 {
-    const gonio_i_atlas_material *material = material_at(index);
+    gonio_i_atlas_material material;
     double cos_phi_d[GONIO_PHI_D_BINS];
     bool valid[GONIO_PHI_D_BINS];
     bin_row row;
 
-    if (!material || theta_h < 0 || theta_h >= GONIO_THETA_H_BINS) {
+    if (!material_at(index, &material) || theta_h < 0 || theta_h >= GONIO_THETA_H_BINS) {
         for (int n = 0; n < GONIO_CHANNELS * GONIO_THETA_D_BINS * GONIO_PHI_D_BINS; n++)
             rho[n] = -1.0;
         return;
     }
 
     half_terms half =
-        half_terms_at(material, gonio_bin_centre((gonio_bin){.theta_h = theta_h}).theta_h);
+        half_terms_at(&material, gonio_bin_centre((gonio_bin){.theta_h = theta_h}).theta_h);
     for (int k = 0; k < GONIO_PHI_D_BINS; k++)
         cos_phi_d[k] = cos(gonio_bin_centre((gonio_bin){.phi_d = k}).phi_d);
     for (int j = 0; j < GONIO_THETA_D_BINS; j++) {
         double theta_d = gonio_bin_centre((gonio_bin){.theta_d = j}).theta_d;
-        difference_terms difference = difference_terms_at(material, theta_d);
+        difference_terms difference = difference_terms_at(&material, theta_d);
 
         set_cosines(&row, &half, &difference, cos_phi_d, valid);
-        evaluate(&row, material, &half, &difference);
+        evaluate(&row, &material, &half, &difference);
         store_row(&row, valid, j, rho);
     }
 }

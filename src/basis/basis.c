@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "../core/number.h"
+#include "analytic.h"
 #include "../direction/grid.h"
 
 size_t gonio_i_basis_row_count(size_t cells, gonio_channel_model channels)
@@ -16,12 +17,25 @@ size_t gonio_i_basis_row_count(size_t cells, gonio_channel_model channels)
 
 size_t gonio_i_basis_columns(const gonio_basis *basis)
 {
-    return gonio_i_columns_per_material(basis->channels) * basis->materials + basis->mixtures;
+    return gonio_i_columns_per_material(basis->channels) * basis->materials + basis->mixtures +
+           basis->analytic;
+}
+
+gonio_i_column_weights gonio_i_weights_of_columns(size_t measured, size_t mixtures, size_t analytic)
+{
+    const double all = (double)(measured + mixtures + analytic);
+    const double share = analytic > 0 ? GONIO_I_ANALYTIC_SHARE : 0.0;
+    const double each = (mixtures > 0 ? 0.5 : 1.0) * (1.0 - share) * all;
+    return (gonio_i_column_weights){
+        .measured = each / (double)measured,
+        .mixture = mixtures > 0 ? each / (double)mixtures : 0.0,
+        .analytic = analytic > 0 ? share * all / (double)analytic : 0.0,
+    };
 }
 
 gonio_basis *gonio_i_basis_allocate(gonio_context *context, size_t materials, size_t mixtures,
-                                    size_t cells, gonio_channel_model channels, size_t components,
-                                    size_t variance_count)
+                                    size_t analytic, size_t cells, gonio_channel_model channels,
+                                    size_t components, size_t variance_count)
 {
     gonio_basis *made = gonio_i_allocate(context, 1, sizeof *made);
     if (made == NULL) {
@@ -31,6 +45,7 @@ gonio_basis *gonio_i_basis_allocate(gonio_context *context, size_t materials, si
     made->channels = channels;
     made->materials = materials;
     made->mixtures = mixtures;
+    made->analytic = analytic;
     made->cells = cells;
     made->rows = rows;
     made->components = components;
@@ -179,6 +194,10 @@ static void add_kind(const gonio_basis *basis, gonio_fingerprint *fingerprint)
         const uint64_t mixtures = basis->mixtures;
         gonio_fingerprint_add(fingerprint, &mixtures, sizeof mixtures);
     }
+    if (basis->analytic > 0) {
+        const uint64_t analytic = basis->analytic;
+        gonio_fingerprint_add(fingerprint, &analytic, sizeof analytic);
+    }
     gonio_fingerprint_add(fingerprint, basis->cell, basis->cells * sizeof *basis->cell);
 }
 
@@ -230,6 +249,7 @@ static gonio_basis_view view_of(const gonio_basis *basis)
         .without_mean = basis->without_mean,
         .materials = basis->materials,
         .mixtures = basis->mixtures,
+        .analytic = basis->analytic,
         .columns = gonio_i_basis_columns(basis),
         .names = (const char *const *)basis->names,
         .fingerprints = basis->fingerprints,

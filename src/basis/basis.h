@@ -15,6 +15,7 @@ struct gonio_basis {
     bool without_mean;
     size_t materials;
     size_t mixtures; /* columns after those of the materials */
+    size_t analytic; /* columns after the mixtures */
     char **names;
     uint64_t *fingerprints;
     size_t cells;
@@ -55,8 +56,8 @@ const char *gonio_i_basis_format_name(int index);
 
 /* Allocates all arrays of a basis except V, zeroed; NULL after a message. */
 gonio_basis *gonio_i_basis_allocate(gonio_context *context, size_t materials, size_t mixtures,
-                                    size_t cells, gonio_channel_model channels, size_t components,
-                                    size_t variance_count);
+                                    size_t analytic, size_t cells, gonio_channel_model channels,
+                                    size_t components, size_t variance_count);
 
 /* The first part of gonio_basis_learn: a basis without V, and V ([rows][components]) in double
  * precision. */
@@ -88,6 +89,23 @@ gonio_status gonio_i_basis_check(gonio_context *context, const char *path,
 
 size_t gonio_i_basis_row_count(size_t cells, gonio_channel_model channels);
 size_t gonio_i_basis_columns(const gonio_basis *basis);
+
+/* The columns of the materials, which come first. */
+static inline size_t gonio_i_measured_columns(const gonio_basis_view *view)
+{
+    return view->columns - view->mixtures - view->analytic;
+}
+
+/* The weights of columns in learning, on average 1: half for measured ones and half for mixtures,
+ * less the share of analytic ones (analytic.h). */
+typedef struct gonio_i_column_weights {
+    double measured;
+    double mixture;
+    double analytic;
+} gonio_i_column_weights;
+
+gonio_i_column_weights gonio_i_weights_of_columns(size_t measured, size_t mixtures,
+                                                  size_t analytic);
 
 /* gonio_basis_rows without its checks. */
 void gonio_i_basis_rows(const gonio_basis *basis, size_t first, size_t count, size_t components,

@@ -112,22 +112,39 @@ static gonio_status find_arrays(reader *r)
     return GONIO_OK;
 }
 
-static gonio_status read_mixtures(const reader *r)
+/* A number of columns in the metadata. */
+static gonio_status read_columns(const reader *r, const char *key, size_t *columns)
 {
-    const gonio_i_array *parents = r->arrays[GONIO_I_MIXTURE_PARENTS];
-    const char *text = gonio_i_safetensors_text(r->file, "mixtures");
+    const char *text = gonio_i_safetensors_text(r->file, key);
     char *end = NULL;
     const bool digits = text != NULL && *text >= '0' && *text <= '9';
     errno = 0;
-    const unsigned long long mixtures = digits ? strtoull(text, &end, 10) : 0;
-    if (!digits || *end != '\0' || errno != 0 || mixtures > INT32_MAX) {
-        return damaged(r, "mixtures", "is not a number of columns");
+    const unsigned long long number = digits ? strtoull(text, &end, 10) : 0;
+    if (!digits || *end != '\0' || errno != 0 || number > INT32_MAX) {
+        return damaged(r, key, "is not a number of columns");
+    }
+    *columns = (size_t)number;
+    return GONIO_OK;
+}
+
+/* The columns beside those of the materials. Files of older versions have no analytic ones. */
+static gonio_status read_computed(const reader *r)
+{
+    const gonio_i_array *parents = r->arrays[GONIO_I_MIXTURE_PARENTS];
+    const bool analytic = gonio_i_safetensors_text(r->file, "analytic") != NULL;
+    size_t mixtures = 0;
+    gonio_status status = read_columns(r, "mixtures", &mixtures);
+    if (status == GONIO_OK && analytic) {
+        status = read_columns(r, "analytic", &r->basis->analytic);
+    }
+    if (status != GONIO_OK) {
+        return status;
     }
     if (parents != NULL &&
         (mixtures == 0 || parents->shape[0] != mixtures || parents->shape[1] != 2)) {
         return damaged(r, "mixture_parents", "has a shape that does not fit the mixtures");
     }
-    r->basis->mixtures = (size_t)mixtures;
+    r->basis->mixtures = mixtures;
     return GONIO_OK;
 }
 
@@ -144,7 +161,7 @@ static gonio_status read_shapes(const reader *r)
     if (basis->cells > GONIO_BINS || a[GONIO_I_MEAN]->shape[0] != basis->rows) {
         return damaged(r, "mean", "has a shape that does not fit the cells");
     }
-    const gonio_status status = read_mixtures(r);
+    const gonio_status status = read_computed(r);
     if (status != GONIO_OK) {
         return status;
     }

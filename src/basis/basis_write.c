@@ -58,6 +58,7 @@ static void list_arrays(const gonio_basis *basis, const double *scale, const cha
 /* The computed texts of the metadata. */
 typedef struct made_texts {
     char mixtures[24];
+    char analytic[24];
     char fingerprint[GONIO_I_HASH_ROOM];
     char checksum[GONIO_I_BASIS_ARRAYS][GONIO_I_HASH_ROOM];
 } made_texts;
@@ -75,6 +76,7 @@ static size_t list_metadata(const gonio_basis *basis, const char *command, const
         {"mapping", gonio_i_basis_mappings[basis->mapping]},
         {"centring", gonio_i_basis_centrings[basis->without_mean]},
         {"mixtures", made->mixtures},
+        {"analytic", made->analytic},
         {"fingerprint", made->fingerprint},
     };
     size_t count = sizeof first / sizeof *first;
@@ -97,6 +99,7 @@ static gonio_status make_texts(gonio_context *context, const gonio_basis *basis,
 {
     gonio_status status = GONIO_OK;
     snprintf(made->mixtures, sizeof made->mixtures, "%zu", basis->mixtures);
+    snprintf(made->analytic, sizeof made->analytic, "%zu", basis->analytic);
     gonio_i_print_hash(basis->fingerprint, made->fingerprint);
     for (size_t k = 0; k < GONIO_I_BASIS_ARRAYS && status == GONIO_OK; k++) {
         uint64_t hash = basis->vectors_checksum;

@@ -44,8 +44,11 @@ GONIO_I_VECTORISED static void add_columns(const float *values, size_t rows, siz
 static void find_means(const gonio_i_learner *l, const float *values, size_t rows, double *mean)
 {
     memset(mean, 0, rows * sizeof *mean);
-    add_columns(values, rows, l->measured, l->weight[0], mean);
-    add_columns(values + l->measured * rows, rows, l->columns - l->measured, l->weight[1], mean);
+    const size_t mixtures = l->columns - l->measured - l->analytic;
+    add_columns(values, rows, l->measured, l->weight.measured, mean);
+    add_columns(values + l->measured * rows, rows, mixtures, l->weight.mixture, mean);
+    add_columns(values + (l->columns - l->analytic) * rows, rows, l->analytic, l->weight.analytic,
+                mean);
     for (size_t i = 0; i < rows; i++) {
         mean[i] /= (double)l->columns;
     }
@@ -66,9 +69,12 @@ static void centre(const gonio_i_learner *l, const gonio_i_tile_workspace *w, si
                    const double *mean)
 {
     const size_t after = l->measured * rows;
-    subtract_means(w->values, rows, l->measured, mean, sqrt(l->weight[0]), w->h);
-    subtract_means(w->values + after, rows, l->columns - l->measured, mean, sqrt(l->weight[1]),
-                   w->h + after);
+    const size_t last = (l->columns - l->analytic) * rows;
+    subtract_means(w->values, rows, l->measured, mean, sqrt(l->weight.measured), w->h);
+    subtract_means(w->values + after, rows, l->columns - l->measured - l->analytic, mean,
+                   sqrt(l->weight.mixture), w->h + after);
+    subtract_means(w->values + last, rows, l->analytic, mean, sqrt(l->weight.analytic),
+                   w->h + last);
 }
 
 static int compare_values(const void *a, const void *b)
@@ -126,6 +132,10 @@ static gonio_status read_centred(const gonio_i_learner *l, size_t tile, gonio_i_
     if (l->mixtures != NULL) {
         gonio_i_mixtures_fill(l->mixtures, rows.first, rows.count,
                               w->values + l->measured * rows.count);
+    }
+    for (size_t j = 0; j < l->analytic; j++) {
+        memcpy(w->values + (l->columns - l->analytic + j) * rows.count,
+               l->random + j * l->basis->rows + rows.first, rows.count * sizeof *w->values);
     }
     if (first_pass) {
         find_origin(l, rows, w);

@@ -70,7 +70,7 @@ static bool descending(const double *values, size_t count)
 
 static bool parents_are_measured(const gonio_basis *basis)
 {
-    const size_t measured = gonio_i_basis_columns(basis) - basis->mixtures;
+    const size_t measured = gonio_i_columns_per_material(basis->channels) * basis->materials;
     for (size_t k = 0; basis->parents != NULL && k < 2 * basis->mixtures; k++) {
         if (basis->parents[k] < 0 || (size_t)basis->parents[k] >= measured) {
             return false;

@@ -2,14 +2,18 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <gonio/atlas.h>
+
 #include "../core/options.h"
 #include "../database/tiles.h"
+#include "analytic.h"
 #include "centred_tiles.h"
 #include "principal_components.h"
 
 void gonio_basis_options_default_of(gonio_basis_options *options, size_t size)
 {
-    const gonio_basis_options usual = {.mixtures = GONIO_USUAL_MIXTURES};
+    const gonio_basis_options usual = {.mixtures = GONIO_USUAL_MIXTURES,
+                                       .analytic = GONIO_USUAL_ANALYTIC};
     gonio_i_give(&usual, sizeof usual, options, size);
 }
 
@@ -34,14 +38,9 @@ static gonio_status describe_origin(const gonio_i_learner *l)
 static gonio_status prepare_mixtures(gonio_i_learner *l, const gonio_basis_options *options,
                                      gonio_i_mixtures **mixtures)
 {
-    l->weight[0] = 1.0;
-    l->weight[1] = 0.0;
     if (options->mixtures == 0) {
         return GONIO_OK;
     }
-    const double half = 0.5 * (double)l->columns;
-    l->weight[0] = half / (double)l->measured;
-    l->weight[1] = half / (double)options->mixtures;
     gonio_status status = gonio_i_basis_map_cells(l->context, l->basis);
     if (status == GONIO_OK) {
         status = gonio_i_mixtures_create(l->context, l->basis, l->database, options, mixtures);
@@ -57,6 +56,10 @@ static gonio_status learn(gonio_i_learner *l, const gonio_basis_options *options
 {
     gonio_i_mixtures *mixtures = NULL;
     gonio_status status = describe_origin(l);
+    l->weight = gonio_i_weights_of_columns(l->measured, options->mixtures, l->analytic);
+    if (status == GONIO_OK && l->analytic > 0) {
+        status = gonio_i_analytic_columns(l->context, l->database, options->analytic, &l->random);
+    }
     if (status == GONIO_OK) {
         status = prepare_mixtures(l, options, &mixtures);
     }
@@ -64,6 +67,7 @@ static gonio_status learn(gonio_i_learner *l, const gonio_basis_options *options
         status = gonio_i_find_components(l);
     }
     gonio_i_mixtures_free(&mixtures);
+    free(l->random);
     return status;
 }
 
@@ -75,6 +79,30 @@ static size_t count_mixtures(const gonio_database_view *view, const gonio_basis_
     return options->mixtures != GONIO_USUAL_MIXTURES ? options->mixtures
            : usual                                   ? GONIO_DEFAULT_MIXTURES
                                                      : 0;
+}
+
+/* The default number of analytic materials: some beside the usual mixtures. `options` as given. */
+static size_t count_analytic(const gonio_database_view *view, const gonio_basis_options *options)
+{
+    const bool usual =
+        options->mixtures == GONIO_USUAL_MIXTURES && count_mixtures(view, options) > 0;
+    return options->analytic != GONIO_USUAL_ANALYTIC ? options->analytic
+           : usual                                   ? GONIO_DEFAULT_ANALYTIC
+                                                     : 0;
+}
+
+static gonio_status check_analytic(gonio_context *context, const gonio_basis_options *options)
+{
+    if (options->analytic > GONIO_ATLAS_RANDOM_COUNT) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "%zu analytic materials asked for, but there are %d", options->analytic,
+                            GONIO_ATLAS_RANDOM_COUNT);
+    }
+    if (options->analytic > 0 && options->without_mean) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "analytic materials need a basis with a mean");
+    }
+    return GONIO_OK;
 }
 
 /* Whether mixtures are implemented for a kind of basis. */
@@ -138,13 +166,18 @@ gonio_status gonio_i_basis_learn_exact(gonio_context *context, const gonio_datab
     options = &how;
     gonio_i_learner l = {.context = context, .database = database, .subset = options->subset};
     l.view = gonio_database_describe(database);
+    how.analytic = count_analytic(l.view, &how);
     how.mixtures = count_mixtures(l.view, &how);
     l.materials = l.subset != NULL ? options->subset_count : l.view->materials;
     l.measured = l.view->columns / l.view->materials * l.materials;
-    l.columns = l.measured + options->mixtures;
+    l.analytic = l.view->columns / l.view->materials * options->analytic;
+    l.columns = l.measured + options->mixtures + l.analytic;
     l.any_rank = options->mixtures > 0 && options->components == 0;
     size_t components = 0;
     status = check_mixtures(context, l.view, options);
+    if (status == GONIO_OK) {
+        status = check_analytic(context, options);
+    }
     if (status == GONIO_OK) {
         status = check_subset(context, l.view, options);
     }
@@ -158,8 +191,8 @@ gonio_status gonio_i_basis_learn_exact(gonio_context *context, const gonio_datab
     l.batches = gonio_i_tile_batches(l.tiles);
     size_t finished = 0;
     l.finished = &finished;
-    l.basis = gonio_i_basis_allocate(context, l.materials, options->mixtures, l.view->cells,
-                                     l.view->channels, components,
+    l.basis = gonio_i_basis_allocate(context, l.materials, options->mixtures, l.analytic,
+                                     l.view->cells, l.view->channels, components,
                                      options->without_mean ? l.columns : l.columns - 1);
     if (l.basis == NULL) {
         return GONIO_ERROR_MEMORY;

@@ -11,11 +11,13 @@ typedef struct gonio_i_learner {
     const gonio_database_view *view;
     const size_t *subset; /* of its materials; NULL for all */
     size_t materials;
-    size_t columns;                   /* with mixtures */
+    size_t columns;                   /* with mixtures and analytic ones */
     size_t measured;                  /* columns of the materials, which come first */
     const gonio_i_mixtures *mixtures; /* NULL without */
-    double weight[2];                 /* of a measured column and of a mixture; on average 1 */
-    bool any_rank;                    /* fewer components than asked for are accepted */
+    size_t analytic;                  /* columns of random materials, which come last */
+    float *random;                    /* [analytic][rows of the database], or NULL */
+    gonio_i_column_weights weight;
+    bool any_rank; /* fewer components than asked for are accepted */
     gonio_basis *basis;
     double *vectors; /* V before it is rounded */
     size_t tiles;

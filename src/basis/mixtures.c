@@ -113,7 +113,7 @@ gonio_status gonio_i_mixtures_create(gonio_context *context, const gonio_basis *
                                      const gonio_basis_options *options,
                                      gonio_i_mixtures **mixtures)
 {
-    const size_t columns = gonio_i_basis_columns(basis) - basis->mixtures;
+    const size_t columns = gonio_i_columns_per_material(basis->channels) * basis->materials;
     gonio_i_mixtures *m = gonio_i_allocate(context, 1, sizeof *m);
     if (m == NULL) {
         return GONIO_ERROR_MEMORY;

@@ -21,6 +21,7 @@ void gonio_recipe_for_grid_of(gonio_recipe *recipe, size_t size,
         .channels = representation == GONIO_SECTORED ? GONIO_SEPARATE : GONIO_JOINT,
         .mapping = GONIO_LOG,
         .mixtures = GONIO_USUAL_MIXTURES,
+        .analytic = GONIO_USUAL_ANALYTIC,
     };
     gonio_i_give(&usual, sizeof usual, recipe, size);
 }
@@ -42,6 +43,7 @@ gonio_status gonio_learn(gonio_context *context, const char *const *paths, size_
                                          .components = how.components,
                                          .without_mean = how.without_mean,
                                          .mixtures = how.mixtures,
+                                         .analytic = how.analytic,
                                          .seed = how.seed};
     gonio_database *database = NULL;
     status = gonio_database_create(context, paths, count, &grid, &database);

@@ -79,6 +79,54 @@ static gonio_status write_tiles(gonio_context *context, const gonio_database *da
     return status;
 }
 
+/* Copies the kept cells of one channel of a slab, from one tile on, to a material's columns. */
+static void keep_cells(const gonio_database *database, const gonio_i_cell_tile *t, size_t from,
+                       size_t channel, const gonio_i_slab_cells *slab, float *columns)
+{
+    const gonio_i_strides step = gonio_i_slab_strides(database->options.representation);
+    const gonio_channel_model channels = database->options.channels;
+    const size_t rows = gonio_i_rows_per_cell(channels) * database->cells;
+    float *column = columns + (channels == GONIO_JOINT ? 0 : channel * rows);
+    size_t kept = t->kept;
+    for (size_t k = t->first; k < t->first + t->count && kept < t[1].kept; k++) {
+        if (database->stored[k] == database->cell[kept]) {
+            const size_t row = gonio_i_row_of(channels, kept++, (int)channel);
+            const double g = slab->g[(k - from) * step.cell + channel * step.channel];
+            column[row] = slab->data[k - from] ? (float)g : NAN;
+        }
+    }
+}
+
+static gonio_status read_other_slab(gonio_context *context, const gonio_database *database,
+                                    const gonio_material *material, int theta_h,
+                                    const gonio_i_slab_cells *slab, float *columns)
+{
+    const size_t from = database->tile[database->slab_tiles[theta_h]].first;
+    const gonio_status status = gonio_material_read_slab(context, material, theta_h, slab->rho);
+    if (status != GONIO_OK) {
+        return status;
+    }
+    gonio_i_slab_to_cells(database, theta_h, slab);
+    for (size_t j = database->slab_tiles[theta_h]; j < database->slab_tiles[theta_h + 1]; j++) {
+        for (size_t channel = 0; channel < GONIO_CHANNELS; channel++) {
+            keep_cells(database, &database->tile[j], from, channel, slab, columns);
+        }
+    }
+    return GONIO_OK;
+}
+
+gonio_status gonio_i_database_read_other(gonio_context *context, const gonio_database *database,
+                                         const gonio_material *material, float *columns)
+{
+    reader r = {0};
+    gonio_status status = make_reader(context, database, &r) ? GONIO_OK : GONIO_ERROR_MEMORY;
+    for (int theta_h = 0; theta_h < GONIO_THETA_H_BINS && status == GONIO_OK; theta_h++) {
+        status = read_other_slab(context, database, material, theta_h, &r.slab, columns);
+    }
+    free_reader(&r);
+    return status;
+}
+
 /* Marks the cells of a slab in which a material has or lacks data. Returns the number with data. */
 GONIO_I_VECTORISED static size_t mark_seen(const bool *data, size_t count, uint8_t *seen)
 {

@@ -25,4 +25,10 @@ gonio_status gonio_i_database_read_tile(gonio_context *context, const gonio_data
                                         size_t tile, const size_t *subset, size_t subset_count,
                                         float *block);
 
+/* The columns of a material that is not one of the database's, on its rows: columns[column of the
+ * material][rows], as gonio_database_read_rows gives those of its own. A row without data is NaN.
+ * Threads may call it at the same time. Errors: _MEMORY; those of reading the material. */
+gonio_status gonio_i_database_read_other(gonio_context *context, const gonio_database *database,
+                                         const gonio_material *material, float *columns);
+
 #endif

@@ -14,7 +14,7 @@ static const double LEFT_OPEN = 0.05;
 static gonio_status mean_reciprocal(const gonio_i_choices *p, double *mean)
 {
     const gonio_i_prior *prior = p->prior;
-    const size_t measured = prior->view->columns - prior->view->mixtures;
+    const size_t measured = gonio_i_measured_columns(prior->view);
     const size_t used = prior->samples > 0 ? measured : 0;
     double *f = gonio_i_allocate(p->context, prior->components, sizeof *f);
     double *square = gonio_i_allocate(p->context, used + 1, sizeof *square);

@@ -31,6 +31,9 @@ static double level(int k)
 static const double CONVINCING = 8.0;
 static const double FEW = 20.0;
 
+/* How much worse than none a level on the way to the best may be. */
+static const double TOLERANCE = 2.0;
+
 /* alpha of the models, from a usual material to the most unusual one. */
 static const gonio_i_model MODELS[] = {{1.0, 0.12, 0.0}, {1.0, 0.25, 8.0}, {1.0, 0.5, 8.0}};
 
@@ -181,22 +184,44 @@ static gonio_status score_columns(search *s, const gonio_i_columns *columns)
     return status;
 }
 
-/* The mean over the levels, weighted by their likelihood. Adds the log likelihood ratio of the best
- * level and none to `gain`. */
-static double mean_level(const double score[LEVELS], double *gain)
+/* The best level. */
+static int best_level(const double score[LEVELS])
 {
-    double best = score[0];
+    int best = 0;
+    for (int k = 1; k < LEVELS; k++) {
+        best = score[k] > score[best] ? k : best;
+    }
+    return best;
+}
+
+/* Half a dark level explains the readings better than none, and so do all that lead to it. Where
+ * one on the way is worse, the scores only scatter, as those of unusual materials do. */
+static bool is_led_to(const double score[LEVELS], int best)
+{
+    bool led = true;
+    for (int k = 0; k < best; k++) {
+        led = led && score[k] > score[0] - TOLERANCE;
+    }
+    return led;
+}
+
+/* The mean over the levels, weighted by their likelihood. Adds the log likelihood ratio of the best
+ * level and none to `gain`, and counts the column, if smaller levels lead to the best. */
+static double mean_level(const double score[LEVELS], double *gain, size_t *led_to)
+{
+    const int level_of_best = best_level(score);
+    const double best = score[level_of_best];
     double sum = 0.0;
     double mean = 0.0;
-    for (int k = 0; k < LEVELS; k++) {
-        best = fmax(best, score[k]);
-    }
     for (int k = 0; k < LEVELS; k++) {
         const double weight = exp(score[k] - best);
         sum += weight;
         mean += weight * level(k);
     }
-    *gain += best - score[0];
+    if (is_led_to(score, level_of_best)) {
+        *gain += best - score[0];
+        (*led_to)++;
+    }
     return mean / sum;
 }
 
@@ -213,11 +238,12 @@ static double convincing(const search *s)
 static gonio_status find(search *s, const gonio_i_columns *columns, bool *found)
 {
     double gain = 0.0;
+    size_t led_to = 0;
     const gonio_status status = score_columns(s, columns);
     for (size_t c = 0; c < s->columns && status == GONIO_OK; c++) {
-        s->dark[c] = mean_level(&s->score[c * LEVELS], &gain) * scale_of(s, c);
+        s->dark[c] = mean_level(&s->score[c * LEVELS], &gain, &led_to) * scale_of(s, c);
     }
-    *found = status == GONIO_OK && gain > convincing(s);
+    *found = status == GONIO_OK && gain > convincing(s) && 2 * led_to >= s->columns;
     return status;
 }
 

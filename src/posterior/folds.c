@@ -59,7 +59,7 @@ gonio_status gonio_i_learned_error_create(gonio_context *context, const gonio_i_
     }
     x->prior = prior;
     x->components = prior->components;
-    x->measured = prior->samples - prior->view->mixtures;
+    x->measured = gonio_i_measured_columns(prior->view);
     x->each = x->measured / prior->view->materials;
     x->metric = gonio_i_allocate(context, x->components * x->components, sizeof *x->metric);
     const gonio_status status = x->metric == NULL ? GONIO_ERROR_MEMORY : find_metric(context, x);
@@ -92,6 +92,9 @@ static bool is_left_out(const gonio_i_learned_error *x, size_t column, size_t k)
 {
     if (column < x->measured) {
         return is_of_fold(x, column, k);
+    }
+    if (column >= x->prior->samples - x->prior->view->analytic) {
+        return false;
     }
     const int32_t *parent = x->prior->view->parents + 2 * (column - x->measured);
     return is_of_fold(x, (size_t)parent[0], k) || is_of_fold(x, (size_t)parent[1], k);

@@ -11,12 +11,12 @@ static const double WIDTH = M_PI / 180.0;
 /* The weight of a column in learning, on average 1 (docs/method.md, mixtures). */
 static double weight_of(const gonio_basis_view *view, size_t column)
 {
-    const double all = (double)view->columns;
-    const double measured = all - (double)view->mixtures;
-    if (view->mixtures == 0) {
-        return 1.0;
-    }
-    return 0.5 * all / ((double)column < measured ? measured : (double)view->mixtures);
+    const size_t measured = gonio_i_measured_columns(view);
+    const gonio_i_column_weights weights =
+        gonio_i_weights_of_columns(measured, view->mixtures, view->analytic);
+    return column < measured                         ? weights.measured
+           : column < view->columns - view->analytic ? weights.mixture
+                                                     : weights.analytic;
 }
 
 /* H - m = V S W' with every column times the root of its weight. So z of column j is

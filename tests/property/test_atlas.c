@@ -3,6 +3,7 @@
 #include <gonio/atlas.h>
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "../support.h"
@@ -302,6 +303,37 @@ static void test_no_material_reflects_more_than_it_receives(void **state)
     }
 }
 
+/* Random materials are as the named ones; those that a basis learns from, and a few more. */
+static void test_random_materials_are_plausible(void **state)
+{
+    const int degrees[] = {0, 45, 75, 85, 89};
+    char name[32];
+    uint64_t seed = 3;
+    (void)state;
+    for (int k = 0; k < GONIO_ATLAS_RANDOM_COUNT; k += k < 210 ? 3 : 1399) {
+        snprintf(name, sizeof name, "random-%04d", k);
+        assert_int_equal(gonio_atlas_find(name), GONIO_ATLAS_RANDOM + k);
+        assert_string_equal(gonio_atlas_class(GONIO_ATLAS_RANDOM + k), "random");
+        for (size_t n = 0; n < sizeof degrees / sizeof *degrees; n++) {
+            double total[GONIO_CHANNELS];
+            material_albedo(GONIO_ATLAS_RANDOM + k, radians(degrees[n]), STEPS, total);
+            for (int c = 0; c < GONIO_CHANNELS; c++)
+                assert_true(total[c] > 0.0 && total[c] <= 1.0);
+        }
+        const gonio_half_difference at = random_point(&seed);
+        double rho[GONIO_CHANNELS];
+        gonio_atlas_value(GONIO_ATLAS_RANDOM + k, at, rho);
+        for (int c = 0; c < GONIO_CHANNELS; c++)
+            assert_true(isfinite(rho[c]) && rho[c] >= 0.0);
+    }
+    static const char *const none[] = {"random-", "random-1", "random-00000", "random-000x",
+                                       "random--001"};
+    for (size_t k = 0; k < sizeof none / sizeof *none; k++) {
+        assert_int_equal(gonio_atlas_find(none[k]), -1);
+    }
+    assert_null(gonio_atlas_class(GONIO_ATLAS_RANDOM + GONIO_ATLAS_RANDOM_COUNT));
+}
+
 /* ---- Slabs ---- */
 
 static void test_slab_agrees_with_value(void **state)
@@ -364,6 +396,7 @@ int main(void)
         cmocka_unit_test(test_quadrature_is_exact_to_a_thousandth),
         cmocka_unit_test(test_quadrature_has_converged),
         cmocka_unit_test(test_no_material_reflects_more_than_it_receives),
+        cmocka_unit_test(test_random_materials_are_plausible),
         cmocka_unit_test(test_slab_agrees_with_value),
         cmocka_unit_test(test_slab_marks_invalid_bins),
     };

@@ -274,6 +274,90 @@ static void test_what_has_no_mixtures(void **state)
     gonio_context_free(&context);
 }
 
+/* ---- analytic columns ---- */
+
+enum { ANALYTIC = 2 };
+
+static gonio_basis *with_analytic(gonio_context *context, int kind)
+{
+    gonio_recipe recipe;
+    gonio_basis *basis = NULL;
+    gonio_recipe_for_grid(&recipe, kinds[kind].representation);
+    recipe.channels = kinds[kind].channels;
+    recipe.mixtures = MADE_MIXTURES;
+    recipe.seed = SEED;
+    recipe.analytic = ANALYTIC;
+    assert_int_equal(gonio_learn(context, made_paths, MADE_MATERIALS, &recipe, &basis), GONIO_OK);
+    return basis;
+}
+
+/* The columns of the random materials alone, on all cells of the grid. */
+static double *random_columns(int kind, const gonio_database_view **view, gonio_database **database)
+{
+    static const char *const paths[ANALYTIC] = {"atlas:random-0000", "atlas:random-0001"};
+    const gonio_database_options how = {.size = sizeof how,
+                                        .representation = kinds[kind].representation,
+                                        .channels = kinds[kind].channels};
+    assert_int_equal(gonio_database_create(NULL, paths, ANALYTIC, &how, database), GONIO_OK);
+    *view = gonio_database_describe(*database);
+    double *h = malloc((*view)->columns * (*view)->rows * sizeof *h);
+    assert_non_null(h);
+    assert_int_equal(gonio_database_read_rows(NULL, *database, 0, (*view)->rows, NULL, 0, h),
+                     GONIO_OK);
+    return h;
+}
+
+/* m = 0.95 (the mean without them) + 0.05 (their own mean). */
+static void test_analytic_columns_have_a_small_share(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < KINDS; kind++) {
+        gonio_basis *basis = with_analytic(NULL, kind);
+        const gonio_basis_view *view = gonio_basis_describe(basis);
+        const gonio_database_view *of = NULL;
+        gonio_database *database = NULL;
+        double *h = random_columns(kind, &of, &database);
+        assert_int_equal(view->analytic, of->columns);
+        assert_int_equal(view->columns, made[kind].view->columns + of->columns);
+        assert_int_equal(view->rows, of->rows);
+        assert_true(view->fingerprint != made[kind].view->fingerprint);
+        for (size_t row = 0; row < view->rows; row += 7) {
+            double mean = 0.0;
+            for (size_t j = 0; j < of->columns; j++) {
+                mean += h[j * of->rows + row] / (double)of->columns;
+            }
+            assert_close(view->mean[row], 0.95 * made[kind].view->mean[row] + 0.05 * mean, 1e-6);
+        }
+        free(h);
+        gonio_database_free(&database);
+        gonio_basis_free(&basis);
+    }
+}
+
+static void test_the_file_keeps_analytic_columns(void **state)
+{
+    (void)state;
+    char *folder = support_folder();
+    char path[256];
+    snprintf(path, sizeof path, "%s/basis.gonio", folder);
+    gonio_context *two = context_of(2);
+    gonio_basis *basis = with_analytic(NULL, 2);
+    gonio_basis *threads = with_analytic(two, 2);
+    gonio_basis *again = NULL;
+    assert_int_equal(gonio_basis_write(NULL, basis, "", path), GONIO_OK);
+    assert_int_equal(gonio_basis_read(NULL, path, &again), GONIO_OK);
+    const gonio_basis_view *a = gonio_basis_describe(basis);
+    const gonio_basis_view *b = gonio_basis_describe(again);
+    assert_int_equal(b->analytic, a->analytic);
+    assert_true(a->fingerprint == b->fingerprint && a->checksum == b->checksum);
+    assert_true(a->checksum == gonio_basis_describe(threads)->checksum);
+    gonio_basis_free(&again);
+    gonio_basis_free(&threads);
+    gonio_basis_free(&basis);
+    gonio_context_free(&two);
+    support_remove(folder);
+}
+
 /* ---- the file ---- */
 
 static void test_the_file_keeps_mixtures(void **state)
@@ -410,6 +494,8 @@ int main(void)
         cmocka_unit_test(test_samples_are_the_columns),
         cmocka_unit_test(test_threads_and_seeds),
         cmocka_unit_test(test_what_has_no_mixtures),
+        cmocka_unit_test(test_analytic_columns_have_a_small_share),
+        cmocka_unit_test(test_the_file_keeps_analytic_columns),
         cmocka_unit_test(test_the_file_keeps_mixtures),
         cmocka_unit_test(test_a_damaged_number_of_mixtures),
         cmocka_unit_test(test_damaged_parents),

@@ -30,7 +30,7 @@ def _parsed(kind: str, name: str) -> int:
 
 def learn(materials: Iterable[Any], *, grid: str = "sectored", channels: Optional[str] = None, mapping: str = "log",
           mean: bool = True, components: int = 0, mixtures: Optional[int] = None, seed: int = 0,
-          scratch: Optional[Path] = None) -> "Basis":
+          scratch: Optional[Path] = None, analytic: Optional[int] = None) -> "Basis":
     """Learns a basis from materials.
 
     Parameters
@@ -53,6 +53,8 @@ def learn(materials: Iterable[Any], *, grid: str = "sectored", channels: Optiona
         Of the mixtures. The same seed gives the same basis on any number of threads.
     scratch : path, optional
         Folder for scratch files; $TMPDIR or /tmp by default.
+    analytic : int, optional
+        Random analytic materials to learn from with a small weight; by default 200 beside the usual mixtures.
 
     Returns
     -------
@@ -80,7 +82,8 @@ def learn(materials: Iterable[Any], *, grid: str = "sectored", channels: Optiona
     handles = ffi.new("gonio_material *[]", [m._handle for m in used])
     with causes(*used):
         database = _calls.made("database", lib.gonio_database_create_from_materials, handles, len(used), where)
-    how = _calls.options("basis", components=components, mixtures=mixtures, seed=seed, without_mean=not mean)
+    how = _calls.options("basis", components=components, mixtures=mixtures, seed=seed, without_mean=not mean,
+                         analytic=analytic)
     return Basis._of(_calls.made("basis", lib.gonio_basis_learn, database, how))
 
 
@@ -160,6 +163,11 @@ class Basis:
     def mixtures(self) -> int:
         """Computed columns beside the measured ones."""
         return int(self._view.mixtures)
+
+    @property
+    def analytic(self) -> int:
+        """Columns of random analytic materials."""
+        return int(self._view.analytic)
 
     @property
     def cells(self) -> npt.NDArray[np.int32]:
