@@ -5,7 +5,7 @@
 # The program lists its commands and their options, so that none is missing here.
 _gonio_commands()
 {
-    "${COMP_WORDS[0]}" --help 2>/dev/null | sed -n 's/^  \([a-z]*\) .*/\1/p'
+    "${COMP_WORDS[0]}" --help 2>/dev/null | sed -n 's/^  \([a-z-]*\) .*/\1/p'
 }
 
 # Lines "-n --number N": the names of an option and, if it takes a value, what the help calls that.

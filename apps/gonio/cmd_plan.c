@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 typedef struct options {
     const char *output;
@@ -85,6 +86,9 @@ static bool check(const tool *t, const options *o, size_t count, const char **ar
     }
     if (o->history != NULL && tool_is_one_output(o->history, o->output)) {
         return tool_refuse(t, "--history and -o name the same file");
+    }
+    if (o->planning.anisotropic && o->method != NULL && strcmp(o->method, "expected-error") != 0) {
+        return tool_refuse(t, "--anisotropic needs --method expected-error");
     }
     return planning_options_check(t, &o->planning, o->output) &&
            tool_check_count(t, "--restarts", o->restarts, 1) &&

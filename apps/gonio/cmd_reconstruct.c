@@ -1,5 +1,6 @@
 /* gonio reconstruct: BRDFs from a few readings. */
 #include "albedos.h"
+#include "anisotropic_result.h"
 #include "builtin_basis.h"
 #include "command_line.h"
 #include "correction_options.h"
@@ -31,6 +32,8 @@ typedef struct options {
     int other_basis;
     int average_repeats;
     int negative_to_zero;
+    int anisotropic;
+    int symmetry;
     write_options write;
     gonio_write_options how; /* of write */
 } options;
@@ -239,7 +242,8 @@ static gonio_reconstruct_options settings(const options *o)
                                      .other_basis = o->other_basis,
                                      .method = o->method,
                                      .eta = o->eta,
-                                     .deviation = o->deviation != NULL || o->albedo_at != NULL};
+                                     .deviation = o->deviation != NULL || o->albedo_at != NULL,
+                                     .symmetry = o->symmetry};
     posterior_options_apply(&o->posterior, &how);
     return how;
 }
@@ -334,10 +338,26 @@ static gonio_status reconstruct_one(tool *t, const options *o, const gonio_basis
     return status;
 }
 
+static gonio_status reconstruct_anisotropic(tool *t, const options *o, const gonio_basis *basis,
+                                            gonio_readings *const *readings, char *const *outputs,
+                                            size_t count, json_t *results)
+{
+    const gonio_reconstruct_options how = settings(o);
+    const anisotropic_task task = {basis, &how, &o->write, &o->how, o->predict_at};
+    gonio_status status = GONIO_OK;
+    for (size_t k = 0; k < count && status == GONIO_OK; k++) {
+        status = anisotropic_result_write(t, &task, readings[k], outputs[k], results);
+    }
+    return status;
+}
+
 static gonio_status reconstruct(tool *t, const options *o, const gonio_basis *basis,
                                 gonio_readings *const *readings, char *const *outputs, size_t count,
                                 json_t *results)
 {
+    if (o->anisotropic) {
+        return reconstruct_anisotropic(t, o, basis, readings, outputs, count, results);
+    }
     bool merl = o->predict_at == NULL && o->deviation == NULL;
     for (size_t k = 0; k < count; k++) {
         merl = merl && is_merl(o, outputs[k]);
@@ -461,6 +481,22 @@ static bool check_more(const tool *t, const options *o, const char *const *input
                                     tool_check_output(t, o->deviation, &o->predict_at, 1));
 }
 
+/* Checks what goes with --anisotropic. */
+static bool check_anisotropic(const tool *t, const options *o)
+{
+    if (o->method != NULL && strcmp(o->method, "posterior") != 0) {
+        return tool_refuse(t, "--anisotropic needs --method posterior");
+    }
+    if (o->deviation != NULL) {
+        return tool_refuse(t, "--deviation is a table of an isotropic material; with --anisotropic "
+                              "--predict-at has the deviations");
+    }
+    if (o->predict_at == NULL) {
+        return tool_refuse(t, "--anisotropic needs --predict-at FILE");
+    }
+    return anisotropic_check_symmetry(t, o->symmetry);
+}
+
 static bool check(const tool *t, const options *o, const char *const *inputs, size_t count)
 {
     if (count == 0) {
@@ -471,6 +507,9 @@ static bool check(const tool *t, const options *o, const char *const *inputs, si
     }
     if ((o->predict_at != NULL || o->deviation != NULL) && count > 2) {
         return tool_refuse(t, "--predict-at and --deviation take one READINGS");
+    }
+    if (o->anisotropic && !check_anisotropic(t, o)) {
+        return false;
     }
     if (!(o->eta > 0.0)) {
         return tool_refuse(t, "--eta must be above 0");
@@ -560,6 +599,10 @@ int cmd_reconstruct(int argc, const char **argv)
         {"predict-at", '\0', POPT_ARG_STRING, &o.predict_at, 0,
          "Predict readings at the directions of this file, as CSV, in place of a table (posterior)",
          "FILE"},
+        {"anisotropic", '\0', POPT_ARG_NONE, &o.anisotropic, 0,
+         "The material changes as the sample turns: azimuths of all directions count (posterior)",
+         NULL},
+        SYMMETRY_OPTION(&o.symmetry),
         {"average-repeats", '\0', POPT_ARG_NONE, &o.average_repeats, 0,
          "Accept directions that were read more than once", NULL},
         {"negative-to-zero", '\0', POPT_ARG_NONE, &o.negative_to_zero, 0,

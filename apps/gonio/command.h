@@ -11,7 +11,7 @@ typedef struct tool_command {
     int (*run)(int argc, const char **argv); /* argv[0] is the command's name; an exit code */
 } tool_command;
 
-/* The commands, in the order of the help. */
+/* The commands, in the order of the help. A command's name has hyphens where these have `_`. */
 #define TOOL_COMMANDS(COMMAND)                                                                     \
     COMMAND(info, "describe materials, bases, plans, readings, meshes and images")                 \
     COMMAND(convert, "convert materials and readings to other formats")                            \
@@ -21,6 +21,7 @@ typedef struct tool_command {
     COMMAND(measure, "simulate an instrument, or follow a run on a real one")                      \
     COMMAND(reconstruct, "reconstruct the whole BRDF from a few readings")                         \
     COMMAND(next, "plan where to measure next, given the readings so far")                         \
+    COMMAND(check_isotropy, "say how certain it is that a sample is isotropic")                    \
     COMMAND(compare, "compute errors of BRDFs and readings relative to a reference")               \
     COMMAND(report, "write a page for a browser: spheres, directions, lobes, errors")              \
     COMMAND(render, "render a material on a sphere or a mesh, or a comparison picture")            \

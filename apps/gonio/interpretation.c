@@ -6,6 +6,9 @@
 
 #include "json_output.h"
 
+/* ln of the largest odds that are printed. */
+static const double MOST_EVIDENCE = 30.0;
+
 static void note_alternatives(const char *command, const char *path, const gonio_interpretation *i)
 {
     fprintf(stderr, "gonio %s: note: %s: the readings, whose albedo is %.2g, fit far better if ",
@@ -39,11 +42,18 @@ static void note_unmeasured(const char *command, const char *path, const gonio_i
 
 static void note_anisotropy(const char *command, const char *path, const gonio_interpretation *i)
 {
-    fprintf(stderr,
-            "gonio %s: note: %s: the material seems anisotropic: %zu readings differ by a factor "
-            "of %.2g (median) from those at the same angles and another turn of the sample; gonio "
-            "assumes isotropy\n",
-            command, path, i->turned_pairs, exp(i->turned));
+    fprintf(stderr, "gonio %s: note: %s: the material seems anisotropic: ", command, path);
+    if (i->turned > 0.0) {
+        fprintf(stderr,
+                "%zu readings differ by a factor of %.2g (median) from those at the same angles "
+                "and another turn of the sample; ",
+                i->turned_pairs, exp(i->turned));
+    }
+    if (i->anisotropy_evidence > 0.0) {
+        fprintf(stderr, "that explains the readings %.2g times as well; ",
+                exp(fmin(i->anisotropy_evidence, MOST_EVIDENCE)));
+    }
+    fputs("gonio assumes isotropy without --anisotropic\n", stderr);
 }
 
 void tool_note_interpretation(const char *command, const char *path, const gonio_interpretation *i)
@@ -80,4 +90,5 @@ void tool_add_interpretation(json_t *json, const gonio_interpretation *i)
     json_object_set_new(json, "unmeasured", json_integer((json_int_t)i->unmeasured));
     json_object_set_new(json, "unmeasured_lines", lines);
     json_object_set_new(json, "anisotropic", json_boolean(i->anisotropic));
+    json_object_set_new(json, "anisotropy_evidence", tool_json_number(i->anisotropy_evidence));
 }

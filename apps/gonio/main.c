@@ -14,7 +14,27 @@
 #define ROW(name, summary) {#name, summary, cmd_##name},
 static const tool_command commands[] = {TOOL_COMMANDS(ROW)};
 
-enum { COMMANDS = sizeof commands / sizeof *commands };
+enum { COMMANDS = sizeof commands / sizeof *commands, NAME_WIDTH = 14 };
+
+/* Whether a word of the command line is a name of the table, which has `_` for hyphens. */
+static bool is_name(const char *word, const char *name)
+{
+    while (*word != '\0' && (*word == *name || (*word == '-' && *name == '_'))) {
+        word++;
+        name++;
+    }
+    return *word == '\0' && *name == '\0';
+}
+
+static void print_name(FILE *stream, const char *name)
+{
+    fputs("  ", stream);
+    int width = 0;
+    for (; name[width] != '\0'; width++) {
+        fputc(name[width] == '_' ? '-' : name[width], stream);
+    }
+    fprintf(stream, "%*s", NAME_WIDTH - width, "");
+}
 
 static void print_help(FILE *stream)
 {
@@ -22,7 +42,8 @@ static void print_help(FILE *stream)
           "Usage: gonio COMMAND ...\n\nCommands:\n",
           stream);
     for (int k = 0; k < COMMANDS; k++) {
-        fprintf(stream, "  %-12s %s\n", commands[k].name, commands[k].summary);
+        print_name(stream, commands[k].name);
+        fprintf(stream, " %s\n", commands[k].summary);
     }
     fputs("\n'gonio COMMAND -h' explains a command. 'gonio demo' runs them in turn.\n"
           "gonio --version prints the version.\n",
@@ -46,7 +67,7 @@ static int finish_output(const char *name, int code)
 static int run_command(const char *name, int argc, const char **argv)
 {
     for (int k = 0; k < COMMANDS; k++) {
-        if (strcmp(commands[k].name, name) == 0) {
+        if (is_name(name, commands[k].name)) {
             const int code = finish_output(name, commands[k].run(argc, argv));
             tool_end_if_interrupted();
             return code;

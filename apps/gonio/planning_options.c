@@ -98,6 +98,7 @@ gonio_status planning_options_apply(const tool *t, const planning_options *o,
     *inputs = (planning_inputs){NULL, NULL};
     how->count = o->count != PLANNING_USUAL_COUNT ? (size_t)o->count : how->count;
     how->metric = o->metric != NULL ? (gonio_metric)gonio_metric_find(o->metric) : how->metric;
+    how->anisotropic = o->anisotropic != 0;
     how->target = o->target != NULL ? planning_percent(o->target) : 0.0;
     if (o->budget != NULL) {
         tool_duration(o->budget, &how->budget);

@@ -17,6 +17,7 @@ typedef struct planning_options {
     const char *instrument; /* a file or a word; NULL: none */
     const char *budget;     /* a time; NULL: none */
     int nested;
+    int anisotropic;
 } planning_options;
 
 /* What planning_options_apply reads. */
@@ -58,6 +59,13 @@ typedef struct planning_inputs {
          0,                                                                                        \
          "Order the instrument's readings within the first 5, 10, 20, 40 and so on only, which "   \
          "stay good plans",                                                                        \
+         NULL},                                                                                    \
+        {"anisotropic",                                                                            \
+         '\0',                                                                                     \
+         POPT_ARG_NONE,                                                                            \
+         &(o)->anisotropic,                                                                        \
+         0,                                                                                        \
+         "For a material that changes as the sample turns: azimuths of all directions count",      \
          NULL},                                                                                    \
     {                                                                                              \
         "metric", '\0', POPT_ARG_STRING, &(o)->metric, 0,                                          \

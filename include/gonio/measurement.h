@@ -297,7 +297,10 @@ typedef struct gonio_interpretation {
     size_t unmeasured_line[GONIO_MOST_UNMEASURED_LINES]; /* of the file: the first of them */
     size_t turned_pairs; /* readings at the angles of others but at another turn of the sample */
     double turned;       /* median of |ln| of the ratio of their values; 0 without such pairs */
-    bool anisotropic;    /* they differ by far more than readings of an isotropic material do */
+    bool anisotropic;    /* they differ by far more than readings of an isotropic material do, or
+                          * anisotropy_evidence says so */
+    double anisotropy_evidence; /* ln of the odds that the material is anisotropic, if the readings
+                                 * are at several turns of the sample; 0 where it was not weighed */
 } gonio_interpretation;
 
 /* ---- the simulated instrument ---- */

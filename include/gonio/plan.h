@@ -108,6 +108,9 @@ typedef struct gonio_plan_options {
                     * if that is set), the best for the time; 0: `count` readings */
     bool nested; /* the first 5, 10, 20, 40 ... readings of an instrument stay good plans: they are
                   * ordered within these blocks only */
+    bool anisotropic; /* for a material that depends on the azimuth of the half vector
+                       * too: over all pairs of directions, azimuths included, of which
+                       * `seed` draws some; metric e6 only, at most 20,000 candidates */
 } gonio_plan_options;
 
 GONIO_API void gonio_plan_options_default_of(gonio_plan_options *options, size_t size);

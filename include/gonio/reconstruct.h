@@ -36,6 +36,9 @@ typedef struct gonio_reconstruct_options {
     bool deviation;    /* also compute the standard deviation of every cell */
     bool no_checks;    /* do not look for usual mistakes (gonio_interpretation) nor for a
                         * dark level (gonio_reconstruction.dark) */
+    /* Of gonio_reconstruct_anisotropic and gonio_check_isotropy only: */
+    int symmetry; /* turns of the sample, in a full one, that change nothing: 1, 2 (brushed metal,
+                   * satin) or 4 (weaves); 0: found */
 } gonio_reconstruct_options;
 
 GONIO_API void gonio_reconstruct_options_default_of(gonio_reconstruct_options *options,
@@ -201,6 +204,77 @@ GONIO_API gonio_status gonio_reconstruct_tables(gonio_context *context, const go
                                                 const char *const *paths, size_t count,
                                                 const gonio_reconstruct_options *options,
                                                 gonio_reconstruction **made);
+
+/* ---- anisotropic materials ---- */
+
+/* A BRDF that depends on the azimuth of the half vector too, found from readings by what a basis of
+ * isotropic materials teaches (docs/method.md, "Anisotropic materials"). */
+typedef struct gonio_anisotropic_reconstruction gonio_anisotropic_reconstruction;
+
+/* What readings say of a material's anisotropy. */
+typedef struct gonio_anisotropy {
+    double probability; /* that the material is anisotropic */
+    double evidence;    /* ln of the odds of that */
+    int symmetry;       /* of the likeliest anisotropic description: 1, 2 or 4 */
+    double axis_ratio;  /* of its lobes' slopes, at least 1; 1 for one without long axes */
+    double rotation;    /* azimuth of the grain, the short axis of slopes, [0, pi), radians */
+    bool cannot_tell;   /* all readings are at one azimuth of the half vector */
+} gonio_anisotropy;
+
+/* A description. The view and its pointers belong to the reconstruction. */
+typedef struct gonio_anisotropic_reconstruction_view {
+    size_t channels;
+    const double *wavelength; /* [channels], nm; NULL: R, G, B, or a single channel */
+    size_t readings;          /* used, of the channel with most */
+    size_t left_out;          /* of more than can be used, as many as these */
+    size_t outlying;          /* readings that the others contradict */
+    double predicted_e6;      /* the expected E6 over all directions and azimuths, per cent */
+    gonio_anisotropy anisotropy;
+} gonio_anisotropic_reconstruction_view;
+
+/* Reconstructs from readings at pairs of directions whose azimuths count. The basis has separate
+ * channels and the log mapping. options may be NULL; noise, floor, saturation, other_basis and
+ * symmetry count. Usual mistakes and dark levels are not looked for: the checks take the material
+ * for isotropic. A warning says so if the readings are all at one azimuth. *made is the caller's;
+ * the basis must outlive it, the readings need not. The same on any number of threads. Errors:
+ * those of gonio_reconstruct by posterior; _ARGUMENT (a joint basis, another symmetry). */
+GONIO_API gonio_status gonio_reconstruct_anisotropic(gonio_context *context,
+                                                     const gonio_basis *basis,
+                                                     const gonio_readings *readings,
+                                                     const gonio_reconstruct_options *options,
+                                                     gonio_anisotropic_reconstruction **made);
+GONIO_API void gonio_anisotropic_reconstruction_free(gonio_anisotropic_reconstruction **made);
+
+GONIO_API const gonio_anisotropic_reconstruction_view *
+gonio_anisotropic_reconstruction_describe(const gonio_anisotropic_reconstruction *made);
+
+/* Predicts the BRDF at pairs of directions: value[count][channels] in 1/sr and, unless NULL,
+ * deviation[count][channels], the standard deviation of ln(1 + value/s). Errors: _MEMORY,
+ * _CANCELLED. */
+GONIO_API gonio_status gonio_anisotropic_reconstruction_predict(
+    gonio_context *context, const gonio_anisotropic_reconstruction *made, const gonio_pair *pairs,
+    size_t count, double *value, double *deviation);
+
+/* Replaces the values of readings by predictions, with their standard deviations in 1/sr. Errors:
+ * the same. */
+GONIO_API gonio_status gonio_anisotropic_reconstruction_predict_readings(
+    gonio_context *context, const gonio_anisotropic_reconstruction *made, gonio_readings *readings);
+
+/* What readings say of a material's anisotropy, and what they leave open. */
+typedef struct gonio_isotropy_check {
+    gonio_anisotropy anisotropy;
+    double ratio_limit; /* ratios of axes above this are excluded with 95 per cent, if the material
+                         * is an isotropic one stretched; infinite if none is */
+    size_t more;        /* readings at other turns of the sample that would show a ratio of axes of
+                         * 1.3, if the material is not said to be either with 95 per cent; 0 */
+} gonio_isotropy_check;
+
+/* Checks isotropy without a reconstruction. options as of gonio_reconstruct_anisotropic. Errors:
+ * the same. */
+GONIO_API gonio_status gonio_check_isotropy(gonio_context *context, const gonio_basis *basis,
+                                            const gonio_readings *readings,
+                                            const gonio_reconstruct_options *options,
+                                            gonio_isotropy_check *check);
 
 /* A material's own bivariate average (database.h) as a material: the lower bound of the error of
  * any bivariate method. The original must outlive it. Errors: _MEMORY. */

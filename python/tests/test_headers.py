@@ -37,6 +37,10 @@ UNBOUND = {
         gonio_reconstruct_rows gonio_reconstruct_rows_with gonio_reconstruct_material gonio_material_rows
         gonio_bivariate_material gonio_basis_position gonio_basis_row_at gonio_basis_convert gonio_database_describe
         gonio_database_read_rows gonio_plan_write_history""",
+    "anisotropic reconstructions are for C and the command line so far": """gonio_reconstruct_anisotropic
+        gonio_anisotropic_reconstruction_free gonio_anisotropic_reconstruction_describe
+        gonio_anisotropic_reconstruction_predict gonio_anisotropic_reconstruction_predict_readings
+        gonio_check_isotropy""",
     "of the C interface alone": """gonio_material_create gonio_fingerprint_create gonio_fingerprint_add
         gonio_fingerprint_value gonio_fingerprint_free gonio_kind_format gonio_material_writer_extension
         gonio_material_writer_summary gonio_plan_method_summary gonio_plan_method_reconstruction
@@ -58,11 +62,11 @@ OPTIONS = {
     "plan": (gonio.Basis.plan, dict(method="method", start="start", components="components", count="n",
                                     restarts="restarts", seed="seed", keep_history=None, phi_d="phi_d", metric="metric",
                                     candidates="candidates", candidate_count="candidates", target="target_error",
-                                    budget=None, nested=None)),
+                                    budget=None, nested=None, anisotropic=None)),
     "reconstruct": (gonio.reconstruct, dict(components="components", all_channels="all_channels",
                                             other_basis="other_basis", method="method", eta="eta", noise="noise",
                                             floor="floor", saturation="saturation", deviation=None,
-                                            no_checks="checks")),
+                                            no_checks="checks", symmetry=None)),
     "render": (gonio.render, dict(width="width", height="height", samples="samples", seed="seed", mesh="mesh",
                                   environment="environment", environment_turn="environment_turn",
                                   show_environment="show_environment", lamp="lamp", lamp_position="lamp_position",

@@ -54,9 +54,11 @@ void gonio_i_choices_free(gonio_i_choices *p)
     free(p->loss);
     free(p->allowed);
     free(p->at);
+    free(p->pair);
+    free(p->own_covariance);
 }
 
-static gonio_status allocate_places(gonio_i_choices *p)
+gonio_status gonio_i_choices_allocate(gonio_i_choices *p)
 {
     gonio_context *c = p->context;
     p->f = gonio_i_allocate(c, p->rows * p->components, sizeof *p->f);
@@ -100,7 +102,7 @@ gonio_status gonio_i_choices_of_rows(gonio_i_choices *p, gonio_metric metric)
     p->rows = p->prior->view->rows;
     p->components = p->prior->components;
     p->noise = gonio_i_noise_of_readings;
-    const gonio_status status = allocate_places(p);
+    const gonio_status status = gonio_i_choices_allocate(p);
     if (status != GONIO_OK) {
         return status;
     }
@@ -238,7 +240,8 @@ gonio_status gonio_i_choices_of_candidates(gonio_i_choices *p, const gonio_plan_
     const size_t components = p->prior->components;
     float *f = gonio_i_allocate(p->context, p->rows * components, sizeof *f);
     double *exact = gonio_i_allocate(p->context, components, sizeof *exact);
-    gonio_status status = f == NULL || exact == NULL ? GONIO_ERROR_MEMORY : allocate_places(p);
+    gonio_status status =
+        f == NULL || exact == NULL ? GONIO_ERROR_MEMORY : gonio_i_choices_allocate(p);
     for (size_t k = 0; k < p->rows && status == GONIO_OK; k++) {
         p->at[k] = gonio_half_difference_from_pair(options->candidates[k]);
         gonio_i_prior_at(p->prior, p->at[k], 0, &p->mean[k], exact);

@@ -15,12 +15,17 @@ typedef struct gonio_i_choices {
     double *loss;               /* [rows]: weight of the squared error of g there */
     bool *allowed;              /* [rows]: whether it may be chosen */
     gonio_half_difference *at;  /* [rows] */
+    gonio_pair *pair;           /* [rows]: where azimuths count; NULL elsewhere */
     const gonio_i_known *known; /* NULL: nothing */
+    const double *covariance;   /* [components][components]: of what f multiplies; NULL: I */
+    double *own_covariance;     /* the same if it is the choices' own, or NULL */
     double noise;               /* standard deviation of a reading, log units */
 } gonio_i_choices;
 
 /* Standard deviation of a reading that plans reckon with, log units. */
 extern const double gonio_i_noise_of_readings;
+/* f, mean, loss, allowed and at, for p->rows rows of p->components. Errors: _MEMORY. */
+gonio_status gonio_i_choices_allocate(gonio_i_choices *p);
 
 /* All rows of the basis. p->context, p->prior and p->known are set before. To be freed in any case.
  * Errors: _MEMORY. */

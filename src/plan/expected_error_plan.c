@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "../linalg/linalg.h"
+#include "azimuth_choices.h"
 #include "expected_error_choices.h"
 #include "expected_error_scale.h"
 #include "expected_error_search.h"
@@ -18,10 +19,11 @@ static void fill_entry(const gonio_i_choices *p, const gonio_plan_options *optio
                        gonio_plan_entry *entry)
 {
     const gonio_basis_view *view = p->prior->view;
-    if (options->candidates != NULL) {
+    if (p->pair != NULL || options->candidates != NULL) {
         const gonio_bin bin = gonio_bin_of(p->at[row]);
-        *entry = (gonio_plan_entry){gonio_cell_of_bin(view->representation, bin),
-                                    GONIO_ALL_CHANNELS, options->candidates[row]};
+        *entry =
+            (gonio_plan_entry){gonio_cell_of_bin(view->representation, bin), GONIO_ALL_CHANNELS,
+                               p->pair != NULL ? p->pair[row] : options->candidates[row]};
         return;
     }
     *entry = gonio_i_plan_entry(view, row, options->phi_d);
@@ -94,7 +96,7 @@ static gonio_status fill_plan(const gonio_i_choices *p, const gonio_plan_options
         .f = p->f,
         .rows = p->rows,
         .components = p->components,
-        .covariance = p->known != NULL ? p->known->covariance : NULL,
+        .covariance = p->covariance,
         .loss = p->loss,
         .allowed = p->allowed,
         .variance = p->noise * p->noise,
@@ -126,6 +128,16 @@ static gonio_status check_options(gonio_context *context, const gonio_basis *bas
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "no plan can be made for the metric %s",
                             metric != NULL ? metric->name : "asked for");
     }
+    if (options->anisotropic && options->instrument != NULL) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "plans for an instrument take the sample for isotropic; list what it "
+                            "reaches as candidates");
+    }
+    if (options->anisotropic && options->metric != GONIO_E6) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "plans for anisotropic materials are of the metric e6, not %s",
+                            metric->name);
+    }
     if (options->count == 0) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "a plan needs at least 1 reading");
     }
@@ -143,11 +155,21 @@ static gonio_status check_options(gonio_context *context, const gonio_basis *bas
     return GONIO_OK;
 }
 
+static gonio_status list_choices(gonio_i_choices *p, const gonio_plan_options *options)
+{
+    if (options->anisotropic) {
+        return gonio_i_choices_of_azimuths(p, options);
+    }
+    return options->candidates != NULL ? gonio_i_choices_of_candidates(p, options)
+                                       : gonio_i_choices_of_rows(p, options->metric);
+}
+
 static gonio_status make_plan(gonio_context *context, const gonio_basis *basis,
                               const gonio_plan_options *options, const gonio_i_known *known,
                               gonio_plan **plan)
 {
-    gonio_i_choices p = {.context = context, .known = known};
+    gonio_i_choices p = {
+        .context = context, .known = known, .covariance = known != NULL ? known->covariance : NULL};
     gonio_plan *made = NULL;
     size_t count = 0;
     gonio_status status = check_options(context, basis, options);
@@ -158,10 +180,9 @@ static gonio_status make_plan(gonio_context *context, const gonio_basis *basis,
         status = gonio_i_prior_create(context, basis, &p.prior);
     }
     if (status == GONIO_OK) {
-        status = options->candidates != NULL ? gonio_i_choices_of_candidates(&p, options)
-                                             : gonio_i_choices_of_rows(&p, options->metric);
+        status = list_choices(&p, options);
     }
-    if (status == GONIO_OK && known != NULL) {
+    if (status == GONIO_OK && known != NULL && !options->anisotropic) {
         status = gonio_i_choices_leave_out_read(&p);
     }
     if (status == GONIO_OK) {

@@ -6,6 +6,7 @@
 #include <gonio/plan.h>
 
 #include "../prior/prior.h"
+#include "../prior/stretch.h"
 
 /* The name of the method. */
 #define GONIO_I_EXPECTED_ERROR "expected-error"
@@ -17,7 +18,13 @@ typedef struct gonio_i_known {
     size_t count;
     double expected; /* the expected E6 without another reading, per cent */
     double variance; /* the same from the covariance alone */
-    double norm;     /* root of the sum of g^2 over the bins of the grid, which E6 is relative to */
+    double norm; /* root of the sum of g^2 over the bins of the grid, which E6 is relative to; of
+                  * anisotropic materials over the choices */
+    /* Of anisotropic materials, without covariance and read: */
+    const gonio_pair *pair;         /* [count]: what was read */
+    const gonio_i_stretch *stretch; /* [stretches]: how the isotropic prior is stretched, */
+    const double *stretch_weight;   /* [stretches]: which add up to 1 */
+    size_t stretches;
 } gonio_i_known;
 
 enum { GONIO_I_USUAL_NEXT = 5 }; /* the default number of next readings, if there are as many */

@@ -69,6 +69,12 @@ static gonio_status check_values(gonio_context *context, const gonio_plan_option
                             "phi_d of %g degrees is outside [0, 180)",
                             options->phi_d * 180.0 / M_PI);
     }
+    if (options->anisotropic && options->method != NULL &&
+        strcmp(options->method, gonio_i_expected_error_method.name) != 0) {
+        return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                            "plans for anisotropic materials need the method %s",
+                            gonio_i_expected_error_method.name);
+    }
     if (options->instrument == NULL && (options->budget != 0.0 || options->nested)) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
                             "a budget or nested blocks need an instrument");

@@ -6,13 +6,17 @@
 #include "dark_level.h"
 #include "../measurement/readings.h"
 #include "mistakes.h"
+#include "stretches.h"
 #include "unmeasured.h"
 
 /* Turned readings of isotropic materials differ by a few per cent, and by much only in the few that
  * are at a narrow peak. */
 static const double ANISOTROPIC = 0.25;
 
-enum { ENOUGH_TURNED = 5 };
+/* ln of the odds from which a material is said to be anisotropic: isotropic ones stay below. */
+static const double EVIDENT = 5.0;
+
+enum { ENOUGH_TURNED = 5, ENOUGH_READINGS = 10 };
 
 static gonio_status look_at_turned(gonio_context *context, const gonio_readings *readings,
                                    gonio_interpretation *i)
@@ -55,6 +59,23 @@ static gonio_status find_zeros(gonio_context *context, const gonio_i_prior *prio
     return status;
 }
 
+/* Anisotropy by evidence, of readings at several azimuths of the half vector. */
+static gonio_status weigh_anisotropy(gonio_context *context, const gonio_i_prior *prior,
+                                     const gonio_readings *readings, const gonio_i_columns *columns,
+                                     gonio_interpretation *i)
+{
+    const gonio_i_oriented_columns oriented = {prior, readings->pair, columns->column,
+                                               columns->count, 0};
+    const bool separate = prior->view->channels != GONIO_JOINT;
+    if (!separate || readings->count < ENOUGH_READINGS || gonio_i_azimuths_are_same(&oriented)) {
+        return GONIO_OK;
+    }
+    const gonio_status status =
+        gonio_i_stretches_notice(context, &oriented, &i->anisotropy_evidence);
+    i->anisotropic = i->anisotropic || i->anisotropy_evidence > EVIDENT;
+    return status;
+}
+
 gonio_status gonio_i_interpret(gonio_context *context, const gonio_i_prior *prior,
                                const gonio_readings *readings, const gonio_i_noise *noise,
                                gonio_i_columns *columns, gonio_interpretation *interpretation,
@@ -74,5 +95,6 @@ gonio_status gonio_i_interpret(gonio_context *context, const gonio_i_prior *prio
         *dark = NULL;
         correct(readings, noise, NULL, columns);
     }
-    return status;
+    return status == GONIO_OK ? weigh_anisotropy(context, prior, readings, columns, interpretation)
+                              : status;
 }

@@ -15,6 +15,7 @@
 #include "../measurement/readings.h"
 #include "../plan/expected_error_plan.h"
 #include "../posterior/interpret.h"
+#include "anisotropic.h"
 #include "method.h"
 #include "posterior_method.h"
 
@@ -153,12 +154,12 @@ static bool is_unlike(const next *n)
 
 static gonio_status plan_more(const next *n, const gonio_plan_options *options, gonio_plan **plan)
 {
-    const gonio_i_known known = {n->posterior.covariance,
-                                 n->read,
-                                 n->readings->count,
-                                 n->posterior.predicted,
-                                 n->posterior.predicted_by_variance,
-                                 n->posterior.norm};
+    const gonio_i_known known = {.covariance = n->posterior.covariance,
+                                 .read = n->read,
+                                 .count = n->readings->count,
+                                 .expected = n->posterior.predicted,
+                                 .variance = n->posterior.predicted_by_variance,
+                                 .norm = n->posterior.norm};
     gonio_plan_options all = *options;
     all.target = 0.0; /* what was read counts; the plan is as long as asked for */
     return gonio_i_expected_error_next(n->context, n->basis, &all, &known, plan);
@@ -174,6 +175,23 @@ static void hand_out(const next *n, gonio_plan *made, double *expected_now,
     if (interpretation != NULL) {
         *interpretation = n->interpretation;
     }
+}
+
+/* Nothing is interpreted: the checks take the material for isotropic. */
+static gonio_status plan_anisotropic(const next *n, const gonio_reconstruct_options *how,
+                                     const gonio_plan_options *wanted, double *expected_now,
+                                     gonio_interpretation *interpretation, gonio_plan **plan)
+{
+    double now = 0.0;
+    const gonio_status status =
+        gonio_i_next_anisotropic(n->context, n->basis, n->readings, how, wanted, &now, plan);
+    if (status == GONIO_OK && expected_now != NULL) {
+        *expected_now = now;
+    }
+    if (status == GONIO_OK && interpretation != NULL) {
+        *interpretation = n->interpretation;
+    }
+    return status;
 }
 
 gonio_status gonio_plan_next(gonio_context *context, const gonio_basis *basis,
@@ -192,6 +210,9 @@ gonio_status gonio_plan_next(gonio_context *context, const gonio_basis *basis,
     gonio_status status = GONIO_I_TAKE(context, gonio_reconstruct_options, options, &how);
     if (status == GONIO_OK) {
         status = GONIO_I_TAKE(context, gonio_plan_options, plan_options, &wanted);
+    }
+    if (status == GONIO_OK && wanted.anisotropic) {
+        return plan_anisotropic(&n, &how, &wanted, expected_now, interpretation, plan);
     }
     if (status == GONIO_OK) {
         status = find_posterior(&n, &how);

@@ -12,7 +12,7 @@ expect_lists() {
 
 # ---- commands ----
 
-commands=$(gonio --help | sed -n 's/^  \([a-z]*\) .*/\1/p')
+commands=$(gonio --help | sed -n 's/^  \([a-z-]*\) .*/\1/p')
 expect_true 'there are commands' test "$(wc -w <<<"$commands")" -ge 12
 expect_lists 'commands of gonio(1)' "$commands" \
     "$(sed -n '/^\.Sh DESCRIPTION/,/^\.El/s/^\.It Cm //p' "$source/docs/man/gonio.1")"

@@ -1,0 +1,64 @@
+/* The prior of anisotropic materials, made from what a basis says of isotropic ones.
+ *
+ * Facets of a brushed or woven surface have slopes that are larger across the grain than along it.
+ * So contours of an anisotropic lobe are ellipses of slopes where those of an isotropic lobe are
+ * circles. A stretch takes a half vector of an anisotropic material to one of an isotropic
+ * material,
+ *
+ *     tan theta_h' = tan theta_h (r cos^2(phi_h - psi) + sin^2(phi_h - psi) / r)^(1/2),
+ *
+ * with the ratio r of the axes and the azimuth psi of the grain. The area of slopes stays the
+ * same. The isotropic prior is then evaluated at (theta_h', theta_d, phi_d).
+ *
+ * What this leaves open differs from one azimuth of the half vector to another. Covariances of the
+ * isotropic prior are multiplied by
+ *
+ *     1 - share + share kappa,   kappa = exp(-|q - q'|^2/2),
+ *     q = t (cos n phi_h, sin n phi_h),   t = (sin theta_h)^(1/2) / LENGTH,
+ *
+ * those of the remainder by kappa. n is the symmetry: the number of turns of the sample that change
+ * nothing. t becomes 0 towards the mirror direction, where the half vector has no azimuth. */
+#ifndef GONIO_STRETCH_H
+#define GONIO_STRETCH_H
+
+#include "prior.h"
+
+/* Half/difference coordinates with the azimuth of the half vector, radians. */
+typedef struct gonio_i_oriented {
+    gonio_half_difference at;
+    double phi_h; /* 0 where theta_h = 0 */
+} gonio_i_oriented;
+
+gonio_i_oriented gonio_i_oriented_of(gonio_pair pair);
+
+/* Places drawn from the bins of the grid whose directions are above the horizon, all azimuths of
+ * the half vector alike: place[count], the same for the same seed. */
+void gonio_i_oriented_sample(uint64_t seed, size_t count, gonio_i_oriented *place);
+
+/* The other way. One of the directions may come out below the horizon. */
+gonio_pair gonio_i_oriented_pair(gonio_i_oriented here);
+
+typedef struct gonio_i_stretch {
+    double log_ratio; /* ln r, 0 or more; 0: isotropic lobes */
+    double rotation;  /* psi, radians */
+    double share;     /* of the isotropic covariance that depends on phi_h; 0 .. 1 */
+    int symmetry;     /* n: 1, 2 or 4; 0: kappa is 1, with share 0 the isotropic prior */
+} gonio_i_stretch;
+
+bool gonio_i_stretch_is_isotropic(const gonio_i_stretch *stretch);
+
+/* Where the isotropic prior is evaluated. */
+gonio_half_difference gonio_i_stretch_apply(const gonio_i_stretch *stretch, gonio_i_oriented here);
+
+/* q. */
+typedef struct gonio_i_azimuth_point {
+    double x;
+    double y;
+} gonio_i_azimuth_point;
+
+gonio_i_azimuth_point gonio_i_azimuth_of(int symmetry, gonio_i_oriented here);
+
+/* kappa. */
+double gonio_i_azimuth_kernel(gonio_i_azimuth_point a, gonio_i_azimuth_point b);
+
+#endif

@@ -1,0 +1,111 @@
+/* Stretched half vectors, their azimuths and places drawn from the grid. */
+#include "../support.h"
+
+#include <math.h>
+
+#include "prior/stretch.h"
+
+enum { PLACES = 2000 };
+
+static void assert_close(double value, double expected, double tolerance)
+{
+    if (!(fabs(value - expected) <= tolerance)) {
+        fail_msg("%.17g where %.17g is expected (within %g)", value, expected, tolerance);
+    }
+}
+
+static void test_places_become_pairs_and_back(void **state)
+{
+    (void)state;
+    gonio_i_oriented place[PLACES];
+    gonio_i_oriented_sample(3, PLACES, place);
+    for (size_t k = 0; k < PLACES; k++) {
+        const gonio_pair pair = gonio_i_oriented_pair(place[k]);
+        const gonio_i_oriented back = gonio_i_oriented_of(pair);
+        assert_true(pair.incident.theta < 0.5 * M_PI && pair.outgoing.theta < 0.5 * M_PI);
+        assert_close(back.at.theta_h, place[k].at.theta_h, 1e-9);
+        assert_close(back.at.theta_d, place[k].at.theta_d, 1e-9);
+        assert_close(remainder(back.phi_h - place[k].phi_h, 2.0 * M_PI) * sin(back.at.theta_h), 0.0,
+                     1e-9);
+    }
+}
+
+static void test_the_same_seed_draws_the_same_places(void **state)
+{
+    (void)state;
+    gonio_i_oriented a[8];
+    gonio_i_oriented b[8];
+    gonio_i_oriented_sample(5, 8, a);
+    gonio_i_oriented_sample(5, 8, b);
+    assert_memory_equal(a, b, sizeof a);
+}
+
+static gonio_i_oriented at(double theta_h, double phi_h)
+{
+    return (gonio_i_oriented){{theta_h, 0.4, 1.0}, phi_h};
+}
+
+/* Slopes along the grain become larger by the root of the ratio, those across it smaller. */
+static void test_slopes_are_stretched(void **state)
+{
+    (void)state;
+    const gonio_i_stretch stretch = {.log_ratio = log(4.0), .rotation = 0.5};
+    const double along = gonio_i_stretch_apply(&stretch, at(0.3, 0.5)).theta_h;
+    const double across = gonio_i_stretch_apply(&stretch, at(0.3, 0.5 + 0.5 * M_PI)).theta_h;
+    assert_close(tan(along), 2.0 * tan(0.3), 1e-12);
+    assert_close(tan(across), 0.5 * tan(0.3), 1e-12);
+}
+
+static void test_isotropic_lobes_stay(void **state)
+{
+    (void)state;
+    const gonio_i_stretch none = {0};
+    const gonio_i_stretch azimuths = {.share = 0.1, .symmetry = 2};
+    const gonio_half_difference there = gonio_i_stretch_apply(&none, at(0.7, 2.0));
+    assert_true(there.theta_h == 0.7 && there.theta_d == 0.4 && there.phi_d == 1.0);
+    assert_true(gonio_i_stretch_is_isotropic(&none));
+    assert_false(gonio_i_stretch_is_isotropic(&azimuths));
+}
+
+static void test_the_horizon_stays(void **state)
+{
+    (void)state;
+    const gonio_i_stretch stretch = {.log_ratio = 2.0, .rotation = 0.0};
+    for (int k = 0; k < 16; k++) {
+        const double theta_h =
+            gonio_i_stretch_apply(&stretch, at(0.5 * M_PI, 2.0 * M_PI * k / 16.0)).theta_h;
+        assert_close(theta_h, 0.5 * M_PI, 1e-5);
+    }
+}
+
+/* What a turn of the sample does not change has the same azimuth; at the mirror direction all have.
+ */
+static void test_azimuths_follow_the_symmetry(void **state)
+{
+    (void)state;
+    static const int symmetry[] = {1, 2, 4};
+    for (int k = 0; k < 3; k++) {
+        const double turn = 2.0 * M_PI / symmetry[k];
+        const gonio_i_azimuth_point a = gonio_i_azimuth_of(symmetry[k], at(0.6, 0.3));
+        const gonio_i_azimuth_point b = gonio_i_azimuth_of(symmetry[k], at(0.6, 0.3 + turn));
+        const gonio_i_azimuth_point c = gonio_i_azimuth_of(symmetry[k], at(0.6, 0.3 + 0.5 * turn));
+        assert_close(gonio_i_azimuth_kernel(a, b), 1.0, 1e-12);
+        assert_true(gonio_i_azimuth_kernel(a, c) < 0.2);
+        const gonio_i_azimuth_point mirror = gonio_i_azimuth_of(symmetry[k], at(0.0, 0.3));
+        const gonio_i_azimuth_point turned = gonio_i_azimuth_of(symmetry[k], at(0.0, 1.3));
+        assert_close(gonio_i_azimuth_kernel(mirror, turned), 1.0, 1e-12);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_places_become_pairs_and_back),
+        cmocka_unit_test(test_the_same_seed_draws_the_same_places),
+        cmocka_unit_test(test_slopes_are_stretched),
+        cmocka_unit_test(test_isotropic_lobes_stay),
+        cmocka_unit_test(test_the_horizon_stays),
+        cmocka_unit_test(test_azimuths_follow_the_symmetry),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
