@@ -95,6 +95,9 @@ static int render_one(const tool *t, const render_request *o, const render_scene
 
 static bool check_arguments(const tool *t, const render_request *o, size_t count)
 {
+    if (o->flat && o->mesh != NULL) {
+        return tool_refuse(t, "--flat and --mesh exclude each other");
+    }
     if (!o->compare && count != 1) {
         return tool_refuse(t, "one MATERIAL is needed; --compare takes several");
     }
@@ -148,6 +151,9 @@ int cmd_render(int argc, const char **argv)
          "The picture: .png, tone-mapped, or .exr, linear", "OUT"},
         {"mesh", 'm', POPT_ARG_STRING, &o.mesh, 0, "An OBJ or PLY file instead of a sphere",
          "FILE"},
+        {"flat", '\0', POPT_ARG_NONE, &o.flat, 0, "A flat square sample instead of a sphere", NULL},
+        {"grain", '\0', POPT_ARG_DOUBLE, &o.grain, 0,
+         "Rotate an anisotropic sample about its normal; at 0 its azimuth 0 is horizontal", "DEG"},
         {"environment", 'e', POPT_ARG_STRING, &o.environment, 0,
          "studio (the default), sky, furnace, or an .exr or .hdr file", "NAME|FILE"},
         {"turn", '\0', POPT_ARG_DOUBLE, &o.turn, 0, "Rotate the environment to the right", "DEG"},

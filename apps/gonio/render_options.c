@@ -113,6 +113,8 @@ bool render_set_options(const tool *t, const render_request *o, gonio_render_opt
     how->samples = (int)o->samples;
     how->seed = (uint64_t)o->seed;
     how->environment_turn = o->turn * degree;
+    how->grain = o->grain * degree;
+    how->flat = o->flat != 0;
     how->show_environment = o->show != 0;
     return tool_check_count(t, "--seed", o->seed, 0) && set_view(t, o, how) && set_lamp(t, o, how);
 }

@@ -15,12 +15,14 @@ typedef struct render_request {
     const char *size;
     const char *labels;
     double turn;
+    double grain;
     double field_of_view;
     double key;
     long samples;
     long seed;
     long columns;
     int show;
+    int flat;
     int repair;
     int compare;
     int differences;

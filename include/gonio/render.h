@@ -151,6 +151,12 @@ typedef struct gonio_render_options {
     double azimuth, elevation; /* of the viewer about the object, radians; 0, 0 is on +z */
     double field_of_view;      /* vertical, radians, 0 .. 2; 0 for parallel rays. The viewer is so
                                 * far away that the unit sphere fills 0.95 of the shorter side. */
+    /* Of anisotropic materials: the azimuth 0 of the sample is horizontal on the surface, to the
+     * right of who looks at it, turned about the normal by this angle, radians. On a sphere it
+     * follows the circles of latitude, as if turned on a lathe. */
+    double grain;
+    bool flat; /* a flat square sample that faces +z, within the unit sphere, in place of the
+                * sphere; a mesh comes before it */
 } gonio_render_options;
 
 /* 512 x 512, 64 samples from seed 0, a sphere, no environment, a directional lamp up to the left in
@@ -161,7 +167,8 @@ static inline void gonio_render_options_default(gonio_render_options *options)
     gonio_render_options_default_of(options, sizeof *options);
 }
 
-/* Renders a material. The BRDF is trilinear between bin centres, as in gonio_table_value. Where no
+/* Renders a material. The BRDF is trilinear between bin centres, as in gonio_table_value, or that
+ * of gonio_material_evaluate if the material can be evaluated. Where no
  * bin around has data, it is that of the nearest bin with data along theta_d, then theta_h, then
  * phi_d. The environment is sampled by its radiance, the BRDF by its highlight and the cosine; both
  * are combined by the balance heuristic (Veach and Guibas 1995). The error falls as

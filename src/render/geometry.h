@@ -47,6 +47,24 @@ static inline gonio_i_frame gonio_i_frame_about(const double z[3])
                            {z[0], z[1], z[2]}};
 }
 
+/* A frame about a unit vector whose x axis is horizontal, to the right of who looks at the surface
+ * with y up, and then turned about z by an angle. Where z is upright any x will do. */
+static inline gonio_i_frame gonio_i_frame_along(const double z[3], double angle)
+{
+    const double radius = sqrt(z[0] * z[0] + z[2] * z[2]);
+    if (radius < 1e-9) {
+        return gonio_i_frame_about(z);
+    }
+    const double right[3] = {z[2] / radius, 0.0, -z[0] / radius};
+    const double up[3] = {z[1] * right[2], z[2] * right[0] - z[0] * right[2], -z[1] * right[0]};
+    gonio_i_frame frame = {.z = {z[0], z[1], z[2]}};
+    for (int k = 0; k < 3; k++) {
+        frame.x[k] = cos(angle) * right[k] + sin(angle) * up[k];
+        frame.y[k] = cos(angle) * up[k] - sin(angle) * right[k];
+    }
+    return frame;
+}
+
 static inline void gonio_i_to_local(const gonio_i_frame *frame, const double world[3],
                                     double local[3])
 {

@@ -42,6 +42,9 @@ gonio_status gonio_i_mesh_end_polygon(gonio_i_mesh_making *making);
 gonio_status gonio_i_read_obj(gonio_i_mesh_making *making, const gonio_i_bytes *bytes);
 gonio_status gonio_i_read_ply(gonio_i_mesh_making *making, const gonio_i_bytes *bytes);
 
+/* Makes a flat square sample that faces +z, within the unit sphere. Errors: _MEMORY. */
+gonio_status gonio_i_mesh_flat(gonio_context *context, gonio_mesh **mesh);
+
 /* Makes normals for a mesh without. The normal at a corner of a triangle is the mean, weighted by
  * area, of the faces around the corner that are within 50 degrees of the triangle. Corners are no
  * longer shared afterwards. Errors: _MEMORY. */

@@ -8,6 +8,7 @@
 #include "../core/random.h"
 #include "environment.h"
 #include "geometry.h"
+#include "mesh.h"
 #include "scene.h"
 #include "surface.h"
 
@@ -66,6 +67,7 @@ typedef struct view {
     const gonio_i_surface *surface, *sampler;
     camera camera;
     double turn_cosine, turn_sine; /* of the environment */
+    bool tangents;                 /* frames follow the tangents */
 } view;
 
 /* Rotates a direction about y: from the world to the environment's frame (sign 1) or back (-1). */
@@ -168,7 +170,9 @@ enum {
 static void shade(const view *v, const gonio_i_hit *hit, const double direction[3],
                   const double uniform[5], double sum[3])
 {
-    place p = {.hit = hit, .frame = gonio_i_frame_about(hit->normal)};
+    place p = {.hit = hit,
+               .frame = v->tangents ? gonio_i_frame_along(hit->normal, v->options->grain)
+                                    : gonio_i_frame_about(hit->normal)};
     const double back[3] = {-direction[0], -direction[1], -direction[2]};
     gonio_i_to_local(&p.frame, back, p.outgoing);
     if (p.outgoing[2] <= 0.0) {
@@ -287,7 +291,7 @@ static gonio_status check(gonio_context *context, const gonio_render_options *o)
                             "%d samples a pixel are too few: at least 1 is needed", o->samples);
     }
     if (!(o->field_of_view >= 0.0 && o->field_of_view <= 2.0) || !isfinite(o->azimuth) ||
-        !isfinite(o->elevation) || !isfinite(o->environment_turn)) {
+        !isfinite(o->elevation) || !isfinite(o->environment_turn) || !isfinite(o->grain)) {
         return gonio_i_fail(
             context, GONIO_ERROR_ARGUMENT,
             "invalid view: the field of view must be 0 to 2 rad, the angles finite");
@@ -307,12 +311,16 @@ static gonio_status render_surface(gonio_context *context, const gonio_i_surface
 {
     gonio_i_scene *scene = NULL;
     gonio_image *made = NULL;
+    gonio_mesh *flat = NULL;
     gonio_status status = check(context, options);
     if (status == GONIO_OK) {
         status = gonio_image_create(context, options->width, options->height, &made);
     }
+    if (status == GONIO_OK && options->flat && options->mesh == NULL) {
+        status = gonio_i_mesh_flat(context, &flat);
+    }
     if (status == GONIO_OK) {
-        status = gonio_i_scene_create(context, options->mesh, &scene);
+        status = gonio_i_scene_create(context, flat != NULL ? flat : options->mesh, &scene);
     }
     if (status == GONIO_OK) {
         const view v = {.options = options,
@@ -320,11 +328,13 @@ static gonio_status render_surface(gonio_context *context, const gonio_i_surface
                         .surface = surface,
                         .sampler = sampler,
                         .camera = place_camera(options),
+                        .tangents = gonio_i_surface_is_anisotropic(surface),
                         .turn_cosine = cos(options->environment_turn),
                         .turn_sine = sin(options->environment_turn)};
         status = render_rows(context, gonio_context_threads(context), &v, made);
     }
     gonio_i_scene_free(&scene);
+    gonio_mesh_free(&flat);
     if (status != GONIO_OK) {
         gonio_image_free(&made);
         return status;

@@ -208,6 +208,11 @@ gonio_status gonio_i_surface_create(gonio_context *context, const gonio_material
     return GONIO_OK;
 }
 
+bool gonio_i_surface_is_anisotropic(const gonio_i_surface *surface)
+{
+    return surface->direct != NULL && gonio_material_describe(surface->direct)->anisotropic;
+}
+
 /* ---- looking up ---- */
 
 /* theta_d is half the angle between the directions; phi_d the azimuth of the incident one about the

@@ -14,6 +14,9 @@ gonio_status gonio_i_surface_create(gonio_context *context, const gonio_material
                                     gonio_i_surface **surface);
 void gonio_i_surface_free(gonio_i_surface **surface);
 
+/* Whether its values depend on the azimuth of the frame. */
+bool gonio_i_surface_is_anisotropic(const gonio_i_surface *surface);
+
 /* The coordinates of two directions. */
 typedef struct gonio_i_meeting {
     double towards_light[3]; /* the directions themselves */

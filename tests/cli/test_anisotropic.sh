@@ -35,4 +35,23 @@ expect_ok measure two.csv $steel -o readings.csv
 values=$(grep -v '^#' readings.csv | tail -n 2 | cut -d , -f 5 | sort -u | wc -l)
 [ "$values" -eq 2 ] || failed 'two azimuths have one value'
 
+# Rendered along tangents: the sample's rotation shows, and not of isotropic materials.
+small='--size 32 --samples 4 --light directional'
+run render atlas:oak-sawn $small -o probe.png
+if grep -q 'without the renderer' "$root/work/stderr"; then
+    skip 'rendering: not built'
+    finish
+fi
+for shape in '' --flat; do
+    expect_ok render $steel $small $shape -o a.png
+    expect_ok render $steel $small $shape --grain 90 -o b.png
+    expect_ok render $steel $small $shape --grain 360 --threads 1 -o c.png
+    cmp -s a.png b.png && failed 'the rotation of the sample does not show'
+    cmp -s a.png c.png || failed 'a whole turn of the sample shows'
+    expect_ok render atlas:oak-sawn $small $shape -o a.png
+    expect_ok render atlas:oak-sawn $small $shape --grain 90 -o b.png
+    cmp -s a.png b.png || failed 'the rotation of an isotropic sample shows'
+done
+expect_fail 2 '--flat and --mesh exclude each other' render $steel --flat -m x.obj -o x.png
+
 finish

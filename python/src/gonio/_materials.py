@@ -315,7 +315,7 @@ class Material:
                                 attrs={"units": "1/sr", "long_name": "BRDF", "source": self.format})
 
     def save(self, path: Union[str, "os.PathLike[str]"], format: Optional[str] = None, *, theta_i_step: float = 0.0,
-             theta_o_step: float = 0.0, phi_step: float = 0.0) -> None:
+             theta_o_step: float = 0.0, phi_step: float = 0.0, average_azimuths: bool = False) -> None:
         """Writes the material. The file appears whole or not at all.
 
         Parameters
@@ -325,6 +325,8 @@ class Material:
             One of `formats`; by default that of the path's extension, or a MERL table.
         theta_i_step, theta_o_step, phi_step : float
             Steps of directions on a grid (csv, zemax), radians; 0 for the format's usual ones.
+        average_azimuths : bool
+            Write the mean over azimuths of an anisotropic material, in formats that hold isotropic ones too.
 
         Raises
         ------
@@ -335,7 +337,7 @@ class Material:
         """
         name = ffi.NULL if format is None else ffi.new("char[]", str(format).encode(errors="replace"))
         how = _calls.options("write", format=name, theta_i_step=theta_i_step, theta_o_step=theta_o_step,
-                             phi_step=phi_step)
+                             phi_step=phi_step, average_azimuths=average_azimuths)
         with causes(self):
             _calls.run(lib.gonio_material_write, self._handle, _calls.encoded(path), how)
 

@@ -29,7 +29,8 @@ def render(material: Any, *, width: int = 512, height: int = 512, samples: int =
            mesh: Optional[Path] = None, environment: Optional[Path] = None, environment_turn: float = 0.0,
            show_environment: bool = False, repair: bool = False, lamp: str = "directional",
            lamp_position: Optional[Sequence[float]] = None, azimuth: float = 0.0,
-           elevation: float = 0.0, field_of_view: float = float(np.pi / 6)) -> Image:
+           elevation: float = 0.0, field_of_view: float = float(np.pi / 6), grain: float = 0.0,
+           flat: bool = False) -> Image:
     """Renders a material.
 
     Parameters
@@ -58,6 +59,10 @@ def render(material: Any, *, width: int = 512, height: int = 512, samples: int =
         The viewer's, about the object, radians.
     field_of_view : float
         Vertical, radians; 0 for parallel rays.
+    grain : float
+        Rotates an anisotropic sample about its normal, radians. At 0 its azimuth 0 is horizontal on the surface.
+    flat : bool
+        A flat square sample in place of the sphere.
 
     Returns
     -------
@@ -87,7 +92,7 @@ def render(material: Any, *, width: int = 512, height: int = 512, samples: int =
     how = _calls.options("render", width=width, height=height, samples=samples, seed=seed, mesh=shape,
                          environment=light, environment_turn=environment_turn, show_environment=show_environment,
                          lamp=_calls.chosen(lamp, "lamp", LAMPS), lamp_position=None if place is None else place.tolist(), azimuth=azimuth, elevation=elevation,
-                         field_of_view=field_of_view)
+                         field_of_view=field_of_view, grain=grain, flat=flat)
     with causes(sample):
         return _array(_calls.made("image", lib.gonio_render, sample._handle, how))
 
