@@ -2,7 +2,7 @@
  * run.
  *
  *   gonio-bench [MATERIALS] [SECTION...]     sections: learn plan starts
- *                                            reconstruct full growth default
+ *                                            reconstruct full growth default instrument
  *
  * MATERIALS is a folder of at least 81 materials (default: the built-in ones). Prints a table and
  * writes bench.json in the working directory. docs/performance.md explains each line. */
@@ -23,7 +23,7 @@ static const struct {
     {"learn", bench_learn},     {"plan", bench_plan},
     {"starts", bench_starts},   {"reconstruct", bench_reconstruct},
     {"full", bench_full_plans}, {"growth", bench_growth},
-    {"default", bench_default},
+    {"default", bench_default}, {"instrument", bench_instrument},
 };
 
 static bool wanted(const char *name, int argc, char **argv)

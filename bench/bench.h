@@ -91,5 +91,6 @@ void bench_full_plans(bench *b);
 void bench_growth(bench *b);
 void bench_reconstruct(bench *b);
 void bench_default(bench *b);
+void bench_instrument(bench *b);
 
 #endif

@@ -33,6 +33,7 @@ def constant(match):
 def declarations(text):
     """What a header declares, without comments, conditions, attributes and bodies of functions."""
     text = re.sub(r"/\*.*?\*/", " ", text, flags=re.S)
+    text = text.replace("\\\n", " ")
     text = re.sub(r"#ifdef __cplusplus.*?#endif", "", text, flags=re.S)
     text = re.sub(r"^#define (\w+) +(.+)$", constant, text, flags=re.M)
     text = re.sub(r"^#(?!define \w+ \.\.\.).*$", "", text, flags=re.M)

@@ -20,7 +20,8 @@ typedef struct ray {
 static ray mirror(gonio_angles in, int k)
 {
     const double largest = 0.5 * (0.5 * M_PI + in.theta);
-    const double x = (k / PHIS + 0.5) / THETAS;
+    const int row = k / PHIS;
+    const double x = (row + 0.5) / THETAS;
     const double theta_h = x * x * largest;
     const double phi_h = (k % PHIS + 0.5) * 2.0 * M_PI / PHIS;
     const double i[3] = {sin(in.theta) * cos(in.phi), sin(in.theta) * sin(in.phi), cos(in.theta)};

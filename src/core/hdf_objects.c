@@ -87,7 +87,7 @@ gonio_i_hdf_file *gonio_i_hdf_open(const char *path)
 void gonio_i_hdf_close(gonio_i_hdf_file *file)
 {
     if (file != NULL && file->bytes != NULL) {
-        munmap((void *)(uintptr_t)file->bytes, file->size);
+        munmap((void *)file->bytes, file->size);
     }
     free(file);
 }

@@ -172,7 +172,9 @@ static char **pack(const gonio_i_hdf_file *file, const gonio_i_hdf_type *type,
     for (size_t k = 0; k < count && packed != NULL; k++) {
         const stretch s = string_at(file, type, stored, k);
         packed[k] = text;
-        memcpy(text, s.text, s.length);
+        if (s.length > 0) {
+            memcpy(text, s.text, s.length);
+        }
         text[s.length] = '\0';
         text += s.length + 1;
     }

@@ -111,7 +111,7 @@ static uint64_t read_bits(const gonio_i_hdf_type *type, const unsigned char *sto
 
 static bool is_negative(const gonio_i_hdf_type *type, uint64_t bits)
 {
-    return type->is_signed && bits >> (8 * type->size - 1) != 0;
+    return type->is_signed && type->size > 0 && bits >> (8 * type->size - 1) != 0;
 }
 
 /* The bits of a negative number continue to the left. */

@@ -220,7 +220,7 @@ static void leave_out_repeats(search *s)
 /* At 0 the finest levels and half vectors; each time one of them twice as far apart. */
 static void search_directions(search *s, int coarser)
 {
-    double level[MOST_LEVELS];
+    double level[MOST_LEVELS] = {0.0};
     const size_t levels =
         find_levels(s->instrument, FINEST_LEVELS * (double)(1 << ((coarser + 1) / 2)), level);
     bool more = true;

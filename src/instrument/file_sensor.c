@@ -95,7 +95,7 @@ static gonio_status read_reference(const gonio_i_place *place, const json_t *obj
             gonio_i_allocate(place->context, view->reference_rows, sizeof *instrument->reference);
         status = instrument->reference != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
     }
-    for (size_t k = 0; k < view->reference_rows && status == GONIO_OK; k++) {
+    for (size_t k = 0; numbers != NULL && k < view->reference_rows && status == GONIO_OK; k++) {
         gonio_reference_row *row = &instrument->reference[k];
         *row = (gonio_reference_row){numbers[2 * k] * DEGREE, numbers[2 * k + 1]};
         if (!(row->theta >= 0.0 && row->theta <= 0.5 * M_PI && row->factor > 0.0) ||

@@ -151,7 +151,7 @@ typedef struct spectrum {
 static void add_power(const batch *b, size_t cells, spectrum *s)
 {
     const circle turn = make_circle(TURN);
-    double v[TURN];
+    double v[TURN] = {0.0};
     double coefficient[TURN];
     for (size_t k = 0; k < cells * b->channels; k++) {
         if (read_cell(b, k / b->channels, k % b->channels, v)) {
@@ -224,7 +224,7 @@ static void store_cell(const batch *b, const gonio_anisotropic_table *t, const c
 {
     const size_t terms = 1 + 2 * (size_t)t->orders;
     for (size_t c = 0; c < t->channels; c++) {
-        double v[TURN];
+        double v[TURN] = {0.0};
         double series[1 + 2 * GONIO_ANISOTROPIC_ORDERS];
         const bool data = at >= 0 && read_cell(b, (size_t)at, c, v);
         if (data) {

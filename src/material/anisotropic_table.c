@@ -172,7 +172,7 @@ static void add_pole_point(const evaluation *e, const coordinates *c, const goni
     const double of_both = (1.0 - c->with_h) * (1.0 - c->with_d);
     const double whole = point->weight / (of_d + of_h + of_both);
     const double psi = c->phi_h + c->at.phi_d - gonio_bin_centre(point->bin).phi_d;
-    series at;
+    series at = {0};
     set_terms(e->table, c->phi_h, &at);
     add_cell(e, point->bin, &at, whole * of_d);
     set_terms(e->table, psi, &at);
@@ -189,7 +189,7 @@ static void evaluate_pair(const evaluation *e, gonio_pair pair, double *values)
     const coordinates c = coordinates_of(pair);
     gonio_i_stencil stencil[GONIO_I_MOST_POINTS];
     const int points = gonio_i_trilinear_runs(c.at, GONIO_PHI_D_BINS / t->phi_d_cells, stencil);
-    series at;
+    series at = {0};
     memset(e->sum, 0, t->channels * sizeof *e->sum);
     memset(e->total, 0, t->channels * sizeof *e->total);
     set_terms(t, c.phi_h, &at);

@@ -134,7 +134,9 @@ gonio_status gonio_reference_read(gonio_context *context, const char *path,
         free(made);
         return status;
     }
-    qsort(made, count, sizeof *made, compare_rows);
+    if (made != NULL) {
+        qsort(made, count, sizeof *made, compare_rows);
+    }
     *row = made;
     *rows = count;
     return GONIO_OK;

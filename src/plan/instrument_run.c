@@ -94,7 +94,8 @@ static gonio_status find_unordered(gonio_context *context, const gonio_instrumen
                                    const alternatives *a, gonio_i_run *run)
 {
     gonio_setting *plain = gonio_i_allocate(context, run->count, sizeof *plain);
-    if (plain == NULL) {
+    if (plain == NULL || a->setting == NULL) {
+        free(plain);
         return GONIO_ERROR_MEMORY;
     }
     for (size_t k = 0; k < run->count; k++) {
@@ -209,9 +210,9 @@ gonio_status gonio_i_find_parts(gonio_context *context, const gonio_instrument *
     }
     part_of(run, "");
     for (int k = 0; k < POLAR * POLAR * AZIMUTHS; k++) {
-        const gonio_pair pair = {
-            {ring(k % POLAR), 0.0},
-            {ring(k / POLAR % POLAR), M_PI * (k / (POLAR * POLAR) + 0.5) / AZIMUTHS}};
+        const int azimuth = k / (POLAR * POLAR);
+        const gonio_pair pair = {{ring(k % POLAR), 0.0},
+                                 {ring(k / POLAR % POLAR), M_PI * (azimuth + 0.5) / AZIMUTHS}};
         gonio_plan_part *part = part_of(run, obstacle_at(instrument, pair));
         part->share += share;
         part->deviation += share * variance_at(prior, covariance, pair, f);

@@ -556,9 +556,10 @@ gonio_status gonio_i_stretches_expect_gain(gonio_context *context,
         }
     }
     qsort(at, GAIN_PLACES, sizeof *at, compare_numbers);
+    const size_t half = GAIN_PLACES / 2;
     *gain = 0.0;
-    for (size_t i = GAIN_PLACES / 2; i < GAIN_PLACES; i++) { /* a plan takes the better half */
-        *gain += SHARE * at[i] / (GAIN_PLACES - GAIN_PLACES / 2);
+    for (size_t i = half; i < GAIN_PLACES; i++) { /* a plan takes the better half */
+        *gain += SHARE * at[i] / (double)(GAIN_PLACES - half);
     }
     free(c);
     end(&s);

@@ -148,10 +148,10 @@ static gonio_status read_vector(reading *r, const char *line)
 
 /* ---- corners of the mesh ---- */
 
-/* A corner as its numbers; a normal of zeros for none. */
+/* The bits of a corner's position and normal; a normal of zeros for none. */
 typedef struct corner {
-    float position[VECTOR];
-    float normal[VECTOR];
+    uint32_t position[VECTOR];
+    uint32_t normal[VECTOR];
 } corner;
 
 static corner corner_at(const gonio_mesh *mesh, size_t index)

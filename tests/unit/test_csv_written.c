@@ -98,7 +98,8 @@ static void test_written_again(void **state)
                 "B_deviation_per_sr\n10,0,20,350,1,2,3,0.5,,\n",
          "angles 'theta_i_deg', 'theta_o_deg', 'dphi'"},
         /* a line of units */
-        {"theta_i;phi_i;theta_o;phi_o;brdf;exposure\ndeg;deg;deg;deg;1/sr;s\n10;0;20,5;180;0,5;7\n", "",
+        {"theta_i;phi_i;theta_o;phi_o;brdf;exposure\ndeg;deg;deg;deg;1/sr;s\n10;0;20,5;180;0,5;7\n",
+         "",
          "theta_i_deg;phi_i_deg;theta_o_deg;phi_o_deg;value_per_sr;exposure (s)\n"
          "10;0;20.5;180;0.5;7\n",
          "not read: 'exposure (s)'"},

@@ -470,6 +470,8 @@ static void act(follower *f)
     save(f);
     if (f->status == GONIO_OK) {
         free(f->verdict.doubt);
+        f->verdict.doubt = NULL;
+        f->verdict.doubts = 0;
         f->status = judge_run(&f->judge, &f->run, &f->verdict);
     }
     if (f->status == GONIO_OK) {
@@ -739,11 +741,9 @@ static gonio_status begin(follower *f, const char *path)
         status = tool_read_readings(f->t, path, &any, &plan);
     }
     if (status == GONIO_OK) {
+        const char *from = f->o->follow != NULL ? f->o->follow : "readings";
         f->plan = run_fingerprint(plan);
-        status = run_begin(&f->run, plan, &how,
-                           f->o->command != NULL            ? "readings"
-                           : strcmp(f->o->follow, "-") == 0 ? "standard input"
-                                                            : f->o->follow);
+        status = run_begin(&f->run, plan, &how, strcmp(from, "-") == 0 ? "standard input" : from);
     }
     if (status == GONIO_OK) {
         status = begin_judge(f);

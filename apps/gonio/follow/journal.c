@@ -41,7 +41,7 @@ static gonio_status failed(const char *path, const char *what, char **problem)
 
 static bool is_whole(const char *line, size_t length)
 {
-    char check[CHECK_DIGITS + 1];
+    char check[CHECK_DIGITS + 1] = "";
     if (length < LEAST_LINE || line[CHECK_DIGITS] != ' ') {
         return false;
     }
@@ -84,7 +84,7 @@ static gonio_status take_lines(char *text, size_t size, journal_reader reader, v
 static char *read_all(int descriptor, size_t *size)
 {
     struct stat info;
-    char *text = fstat(descriptor, &info) == 0 ? malloc((size_t)info.st_size + 1) : NULL;
+    char *text = fstat(descriptor, &info) == 0 ? calloc((size_t)info.st_size + 1, 1) : NULL;
     *size = 0;
     while (text != NULL && *size < (size_t)info.st_size) {
         const ssize_t got =

@@ -78,7 +78,7 @@ static gonio_status read_lists(reader *in)
     if (status == GONIO_OK) {
         status = read_numbers(in, "theta_limit", 1, &limit);
     }
-    if (status == GONIO_OK) {
+    if (status == GONIO_OK && limit != NULL) {
         in->t.theta_limit = limit[0];
     }
     free((void *)limit);

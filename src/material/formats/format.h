@@ -20,7 +20,8 @@ typedef struct gonio_i_format_reader {
 /* The readers, in the order in which they are tried. */
 #define GONIO_I_MATERIAL_READERS(READER)                                                           \
     READER(merl)                                                                                   \
-    READER(table) READER(anisotropic) READER(neural) READER(rgl) READER(kaist) READER(utia) READER(bsdf_xml)
+    READER(table)                                                                                  \
+    READER(anisotropic) READER(neural) READER(rgl) READER(kaist) READER(utia) READER(bsdf_xml)
 
 #define GONIO_I_DECLARE_READER(name) extern const gonio_i_format_reader gonio_i_##name##_reader;
 GONIO_I_MATERIAL_READERS(GONIO_I_DECLARE_READER)

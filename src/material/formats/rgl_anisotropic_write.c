@@ -228,7 +228,8 @@ static place find_place(const writing *w, gonio_angles in, size_t node, gonio_pa
 {
     const gonio_i_blend slice = {1, {0}, {1.0}};
     const double last = (double)(w->side - 1);
-    const double s[2] = {(double)(node % w->side) / last, (double)(node / w->side) / last};
+    const size_t row = node / w->side;
+    const double s[2] = {(double)(node % w->side) / last, (double)row / last};
     double u[2];
     const double density = gonio_i_warp_sample(&w->warp, &slice, s, u);
     const gonio_i_rgl_mirrored to =
@@ -349,7 +350,7 @@ static void find_channels(writing *w)
     w->channels = spectral ? w->view->channels : GONIO_CHANNELS;
     gonio_i_rgl_find_order(w->view, w->channels, w->order);
     for (size_t c = 0; c < w->channels; c++) {
-        w->weight[c] = spectral ? 1.0 / (double)w->channels : rgb[c];
+        w->weight[c] = spectral ? 1.0 / (double)w->channels : rgb[c % GONIO_CHANNELS];
     }
 }
 

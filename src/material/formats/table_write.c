@@ -214,6 +214,7 @@ static gonio_status write_table(gonio_context *context, const gonio_material *ma
 const gonio_i_format_writer gonio_i_table_writer = {
     .name = "table",
     .extension = ".h5",
-    .summary = "table of any channels, HDF5; 90 x 90 x 180, or series of phi_h if anisotropic; reciprocal",
+    .summary =
+        "table of any channels, HDF5; 90 x 90 x 180, or series of phi_h if anisotropic; reciprocal",
     .write = write_table,
 };
