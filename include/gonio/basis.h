@@ -35,7 +35,7 @@ typedef struct gonio_basis gonio_basis;
  *
  * Analytic columns are those of random analytic materials (atlas.h). All together have a share of
  * 5 %; measured columns and mixtures share the rest. So the basis spans materials unlike the
- * database's, too: of real tables of another instrument, errors are a tenth to a quarter smaller
+ * database's, too: of real tables of another instrument, errors are 7 to 22 % smaller
  * (docs/experiments.md). */
 enum { GONIO_DEFAULT_MIXTURES = 1000, GONIO_MIXTURE_COMPONENTS = 300 };
 
