@@ -1,5 +1,6 @@
 /* gonio demo: all steps on a built-in material that the basis was not learned from. */
 #include "command_line.h"
+#include "duration.h"
 #include "json_output.h"
 
 #include <errno.h>
@@ -7,7 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
 enum { MOST_WORDS = 16 };
@@ -56,13 +56,6 @@ static const step steps[] = {
 };
 
 enum { STEPS = sizeof steps / sizeof *steps };
-
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static void announce(const step *s)
 {
@@ -140,7 +133,7 @@ static int run_steps_as_json(const tool *t, const char *folder, int count)
 
 static int run_steps(const char *folder, int count)
 {
-    const double start = now();
+    const double start = tool_seconds();
     int code = 0;
     printf("Measuring '%s' with 20 readings. Files go to %s; type along in there.\n", material,
            folder);
@@ -153,7 +146,7 @@ static int run_steps(const char *folder, int count)
             "\nDone in %.0f s. %s holds basis.gonio, plan.csv, readings.csv, the reconstruction, a "
             "MERL table\nthat renderers and BRDF viewers read, its deviation, and what was "
             "drawn.\n",
-            now() - start, folder);
+            tool_seconds() - start, folder);
         say_where_the_page_is(folder);
     }
     return code;

@@ -1,10 +1,11 @@
-/* Durations on the command line: see duration.h. */
+/* Durations on the command line, and a clock: see duration.h. */
 #include "duration.h"
 
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 typedef struct unit {
     const char *name;
@@ -26,4 +27,11 @@ bool tool_duration(const char *text, double *seconds)
         }
     }
     return false;
+}
+
+double tool_seconds(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }

@@ -1,9 +1,10 @@
 /* Messages, the progress bar and interrupts: see messages.h. */
 #include "messages.h"
 
+#include "duration.h"
+
 #include <signal.h>
 #include <stdio.h>
-#include <time.h>
 #include <unistd.h>
 
 int tool_quiet = 0;
@@ -65,13 +66,6 @@ bool tool_is_interrupted(void)
     return interrupted != 0;
 }
 
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 void tool_clear_progress(tool_messages *m)
 {
     if (m->progress_visible) {
@@ -127,7 +121,7 @@ static void draw_progress(const char *task, double fraction, double elapsed)
 int tool_on_progress(void *user, const char *task, double fraction)
 {
     tool_messages *m = user;
-    const double time = now();
+    const double time = tool_seconds();
     if (m->progress_start == 0.0) {
         m->progress_start = time;
     }

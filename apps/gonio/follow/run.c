@@ -365,6 +365,30 @@ size_t run_counted(const run *r)
     return counted;
 }
 
+size_t run_directions_read(const run *r)
+{
+    size_t count = 0;
+    for (size_t k = 0; k < r->wanted_count; k++) {
+        count += r->wanted[k].row != RUN_NOWHERE;
+    }
+    return count;
+}
+
+size_t run_set_aside(const run *r)
+{
+    size_t count = 0;
+    for (size_t k = 0; k < r->rows; k++) {
+        count += r->row[k].set_aside;
+    }
+    return count;
+}
+
+double run_reading_time(const run *r)
+{
+    const double taken = r->rows > 1 ? r->row[r->rows - 1].seconds - r->row[0].seconds : 0.0;
+    return taken > 0.0 ? taken / (double)(r->rows - 1) : NAN;
+}
+
 /* ---- as a text ---- */
 
 static size_t lines_of(const char *text)

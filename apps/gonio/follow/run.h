@@ -88,6 +88,14 @@ size_t run_next(const run *r);
 /* Rows that count as readings of the sample. */
 size_t run_counted(const run *r);
 
+/* Directions that were read, and rows that others took the place of. */
+size_t run_directions_read(const run *r);
+size_t run_set_aside(const run *r);
+
+/* The mean time of a reading, seconds; NaN: not known. Lines that come together say nothing of it.
+ */
+double run_reading_time(const run *r);
+
 /* The readings that count, as the text of a file: head and rows; the caller frees it. line_row, if
  * not NULL, [rows + lines of the head + 1] is filled with the row of each line of the text, from 1.
  * NULL when out of memory. */

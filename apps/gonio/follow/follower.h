@@ -1,0 +1,44 @@
+/* A run that is followed: its state, which the files of this folder share. */
+#ifndef GONIO_FOLLOW_FOLLOWER_H
+#define GONIO_FOLLOW_FOLLOWER_H
+
+#include "../planning_options.h"
+#include "follow.h"
+#include "journal.h"
+#include "judge.h"
+#include "line_source.h"
+#include "run.h"
+
+/* Why a run ended. */
+typedef enum ending { GOING_ON, ALL_READ, TARGET_MET, TIME_UP, INPUT_ENDED, INTERRUPTED } ending;
+
+typedef struct follower {
+    tool *t;
+    const follow_options *o;
+    run run;
+    judge judge;
+    judge_verdict verdict;
+    gonio_basis *basis;
+    planning_inputs inputs;
+    journal *journal;
+    char *journal_path;
+    line_source source;
+    uint64_t plan;        /* fingerprint of the plan, */
+    uint64_t plan_before; /* and of that of the journal; 0: there was none */
+    double began;         /* the clock at the beginning, */
+    double before;        /* and the seconds that earlier parts of the run took */
+    double budget;        /* seconds; infinite: none */
+    double target;        /* per cent; 0: none */
+    double idle_since;
+    size_t adapted_at; /* rows when the rest was planned last */
+    size_t fresh;      /* rows that are not judged yet */
+    size_t failures;   /* of the command, one after another */
+    bool said_waiting;
+    bool said_pending;
+    gonio_status status; /* of the run: what fails sets it, and the run ends */
+} follower;
+
+/* Seconds of the run so far, pauses left out. */
+double follow_elapsed(const follower *f);
+
+#endif
