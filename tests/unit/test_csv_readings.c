@@ -131,6 +131,7 @@ static void test_names_of_values(void **state)
         {"# unit: 1/sr\n", "R", 0.0, 0.5, "values in 1/sr"},
         {"# unit: reflectance factor\n", "R", 0.0, 0.5 / M_PI, "reflectance factors"},
         {"# values: reflectance factor\n", "550nm", 550.0, 0.5 / M_PI, "reflectance factors"},
+        {"# values: reflectance factor, per cent\n", "550nm", 550.0, 0.005 / M_PI, "per cent"},
         {"# values: percent\n", "550nm", 550.0, 0.005 / M_PI, "per cent"},
         {"# Values: BRF\n", "550nm", 550.0, 0.5 / M_PI, "reflectance factors"},
         {"# units: degrees, %\n", "550nm", 550.0, 0.005 / M_PI, "per cent"},

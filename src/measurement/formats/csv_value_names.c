@@ -63,6 +63,7 @@ static const gonio_i_known_word value_words[] = {
     {"sr", STERADIAN, 0},
     {"steradian", STERADIAN, 0},
     {"percent", PERCENT, 0},
+    {"cent", PERCENT, 0}, /* of "per cent" */
     {"nm", NANOMETRE, 0},
     {"nanometre", NANOMETRE, 0},
     {"nanometres", NANOMETRE, 0},
@@ -85,7 +86,6 @@ static const gonio_i_known_word value_words[] = {
     {"in", FILL, 0},
     {"with", FILL, 0},
     {"times", FILL, 0},
-    {"cent", FILL, 0},
     {"channel", FILL, 0},
     {"standard", FILL, 0},
     {"bidirectional", FILL, 0},
