@@ -253,6 +253,18 @@ static void search_as_finely(search *s, size_t most)
     }
 }
 
+/* Keeps `most`, evenly spread over the order: at all incidences, not at the lowest alone. */
+static void thin(search *s, size_t most)
+{
+    if (s->count <= most) {
+        return;
+    }
+    for (size_t k = 0; k < most; k++) {
+        s->found[k] = s->found[k * s->count / most];
+    }
+    s->count = most;
+}
+
 static gonio_status say_empty(const search *s)
 {
     const tally *t = &s->obstacles;
@@ -280,8 +292,9 @@ gonio_status gonio_instrument_candidates(gonio_context *context, const gonio_ins
     } else if (s.count == 0) {
         status = say_empty(&s);
     } else {
+        thin(&s, most);
         *setting = s.found;
-        *count = s.count < most ? s.count : most;
+        *count = s.count;
     }
     if (status != GONIO_OK) {
         free(s.found);

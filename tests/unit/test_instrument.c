@@ -309,6 +309,32 @@ static void test_table_of_directions(void **state)
 
 /* ---- candidates, apertures, values, times ---- */
 
+/* Of a table with too many directions those at all incidences are kept. */
+static void test_candidates_of_a_table_are_thinned_evenly(void **state)
+{
+    (void)state;
+    enum { ROWS = 70, MOST = 10 };
+    gonio_context *context = support_context();
+    char text[8192] = "{\"gonio_instrument\": 1, \"kinematics\": \"table\", \"directions\": [";
+    for (int k = 0; k < ROWS; k++) {
+        const size_t used = strlen(text);
+        snprintf(text + used, sizeof text - used, "%s[%d, 0, 20, 180]", k > 0 ? ", " : "", k);
+    }
+    strcat(text, "]}");
+    gonio_instrument *rig = parse(context, text);
+    const gonio_freedom all = {.isotropic = true, .bilateral = true};
+    gonio_setting *setting = NULL;
+    size_t count = 0;
+    assert_int_equal(gonio_instrument_candidates(context, rig, all, MOST, &setting, &count),
+                     GONIO_OK);
+    assert_int_equal(count, MOST);
+    for (size_t k = 0; k < MOST; k++) {
+        assert_true(fabs(setting[k].pair.incident.theta - 7.0 * (double)k * DEGREE) < 1e-9);
+    }
+    free(setting);
+    gonio_instrument_free(&rig);
+}
+
 static void test_candidates_can_be_read(void **state)
 {
     (void)state;
@@ -432,16 +458,18 @@ static void test_times(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_builtin_instruments),
-                                       cmocka_unit_test(test_mistakes_name_the_key),
-                                       cmocka_unit_test(test_kinematics_forth_and_back),
-                                       cmocka_unit_test(test_in_plane_goniometer),
-                                       cmocka_unit_test(test_footprint_and_limits),
-                                       cmocka_unit_test(test_table_of_directions),
-                                       cmocka_unit_test(test_candidates_can_be_read),
-                                       cmocka_unit_test(test_survey),
-                                       cmocka_unit_test(test_apertures_are_discs),
-                                       cmocka_unit_test(test_values),
-                                       cmocka_unit_test(test_times)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_builtin_instruments),
+        cmocka_unit_test(test_mistakes_name_the_key),
+        cmocka_unit_test(test_kinematics_forth_and_back),
+        cmocka_unit_test(test_in_plane_goniometer),
+        cmocka_unit_test(test_footprint_and_limits),
+        cmocka_unit_test(test_table_of_directions),
+        cmocka_unit_test(test_candidates_can_be_read),
+        cmocka_unit_test(test_candidates_of_a_table_are_thinned_evenly),
+        cmocka_unit_test(test_survey),
+        cmocka_unit_test(test_apertures_are_discs),
+        cmocka_unit_test(test_values),
+        cmocka_unit_test(test_times)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
