@@ -256,6 +256,19 @@ static gonio_status refuse_budget(const planner *p)
                         p->options->budget / 60.0);
 }
 
+/* Says so where the usual limit on the readings ends the run, and not the time. */
+static void note_limit(const planner *p)
+{
+    double time = 0.0;
+    if (p->options->count == GONIO_USUAL_COUNT && p->count == MOST_IN_BUDGET &&
+        time_of(p, p->count, &time) == GONIO_OK && time < NEARLY_FULL * p->options->budget) {
+        gonio_i_note(
+            p->context,
+            "%d readings take %.1f min of %.1f; a larger number (-n) uses more of the time",
+            MOST_IN_BUDGET, time / 60.0, p->options->budget / 60.0);
+    }
+}
+
 /* The search with exchanges at a price; once more for a number of readings that fits better. */
 static gonio_status choose_in_budget(planner *p)
 {
@@ -282,6 +295,9 @@ static gonio_status choose_in_budget(planner *p)
         const size_t more = (size_t)((double)count * p->options->budget / time);
         count = more > count ? more : count + 1;
         count = count < most ? count : most;
+    }
+    if (status == GONIO_OK) {
+        note_limit(p);
     }
     return status == GONIO_OK && p->count == 0 ? refuse_budget(p) : status;
 }
