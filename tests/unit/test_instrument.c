@@ -333,6 +333,7 @@ static void test_candidates_of_a_table_are_thinned_evenly(void **state)
     }
     free(setting);
     gonio_instrument_free(&rig);
+    gonio_context_free(&context);
 }
 
 static void test_candidates_can_be_read(void **state)
