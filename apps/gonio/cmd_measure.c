@@ -20,20 +20,25 @@ typedef struct options {
     follow_options follow;
 } options;
 
+/* What was written. */
+typedef struct written {
+    const char *material; /* its name */
+    size_t channels;
+} written;
+
 /* Reports what was read. */
-static int report(const tool *t, const options *o, const gonio_readings *readings,
-                  const char *material)
+static int report(const tool *t, const options *o, const gonio_readings *readings, const written *w)
 {
     const gonio_readings_view *view = gonio_readings_describe(readings);
     if (tool_json) {
         return tool_print_json(
             t, json_pack("{s:o, s:I, s:I, s:o}", "output", tool_json_text(o->output), "readings",
-                         (json_int_t)view->count, "channels", (json_int_t)view->channels,
-                         "material", tool_json_text(material)));
+                         (json_int_t)view->count, "channels", (json_int_t)w->channels, "material",
+                         tool_json_text(w->material)));
     }
     if (!tool_quiet) {
         fprintf(tool_results(), "%s: %zu reading%s of %s\n", o->output, view->count,
-                tool_plural(view->count), material);
+                tool_plural(view->count), w->material);
     }
     return 0;
 }
@@ -53,15 +58,15 @@ static gonio_status read_material(const tool *t, const options *o, const gonio_m
 
 /* Writes the run of an instrument, and says how long it takes. */
 static gonio_status rehearse(const tool *t, const options *o, const gonio_material *material,
-                             const gonio_readings *plan, const char **name)
+                             const gonio_readings *plan, written *w)
 {
     gonio_instrument *instrument = NULL;
     double duration = 0.0;
-    *name = gonio_material_name(material);
+    w->material = gonio_material_name(material);
     gonio_status status = gonio_instrument_read(t->context, o->instrument, &instrument);
     if (status == GONIO_OK) {
         status = gonio_rehearse(t->context, plan, material, instrument, (uint64_t)o->seed,
-                                t->command_line, o->output, &duration);
+                                t->command_line, o->output, &duration, &w->channels);
     }
     if (status == GONIO_OK && !tool_quiet && !tool_json) {
         fprintf(tool_results(), "%s: a run of %.1f min\n",
@@ -73,7 +78,7 @@ static gonio_status rehearse(const tool *t, const options *o, const gonio_materi
 
 /* Reads the input by the plan, and writes what was read. */
 static gonio_status read_and_write(const tool *t, const options *o, const tool_input *known,
-                                   gonio_readings *readings, const char **name)
+                                   gonio_readings *readings, written *w)
 {
     gonio_status status = GONIO_OK;
     if (o->instrument != NULL && known->material == NULL) {
@@ -81,10 +86,11 @@ static gonio_status read_and_write(const tool *t, const options *o, const tool_i
         return GONIO_ERROR_DATA;
     }
     if (o->instrument != NULL) {
-        return rehearse(t, o, known->material, readings, name);
+        return rehearse(t, o, known->material, readings, w);
     }
     status = known->readings != NULL ? gonio_readings_look_up(t->context, readings, known->readings)
-                                     : read_material(t, o, known->material, readings, name);
+                                     : read_material(t, o, known->material, readings, &w->material);
+    w->channels = gonio_readings_describe(readings)->channels;
     return status == GONIO_OK
                ? gonio_readings_write(t->context, readings, t->command_line, o->output)
                : status;
@@ -98,15 +104,15 @@ static int measure(const tool *t, const options *o, const char *plan, const char
                                         .negative_to_zero = true};
     gonio_readings *readings = NULL;
     tool_input known = {0};
-    const char *name = path;
+    written w = {.material = path};
     gonio_status status = tool_read_readings(t, plan, &how, &readings);
     if (status == GONIO_OK) {
         status = tool_open_input(t, path, &known);
     }
     if (status == GONIO_OK) {
-        status = read_and_write(t, o, &known, readings, &name);
+        status = read_and_write(t, o, &known, readings, &w);
     }
-    const int code = status == GONIO_OK ? report(t, o, readings, name) : tool_exit_code(status);
+    const int code = status == GONIO_OK ? report(t, o, readings, &w) : tool_exit_code(status);
     tool_close_input(&known);
     gonio_readings_free(&readings);
     return code;

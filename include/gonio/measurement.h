@@ -343,12 +343,13 @@ GONIO_API gonio_status gonio_measure_material(gonio_context *context, gonio_read
  * stray light and saturation, in the instrument's kind of values (1/sr if they are relative or
  * counts); a comment `values:` names it. The CSV file has the time of each row, and rows of the
  * reference and the dark level (docs/plan-and-readings.md). Channels are those of the material.
- * command and duration (s) may be NULL. Errors: _MISMATCH for directions that the instrument cannot
- * read; those of gonio_measure_material; _IO. */
+ * command, duration (s) and channels (their number) may be NULL. Errors: _MISMATCH for directions
+ * that the instrument cannot read; those of gonio_measure_material; _IO. */
 GONIO_API gonio_status gonio_rehearse(gonio_context *context, const gonio_readings *plan,
                                       const gonio_material *material,
                                       const gonio_instrument *instrument, uint64_t seed,
-                                      const char *command, const char *path, double *duration);
+                                      const char *command, const char *path, double *duration,
+                                      size_t *channels);
 
 #ifdef __cplusplus
 }

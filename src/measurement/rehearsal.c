@@ -292,7 +292,8 @@ static gonio_status rehearse(rehearsal *r, const gonio_material *material, const
 
 gonio_status gonio_rehearse(gonio_context *context, const gonio_readings *plan,
                             const gonio_material *material, const gonio_instrument *instrument,
-                            uint64_t seed, const char *command, const char *path, double *duration)
+                            uint64_t seed, const char *command, const char *path, double *duration,
+                            size_t *channels)
 {
     double time = 0.0;
     rehearsal r = {.context = context,
@@ -307,6 +308,9 @@ gonio_status gonio_rehearse(gonio_context *context, const gonio_readings *plan,
                                     : GONIO_ERROR_MEMORY;
     if (status == GONIO_OK && duration != NULL) {
         *duration = time;
+    }
+    if (status == GONIO_OK && channels != NULL) {
+        *channels = r.channels;
     }
     gonio_i_csv_free(&r.csv);
     gonio_readings_free(&r.averaged);

@@ -80,6 +80,10 @@ if command -v jq >"$root/work/jq"; then
     expect_true 'the share that is reached' holds '.reach.share > 0.5 and .reach.share < 1'
     expect_ok plan b.gonio --method expected-error --instrument four-axis -n 5 -o four.csv --json
     expect_true 'the run' holds '.run.duration_s <= .run.unordered_s and .run.reached_share > 0.5'
+    printf 'theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,550nm_per_sr\n20,0,40,180,\n' >one.csv
+    expect_ok measure one.csv atlas:oak-sawn --instrument rig.json -o one-run.csv --json
+    expect_true 'the channels that are written' holds ".channels == $(grep -c . <<<"$(grep theta_i_deg one-run.csv |
+        tr ',' '\n' | grep _per_sr)")"
     expect_ok check four-axis --json
     expect_true 'the axes' holds '.axes.beta.to_deg == 75 and .sensor.saturation_per_sr == null'
 else

@@ -296,6 +296,7 @@ static void test_rehearsed_runs(void **state)
     gonio_readings *read = NULL;
     gonio_readings *plain = NULL;
     gonio_material *gold = NULL;
+    size_t channels = 0;
     double duration = 0.0;
     const gonio_pair pairs[2] = {{{0.5, 0.0}, {0.9, 0.0}}, {{0.5, 0.0}, {0.5, M_PI}}};
     const gonio_readings_arrays arrays = {
@@ -310,8 +311,9 @@ static void test_rehearsed_runs(void **state)
     assert_int_equal(gonio_instrument_parse(f->context, text, "rig.json", &rig), GONIO_OK);
     assert_int_equal(gonio_material_open(f->context, "atlas:gold-polished", &gold), GONIO_OK);
     assert_int_equal(gonio_readings_create(f->context, &arrays, NULL, &plan), GONIO_OK);
-    assert_int_equal(gonio_rehearse(f->context, plan, gold, rig, 1, NULL, path, &duration),
-                     GONIO_OK);
+    assert_int_equal(
+        gonio_rehearse(f->context, plan, gold, rig, 1, NULL, path, &duration, &channels), GONIO_OK);
+    assert_int_equal(channels, 3);
     assert_true(duration > 2.0);
     assert_int_equal(gonio_readings_read(f->context, path, &how, &read), GONIO_OK);
     assert_int_equal(gonio_readings_copy(f->context, plan, &plain), GONIO_OK);
