@@ -219,7 +219,7 @@ static void print_view(const gonio_material_view *view, const material_facts *fa
     }
     if (view->anisotropic) {
         printf("  anisotropic  turned by 90 degrees it differs by %.1f %% (E6)\n", facts->turn);
-        printf("               bins below are means over 8 azimuths, and so are albedos\n");
+        printf("               bins below are means over azimuths, and so are albedos\n");
     }
 }
 

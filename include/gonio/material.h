@@ -116,10 +116,11 @@ GONIO_API gonio_status gonio_material_set_illuminant(gonio_context *context,
 
 /* Reads one slab into rho (GONIO_SLAB_VALUES doubles, the caller's). Thread-safe. A source
  * without read_slab is evaluated at the centres of the bins: the mean of both sides of the
- * reciprocal pair and, if it is anisotropic, of 8 azimuths of the half vector. Spectra become
- * linear sRGB under the illuminant, in which a flat spectrum is white. One channel becomes grey. A
- * channel without data is 0 if others have data. There are no data beyond theta_limit. Errors:
- * _ARGUMENT (theta_h outside 0 .. 89), and those of the source (_IO, _FORMAT). */
+ * reciprocal pair and, if it is anisotropic, of azimuths of the half vector: 16, or 32 where a
+ * narrow lobe needs them. Spectra become linear sRGB under the illuminant, in which a flat spectrum
+ * is white. One channel becomes grey. A channel without data is 0 if others have data. There are no
+ * data beyond theta_limit. Errors: _ARGUMENT (theta_h outside 0 .. 89), and those of the source
+ * (_IO, _FORMAT). */
 GONIO_API gonio_status gonio_material_read_slab(gonio_context *context,
                                                 const gonio_material *material, int theta_h,
                                                 double *rho);

@@ -5,21 +5,17 @@
 #include <stdlib.h>
 
 #include "../core/core.h"
+#include "azimuth_mean.h"
 #include "inside.h"
-
-enum { AZIMUTHS = 8 };
 
 gonio_status gonio_i_sampler_begin(gonio_context *context, const gonio_material *material,
                                    bool average, gonio_i_sampler *sampler)
 {
-    *sampler = (gonio_i_sampler){.material = material,
-                                 .view = gonio_material_describe(material),
-                                 .average = average,
-                                 .azimuths = 1};
+    *sampler = (gonio_i_sampler){
+        .material = material, .view = gonio_material_describe(material), .average = average};
     if (average && sampler->view->anisotropic) {
-        sampler->azimuths = AZIMUTHS;
-        gonio_i_note(context, "%s: anisotropic; the mean over %d azimuths of the sample is written",
-                     sampler->view->name, AZIMUTHS);
+        gonio_i_note(context, "%s: anisotropic; the mean over azimuths of the sample is written",
+                     sampler->view->name);
     }
     return material->source.evaluate == NULL ? gonio_table_load(context, material, &sampler->table)
                                              : GONIO_OK;
@@ -45,53 +41,22 @@ static gonio_status look_up(gonio_context *context, const gonio_i_sampler *s,
     return GONIO_OK;
 }
 
-/* Adds the values of one azimuth to sums, and counts those that exist. */
-static void add_azimuth(const double *rotated, size_t count, double *sum, double *counts)
+static gonio_status evaluate(void *self, gonio_context *context, const gonio_pair *pairs,
+                             size_t count, double *values)
 {
-    for (size_t k = 0; k < count; k++) {
-        sum[k] += isnan(rotated[k]) ? 0.0 : rotated[k];
-        counts[k] += isnan(rotated[k]) ? 0.0 : 1.0;
-    }
-}
-
-static gonio_status average_azimuths(gonio_context *context, const gonio_i_sampler *s,
-                                     const gonio_pair *pairs, size_t count, double *values)
-{
-    const size_t numbers = count * s->view->channels;
-    gonio_pair *rotated = gonio_i_allocate(context, count, sizeof *rotated);
-    double *one = gonio_i_allocate(context, numbers, sizeof *one);
-    double *counts = gonio_i_allocate(context, numbers, sizeof *counts);
-    gonio_status status =
-        rotated != NULL && one != NULL && counts != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
-    for (size_t k = 0; k < numbers; k++) {
-        values[k] = 0.0;
-    }
-    for (size_t t = 0; t < s->azimuths && status == GONIO_OK; t++) {
-        for (size_t k = 0; k < count; k++) {
-            const double angle = 2.0 * M_PI * (double)t / (double)s->azimuths;
-            rotated[k] = pairs[k];
-            rotated[k].incident.phi += angle;
-            rotated[k].outgoing.phi += angle;
-        }
-        status = look_up(context, s, rotated, count, one);
-        if (status == GONIO_OK) {
-            add_azimuth(one, numbers, values, counts);
-        }
-    }
-    for (size_t k = 0; k < numbers && status == GONIO_OK; k++) {
-        values[k] = counts[k] > 0.0 ? values[k] / counts[k] : NAN;
-    }
-    free(rotated);
-    free(one);
-    free(counts);
-    return status;
+    return look_up(context, self, pairs, count, values);
 }
 
 gonio_status gonio_i_sampler_values(gonio_context *context, const gonio_i_sampler *sampler,
                                     const gonio_pair *pairs, size_t count, double *values)
 {
-    return sampler->azimuths > 1 ? average_azimuths(context, sampler, pairs, count, values)
-                                 : look_up(context, sampler, pairs, count, values);
+    const gonio_i_averaged averaged = {.evaluate = evaluate,
+                                       .self = (void *)sampler,
+                                       .channels = sampler->view->channels,
+                                       .anisotropic = true};
+    return sampler->average && sampler->view->anisotropic
+               ? gonio_i_azimuth_mean(context, &averaged, pairs, count, values)
+               : look_up(context, sampler, pairs, count, values);
 }
 
 /* The colour of a direction's channels; NaN without data in all. */

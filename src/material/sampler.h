@@ -9,11 +9,10 @@ typedef struct gonio_i_sampler {
     const gonio_material_view *view;
     gonio_table *table; /* of a material that cannot be evaluated */
     bool average;       /* over azimuths, if the material is anisotropic */
-    size_t azimuths;    /* their number, 1 without an average */
 } gonio_i_sampler;
 
 /* Begins a sampler; after success, end it. With `average`, an anisotropic material is averaged over
- * 8 azimuths of the sample, with a note. The material must outlive the sampler. Errors: those of
+ * azimuths of the sample, with a note. The material must outlive the sampler. Errors: those of
  * gonio_table_load. */
 gonio_status gonio_i_sampler_begin(gonio_context *context, const gonio_material *material,
                                    bool average, gonio_i_sampler *sampler);

@@ -5,69 +5,40 @@
 #include <stdlib.h>
 
 #include "../core/core.h"
+#include "azimuth_mean.h"
 #include "inside.h"
 
-enum { AZIMUTHS = 8 /* of the half vector of an anisotropic material */ };
-
-/* A row of bins along phi_d, with the directions of each bin and their values. */
+/* A row of bins along phi_d, of which the first of each run is evaluated. */
 typedef struct row {
     const gonio_material_source *source;
     const double *weight;
     size_t channels;
-    size_t directions; /* of each bin */
-    gonio_pair *pair;  /* [GONIO_PHI_D_BINS][directions] */
-    double *value;     /* [GONIO_PHI_D_BINS][directions][channels] */
-    double *mean;      /* [channels] */
+    gonio_pair *pair; /* [GONIO_PHI_D_BINS] */
+    double *mean;     /* [GONIO_PHI_D_BINS][channels] */
 } row;
 
-static gonio_pair rotate(gonio_pair pair, double angle)
+static bool has_data(const row *r, const double *mean)
 {
-    pair.incident.phi += angle;
-    pair.outgoing.phi += angle;
-    return pair;
-}
-
-static void set_directions(row *r, gonio_bin bin)
-{
-    const gonio_pair pair = gonio_pair_from_half_difference(gonio_bin_centre(bin));
-    const gonio_pair back = {pair.outgoing, pair.incident};
-    gonio_pair *at = r->pair + (size_t)bin.phi_d * r->directions;
-    for (size_t k = 0; k < r->directions / 2; k++) {
-        const double angle = 4.0 * M_PI * (double)k / (double)r->directions;
-        at[2 * k] = rotate(pair, angle);
-        at[2 * k + 1] = rotate(back, angle);
-    }
-}
-
-/* The mean over a bin's directions in each channel, 0 without data. False if no channel has data.
- */
-static bool average(const row *r, int phi_d)
-{
-    const double *value = r->value + (size_t)phi_d * r->directions * r->channels;
     bool any = false;
     for (size_t c = 0; c < r->channels; c++) {
-        double sum = 0.0;
-        size_t count = 0;
-        for (size_t k = 0; k < r->directions; k++) {
-            const double here = value[k * r->channels + c];
-            const bool data = here >= 0.0 && isfinite(here);
-            sum += data ? here : 0.0;
-            count += data ? 1 : 0;
-        }
-        r->mean[c] = count > 0 ? sum / (double)count : 0.0;
-        any = any || count > 0;
+        any = any || !isnan(mean[c]);
     }
     return any;
 }
 
-static double colour_of(const row *r, size_t channel)
+static double or_zero(double value)
+{
+    return isnan(value) ? 0.0 : value;
+}
+
+static double colour_of(const row *r, const double *mean, size_t channel)
 {
     if (r->weight == NULL) {
-        return r->mean[r->channels == 1 ? 0 : channel];
+        return or_zero(mean[r->channels == 1 ? 0 : channel]);
     }
     double sum = 0.0;
     for (size_t k = 0; k < r->channels; k++) {
-        sum += r->weight[channel * r->channels + k] * r->mean[k];
+        sum += r->weight[channel * r->channels + k] * or_zero(mean[k]);
     }
     return fmax(sum, 0.0);
 }
@@ -80,54 +51,72 @@ static bool is_inside(const row *r, gonio_bin bin)
            (limit <= 0.0 || fmax(pair.incident.theta, pair.outgoing.theta) <= limit);
 }
 
-/* Evaluates the bins first .. 179 - first, which are inside; the others have no data. */
-static gonio_status fill_row(gonio_context *context, row *r, int theta_h, int theta_d, double *rho)
+/* Evaluates runs of the bins first .. last - 1, each at its middle: r->mean[runs]. */
+static gonio_status evaluate_runs(gonio_context *context, const row *r, gonio_bin at, int first,
+                                  int last, int run)
+{
+    const gonio_i_averaged averaged = {.evaluate = r->source->evaluate,
+                                       .self = r->source->self,
+                                       .channels = r->channels,
+                                       .anisotropic = r->source->anisotropic,
+                                       .both_sides = true};
+    size_t runs = 0;
+    for (int k = first; k < last; k += run) {
+        const int length = run < last - k ? run : last - k;
+        at.phi_d = k + length / 2;
+        r->pair[runs++] = gonio_pair_from_half_difference(gonio_bin_centre(at));
+    }
+    return gonio_i_azimuth_mean(context, &averaged, r->pair, runs, r->mean);
+}
+
+/* The bins first .. 179 - first are inside; the others have no data. */
+static gonio_status fill_row(gonio_context *context, row *r, int theta_h, int theta_d, int run,
+                             double *rho)
 {
     int first = 0;
     while (first < GONIO_PHI_D_BINS / 2 && !is_inside(r, (gonio_bin){theta_h, theta_d, first})) {
         first++;
     }
     const int last = GONIO_PHI_D_BINS - first;
-    for (int k = first; k < last; k++) {
-        set_directions(r, (gonio_bin){theta_h, theta_d, k});
-    }
-    const size_t start = (size_t)first * r->directions;
     gonio_status status = GONIO_OK;
     if (first < last) {
-        status = r->source->evaluate(r->source->self, context, r->pair + start,
-                                     (size_t)(last - first) * r->directions,
-                                     r->value + start * r->channels);
+        const gonio_bin at = {theta_h, theta_d, first};
+        status = evaluate_runs(context, r, at, first, last, run);
     }
     for (int k = 0; k < GONIO_PHI_D_BINS && status == GONIO_OK; k++) {
-        const bool data = k >= first && k < last && average(r, k);
+        const bool inside = k >= first && k < last;
+        const double *mean = r->mean + (inside ? (size_t)((k - first) / run) * r->channels : 0);
+        const bool data = inside && has_data(r, mean);
         double *bin = rho + (size_t)theta_d * GONIO_PHI_D_BINS + (size_t)k;
         for (size_t c = 0; c < GONIO_CHANNELS; c++) {
-            bin[c * GONIO_SLAB_BINS] = data ? colour_of(r, c) : -1.0;
+            bin[c * GONIO_SLAB_BINS] = data ? colour_of(r, mean, c) : -1.0;
         }
     }
     return status;
 }
 
-gonio_status gonio_i_slab_evaluate(gonio_context *context, const gonio_material_source *source,
-                                   const double *weight, int theta_h, double *rho)
+static gonio_status evaluate(gonio_context *context, const gonio_material_source *source,
+                             const double *weight, int theta_h, int run, double *rho)
 {
-    row r = {.source = source,
-             .weight = weight,
-             .channels = source->channels,
-             .directions = source->anisotropic ? 2 * AZIMUTHS : 2};
-    const size_t most = GONIO_PHI_D_BINS * r.directions;
-    r.pair = gonio_i_allocate(context, most, sizeof *r.pair);
-    r.value = gonio_i_allocate(context, most * r.channels, sizeof *r.value);
-    r.mean = gonio_i_allocate(context, r.channels, sizeof *r.mean);
-    gonio_status status =
-        r.pair != NULL && r.value != NULL && r.mean != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
+    row r = {.source = source, .weight = weight, .channels = source->channels};
+    r.pair = gonio_i_allocate(context, GONIO_PHI_D_BINS, sizeof *r.pair);
+    r.mean = gonio_i_allocate(context, GONIO_PHI_D_BINS * r.channels, sizeof *r.mean);
+    gonio_status status = r.pair != NULL && r.mean != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
     for (int theta_d = 0; theta_d < GONIO_THETA_D_BINS && status == GONIO_OK; theta_d++) {
-        status = fill_row(context, &r, theta_h, theta_d, rho);
+        status = fill_row(context, &r, theta_h, theta_d, run, rho);
     }
     free(r.pair);
-    free(r.value);
     free(r.mean);
     return status;
+}
+
+gonio_status gonio_i_slab_read(gonio_context *context, const gonio_material *material, int theta_h,
+                               int run, double *rho)
+{
+    const gonio_material_source *source = &material->source;
+    return source->read_slab != NULL
+               ? source->read_slab(source->self, context, theta_h, rho)
+               : evaluate(context, source, material->weight, theta_h, run, rho);
 }
 
 gonio_status gonio_material_read_slab(gonio_context *context, const gonio_material *material,
@@ -137,8 +126,5 @@ gonio_status gonio_material_read_slab(gonio_context *context, const gonio_materi
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "theta_h index %d outside 0 .. 89",
                             theta_h);
     }
-    const gonio_material_source *source = &material->source;
-    return source->read_slab != NULL
-               ? source->read_slab(source->self, context, theta_h, rho)
-               : gonio_i_slab_evaluate(context, source, material->weight, theta_h, rho);
+    return gonio_i_slab_read(context, material, theta_h, 1, rho);
 }

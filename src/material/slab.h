@@ -1,15 +1,14 @@
-/* A slab of the grid from a material that is evaluated at any directions. */
+/* A slab of the grid from any material. */
 #ifndef GONIO_SLAB_H
 #define GONIO_SLAB_H
 
 #include <gonio/material.h>
 
-/* Computes rho (GONIO_SLAB_VALUES) at the centres of the bins of a theta_h index by
- * source->evaluate. A bin gets the mean over the pair and its reciprocal and, if the source is
- * anisotropic, over 8 azimuths of the half vector. Spectra become colours by `weight` (colour.h).
- * The three values of a single channel are equal. A channel without data is 0 where others have
- * data. Bins beyond source->theta_limit have no data. Errors: _MEMORY, those of the source. */
-gonio_status gonio_i_slab_evaluate(gonio_context *context, const gonio_material_source *source,
-                                   const double *weight, int theta_h, double *rho);
+/* gonio_material_read_slab, where a material without read_slab is evaluated at one bin of each run
+ * of `run` bins of phi_d, whose value the others get. The index theta_h must be valid. A bin gets
+ * the mean over the pair and its reciprocal and, if the source is anisotropic, over azimuths of the
+ * half vector (azimuth_mean.h). */
+gonio_status gonio_i_slab_read(gonio_context *context, const gonio_material *material, int theta_h,
+                               int run, double *rho);
 
 #endif

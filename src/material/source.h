@@ -18,4 +18,9 @@ bool gonio_i_material_is_direct(const gonio_material *material);
 bool gonio_i_material_colour(const gonio_material *material, gonio_pair pair,
                              double rgb[GONIO_CHANNELS]);
 
+/* gonio_table_load at a part of the directions: a material that has to be evaluated is evaluated at
+ * one bin of each run of `run` bins of phi_d, whose value the others get. */
+gonio_status gonio_i_table_load_runs(gonio_context *context, const gonio_material *material,
+                                     int run, gonio_table **table);
+
 #endif

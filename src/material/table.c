@@ -6,13 +6,15 @@
 
 #include "../core/core.h"
 #include "look_up.h"
+#include "slab.h"
+#include "source.h"
 
 struct gonio_table {
     double *rho;                            /* [theta_h][channel][theta_d][phi_d] */
     const double *slab[GONIO_THETA_H_BINS]; /* of rho */
 };
 
-static void load_slabs(gonio_context *shared, const gonio_material *material, int threads,
+static void load_slabs(gonio_context *shared, const gonio_material *material, int threads, int run,
                        double *rho, gonio_status *status)
 {
     int finished = 0;
@@ -22,8 +24,8 @@ static void load_slabs(gonio_context *shared, const gonio_material *material, in
 #pragma omp atomic read
         mine = *status;
         if (mine == GONIO_OK) {
-            mine = gonio_material_read_slab(shared, material, theta_h,
-                                            rho + (size_t)theta_h * GONIO_SLAB_VALUES);
+            mine = gonio_i_slab_read(shared, material, theta_h, run,
+                                     rho + (size_t)theta_h * GONIO_SLAB_VALUES);
         }
         int done;
 #pragma omp atomic capture
@@ -38,8 +40,8 @@ static void load_slabs(gonio_context *shared, const gonio_material *material, in
     }
 }
 
-gonio_status gonio_table_load(gonio_context *context, const gonio_material *material,
-                              gonio_table **table)
+gonio_status gonio_i_table_load_runs(gonio_context *context, const gonio_material *material,
+                                     int run, gonio_table **table)
 {
     gonio_table *made = gonio_i_allocate(context, 1, sizeof *made);
     if (made == NULL) {
@@ -55,7 +57,7 @@ gonio_status gonio_table_load(gonio_context *context, const gonio_material *mate
         status = GONIO_ERROR_MEMORY;
     } else {
         gonio_context *shared = gonio_i_shared_context_begin(context);
-        load_slabs(shared, material, gonio_context_threads(context), made->rho, &status);
+        load_slabs(shared, material, gonio_context_threads(context), run, made->rho, &status);
         gonio_i_shared_context_end(shared, context);
     }
     if (status != GONIO_OK) {
@@ -64,6 +66,12 @@ gonio_status gonio_table_load(gonio_context *context, const gonio_material *mate
     }
     *table = made;
     return GONIO_OK;
+}
+
+gonio_status gonio_table_load(gonio_context *context, const gonio_material *material,
+                              gonio_table **table)
+{
+    return gonio_i_table_load_runs(context, material, 1, table);
 }
 
 void gonio_table_free(gonio_table **table)

@@ -12,6 +12,10 @@
 
 enum { VALUES = 4, HIGHLIGHT_THETA_D = 60 }; /* bins below 60 degrees show the highlight */
 
+/* Bins of phi_d that share the value of an anisotropic material: its mean over azimuths is only for
+ * the sampling, and for directions without data. */
+enum { ANISOTROPIC_RUN = 12 };
+
 /* The weight of a bin without data: it counts only if there is no bin with data. */
 static const float hole_weight = 1e-9F;
 
@@ -168,7 +172,10 @@ static gonio_status fill_bins(gonio_context *context, const gonio_material *mate
                               gonio_i_surface *surface)
 {
     gonio_table *table = NULL;
-    const gonio_status status = gonio_table_load(context, material, &table);
+    const bool direct = gonio_i_material_is_direct(material);
+    const bool anisotropic = direct && gonio_material_describe(material)->anisotropic;
+    const gonio_status status =
+        gonio_i_table_load_runs(context, material, anisotropic ? ANISOTROPIC_RUN : 1, &table);
     if (status != GONIO_OK) {
         return status;
     }
@@ -186,7 +193,7 @@ static gonio_status fill_bins(gonio_context *context, const gonio_material *mate
     }
     find_highlight(surface);
     fill_holes(surface->bin);
-    surface->direct = gonio_i_material_is_direct(material) ? material : NULL;
+    surface->direct = direct ? material : NULL;
     return GONIO_OK;
 }
 

@@ -4,9 +4,10 @@
 . "$(dirname "$0")/lib.sh"
 
 steel=atlas:steel-hairline
+mild=atlas:aluminium-fine-brushed # whose mean takes few azimuths
 
 expect_output 'atlas:steel-hairline               brushed metal, anisotropic' info atlas:
-expect_output '"anisotropic": true' info --json $steel
+expect_output '"anisotropic": true' info --json $mild
 expect_also '"conserves_energy": true' '"turned_90_e6_percent": '
 expect_output 'turned by 90 degrees it differs by' info atlas:crimson-satin
 
@@ -24,10 +25,13 @@ if full; then
 fi
 
 # The mean, with what it lacks.
-run convert $steel --average-azimuths mean.binary
+run convert $mild --average-azimuths mean.binary
 grep -q 'the mean over azimuths differs from the anisotropic material by' "$root/work/stderr" ||
     failed 'the loss of the mean is not stated'
 expect_output 'MERL table' info mean.binary
+run convert $mild --average-azimuths --format zemax mean.bsdf
+grep -q 'the mean over azimuths differs from the anisotropic material by' "$root/work/stderr" ||
+    failed 'the loss of the mean is not stated of a Zemax file'
 
 # Readings see the azimuth of the sample.
 printf 'theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg\n30,0,50,180\n30,90,50,270\n' >two.csv
