@@ -140,6 +140,9 @@ static bool check(const tool *t, const options *o, const char **arguments, size_
 static void complete(options *o)
 {
     o->follow.output = o->output;
+    o->follow.instrument = o->instrument;
+    o->follow.noise_given = o->noise != NOT_GIVEN;
+    o->follow.floor_given = o->floor != NOT_GIVEN;
     o->follow.posterior.noise = o->noise == NOT_GIVEN ? o->follow.posterior.noise : o->noise;
     o->follow.posterior.floor = o->floor == NOT_GIVEN ? o->follow.posterior.floor : o->floor;
     o->noise = o->noise == NOT_GIVEN ? 0.0 : o->noise;
@@ -177,13 +180,15 @@ int cmd_measure(int argc, const char **argv)
         {"seed", '\0', POPT_ARG_LONG, &o.seed, 0, "Seed of noise and outliers (default: 0)", "N"},
         {"instrument", '\0', POPT_ARG_STRING, &o.instrument, 0,
          "Write the run of this instrument, a file or in-plane, two-arms or four-axis: apertures, "
-         "noise, drift, reference and dark lines, times (CSV)",
+         "noise, drift, reference and dark lines, times (CSV); in a followed run its limits, noise "
+         "and times count",
          "INSTRUMENT"},
         {"follow", '\0', POPT_ARG_STRING, &o.follow.follow, 0,
          "Follow a run: readings that an instrument appends to this file; - is standard input",
          "FILE"},
         {"exec", '\0', POPT_ARG_STRING, &o.follow.command, 0,
-         "Make a run: COMMAND is given theta_i, phi_i, theta_o, phi_o in degrees and prints values",
+         "Make a run: COMMAND is given theta_i, phi_i, theta_o, phi_o in degrees, and the "
+         "positions of the instrument's axes, and prints values",
          "COMMAND"},
         {"basis", '\0', POPT_ARG_STRING, &o.follow.basis, 0,
          "What a run is judged by (default: the basis of the built-in materials)", "BASIS"},
@@ -201,6 +206,10 @@ int cmd_measure(int argc, const char **argv)
          "End a run when the expected error (E6) is at most this", "PERCENT"},
         {"budget", '\0', POPT_ARG_STRING, &o.follow.budget, 0,
          "End a run after this time: 45min, 2h, 90s", "TIME"},
+        {"idle", '\0', POPT_ARG_STRING, &o.follow.idle, 0,
+         "End when no line came for this time (default: if only repeats are left, 1 min or ten "
+         "times a reading's time; otherwise never)",
+         "TIME"},
         {"saturation", '\0', POPT_ARG_DOUBLE, &o.follow.posterior.saturation, 0,
          "In a run, readings of this value or more, 1/sr, are saturated", "VALUE"},
         TOOL_READINGS_OPTIONS,

@@ -224,6 +224,16 @@ gonio_status gonio_i_csv_open(gonio_context *context, const char *path, const ch
     return status;
 }
 
+/* Whether no cell has a point: commas may have parted numbers. */
+static bool have_no_points(const gonio_i_csv_reader *r)
+{
+    bool none = true;
+    for (size_t k = 0; k < r->cells; k++) {
+        none = none && strchr(r->cell[k], '.') == NULL;
+    }
+    return none;
+}
+
 /* Cells that are empty beyond the names are no cells, and names may be missing beyond the cells. */
 static gonio_status fit_cells(gonio_i_csv_reader *r)
 {
@@ -241,8 +251,11 @@ static gonio_status fit_cells(gonio_i_csv_reader *r)
     return r->cells == r->columns
                ? GONIO_OK
                : gonio_i_fail(r->context, GONIO_ERROR_FORMAT,
-                              "%s:%zu: %zu cells where the header names %zu columns", r->path,
-                              r->line, found, r->columns);
+                              "%s:%zu: %zu cells where the header names %zu columns%s", r->path,
+                              r->line, found, r->columns,
+                              found > r->columns && r->delimiter == ',' && have_no_points(r)
+                                  ? ": are these decimal commas? Put semicolons between cells then"
+                                  : "");
 }
 
 gonio_status gonio_i_csv_next(gonio_i_csv_reader *reader)

@@ -180,7 +180,8 @@ typedef struct corrector {
     history dark;
     history reference; /* less the dark level, relative to the first */
     bool timed;
-    size_t below; /* values that were below the dark level */
+    size_t below; /* values that were below the dark level, */
+    size_t known; /* of so many */
 } corrector;
 
 /* Makes reference levels gains. False if the reference is not brighter than the dark. */
@@ -215,6 +216,7 @@ static void correct_reading(corrector *c, size_t reading)
         const double gain = c->reference.count > 0 ? level_at(&c->reference, at, j, channels) : 1.0;
         const double value = (r->value[k] - level_at(&c->dark, at, j, channels) / by) / gain;
         c->below += value < 0.0;
+        c->known += !isnan(value);
         r->value[k] = value < 0.0 ? 0.0 : value;
         if (r->deviation != NULL) {
             r->deviation[k] /= gain;
@@ -242,9 +244,10 @@ static gonio_status note_all(gonio_context *context, const corrector *c)
         range_of(&c->dark, c->readings->channels, &least, &most);
         status = gonio_i_readings_note(
             context, c->readings,
-            "%zu dark row%s subtracted (%.3g to %.3g, by %s); %zu value%s below it taken as 0",
+            "%zu dark row%s subtracted (%.3g to %.3g, by %s); %zu value%s below it taken as 0%s",
             c->dark.count, c->dark.count > 1 ? "s" : "", least, most, clock, c->below,
-            c->below == 1 ? "" : "s");
+            c->below == 1 ? "" : "s",
+            2 * c->below > c->known ? ", most of all: was the light on in a dark row?" : "");
     }
     if (status == GONIO_OK && c->reference.count > 0) {
         range_of(&c->reference, c->readings->channels, &least, &most);

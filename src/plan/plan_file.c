@@ -21,16 +21,25 @@ static bool add_origin(gonio_i_comments *comments, const char *kind, const char 
            (command == NULL || gonio_i_comments_add(comments, "command: %s", command));
 }
 
+static bool add_quality(gonio_i_comments *comments, const gonio_plan *plan)
+{
+    if (plan->expected != NULL) {
+        return gonio_i_comments_add(comments, "expected_e6_percent: %.4g",
+                                    plan->expected[plan->count - 1]);
+    }
+    return plan->condition_number == 0.0 ||
+           gonio_i_comments_add(comments, "condition_number: %.6g", plan->condition_number);
+}
+
+/* What a plan does not have, basis, components or condition number, is 0 and not stated. */
 static bool add_plan_notes(gonio_i_comments *comments, const gonio_plan *plan)
 {
-    return gonio_i_comments_add(comments, "basis: %016" PRIx64, plan->basis) &&
-           (plan->expected != NULL ||
+    return (plan->basis == 0 ||
+            gonio_i_comments_add(comments, "basis: %016" PRIx64, plan->basis)) &&
+           (plan->expected != NULL || plan->components == 0 ||
             gonio_i_comments_add(comments, "components: %zu", plan->components)) &&
            gonio_i_comments_add(comments, "method: %s", plan->method) &&
-           (plan->expected != NULL ? gonio_i_comments_add(comments, "expected_e6_percent: %.4g",
-                                                          plan->expected[plan->count - 1])
-                                   : gonio_i_comments_add(comments, "condition_number: %.6g",
-                                                          plan->condition_number)) &&
+           add_quality(comments, plan) &&
            (plan->run == NULL ||
             (gonio_i_comments_add(comments, "instrument: %s", plan->run->instrument) &&
              gonio_i_comments_add(comments, "duration_s: %.1f", plan->run->duration))) &&
@@ -98,7 +107,7 @@ static bool fill_plan(gonio_i_csv *csv, const gonio_plan *plan, const char *comm
     for (size_t k = 0; done && k < plan->count; k++) {
         done = add_entry(csv, &plan->entries[k]) &&
                (plan->expected == NULL || gonio_i_csv_set(csv, k, 5, "%.4g", plan->expected[k])) &&
-               (plan->run == NULL || add_run(csv, plan->run, k, 6));
+               (plan->run == NULL || add_run(csv, plan->run, k, plan->expected != NULL ? 6 : 5));
     }
     return done;
 }

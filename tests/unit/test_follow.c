@@ -194,11 +194,16 @@ static void test_commands(void **state)
     static const double at[4] = {30.0, 0.0, 45.5, 180.0};
     char *output = NULL;
     char *problem = NULL;
-    command_source_run("echo value: ", at, &output, &problem);
+    command_source_run("echo value: ", at, NULL, 0, &output, &problem);
     assert_string_equal(output, "value: 30.000000000 0.000000000 45.500000000 180.000000000\n");
     assert_null(problem);
     free(output);
-    command_source_run("exit 3;", at, &output, &problem);
+    command_source_run("echo", at, at, 2, &output, &problem);
+    assert_string_equal(output, "30.000000000 0.000000000 45.500000000 180.000000000 "
+                                "30.000000000 0.000000000\n");
+    assert_null(problem);
+    free(output);
+    command_source_run("exit 3;", at, NULL, 0, &output, &problem);
     assert_non_null(strstr(problem, "code 3"));
     free(output);
     free(problem);
@@ -251,6 +256,25 @@ static void test_run(void **state)
     assert_true(r.row[2].wanted == RUN_NOWHERE && r.backwards == 1);
     assert_true(run_left(&r) == 2 && run_counted(&r) == 3);
     assert_true(r.unclear == 1 && r.copies == 1);
+    run_end(&r);
+}
+
+/* A direction that is read again unasked counts twice, and other values are noted. */
+static void test_read_again(void **state)
+{
+    (void)state;
+    run r;
+    size_t open[4];
+    begin(&r);
+    take(&r, 1, NAMES);
+    take(&r, 2, "30,0,30,180,0.5,10");
+    take(&r, 3, "30,0,30,180,0.51,20");
+    assert_true(r.row[1].unlike == RUN_NOWHERE && run_unread(&r) == 3);
+    take(&r, 4, "30,0,30,180,0.7,30");
+    assert_true(r.row[2].unlike == 1 && run_counted(&r) == 3);
+    assert_true(run_ask(&r, 0) && run_left(&r) == 4 && run_unread(&r) == 3);
+    assert_int_equal(run_list_open(&r, open), 4);
+    assert_true(open[0] == 0 && open[1] == 1 && open[2] == 2 && open[3] == 3);
     run_end(&r);
 }
 
@@ -308,6 +332,7 @@ int main(void)
         cmocka_unit_test(test_values_of_commands),
         cmocka_unit_test(test_commands),
         cmocka_unit_test(test_run),
+        cmocka_unit_test(test_read_again),
         cmocka_unit_test(test_repeats),
         cmocka_unit_test(test_names_and_marks),
     };

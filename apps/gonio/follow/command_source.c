@@ -9,7 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { MOST_OUTPUT = 1 << 20, ROOM = 4096, ANGLE_ROOM = 32 };
+enum { MOST_OUTPUT = 1 << 20, ROOM = 4096, ANGLE_ROOM = 32, MOST_ANGLES = 4 + COMMAND_MOST_AXES };
 
 static void say(char **problem, const char *text, const char *more)
 {
@@ -21,13 +21,12 @@ static void say(char **problem, const char *text, const char *more)
 /* ---- running ---- */
 
 /* Becomes the command. Only calls that are safe after a fork. */
-static void become(const char *command, char angle[4][ANGLE_ROOM], const int ends[2])
+static void become(char *const *arguments, const int ends[2])
 {
     if (dup2(ends[1], STDOUT_FILENO) >= 0) {
         close(ends[0]);
         close(ends[1]);
-        execl("/bin/sh", "sh", "-c", command, "sh", angle[0], angle[1], angle[2], angle[3],
-              (char *)NULL);
+        execv("/bin/sh", arguments);
     }
     _exit(127);
 }
@@ -82,9 +81,11 @@ static char *with_angles(const char *command)
     return asprintf(&whole, "%s \"$@\"", command) < 0 ? NULL : whole;
 }
 
-void command_source_run(const char *command, const double degrees[4], char **output, char **problem)
+void command_source_run(const char *command, const double degrees[4], const double *axis,
+                        size_t axes, char **output, char **problem)
 {
-    char angle[4][ANGLE_ROOM];
+    char angle[MOST_ANGLES][ANGLE_ROOM];
+    char *arguments[MOST_ANGLES + 5] = {"sh", "-c", NULL, "sh"};
     int ends[2];
     *output = NULL;
     *problem = NULL;
@@ -94,13 +95,15 @@ void command_source_run(const char *command, const double degrees[4], char **out
         free(whole);
         return;
     }
-    for (int k = 0; k < 4; k++) {
-        snprintf(angle[k], sizeof angle[k], "%.9f", degrees[k]);
+    arguments[2] = whole;
+    for (size_t k = 0; k < 4 + axes; k++) {
+        snprintf(angle[k], sizeof angle[k], "%.9f", (k < 4 ? degrees[k] : axis[k - 4]) + 0.0);
+        arguments[4 + k] = angle[k];
     }
     fflush(NULL);
     const pid_t child = fork();
     if (child == 0) {
-        become(whole, angle, ends);
+        become(arguments, ends);
     }
     close(ends[1]);
     if (child < 0) {

@@ -9,12 +9,18 @@
 #include "../duration.h"
 #include "../inputs.h"
 #include "../planning_options.h"
+#include "flags.h"
 #include "follower.h"
 #include "outputs.h"
 #include "progress.h"
 #include "records.h"
 #include "requests.h"
+#include "settings.h"
 #include "sources.h"
+
+/* Seconds that repeats are waited for, at least, and in times of a reading. */
+static const double LEAST_PATIENCE = 60.0;
+static const double PATIENCE = 10.0;
 
 /* ---- the run ---- */
 
@@ -44,16 +50,35 @@ static void act(follower *f)
         follow_show_progress(f);
     }
     f->fresh = 0;
+    f->idle_since = tool_seconds();
 }
 
 /* Whether the time is up, or would be before another reading is made. */
-static bool is_time_up(const follower *f)
+static bool is_time_up(follower *f)
 {
-    const double next = f->o->command != NULL ? run_reading_time(&f->run) : 0.0;
+    const double usual = run_reading_time(&f->run);
+    const double next =
+        f->o->command == NULL
+            ? 0.0
+            : fmax(f->inputs.instrument != NULL ? follow_time_of_next(f) : usual, usual);
     return follow_elapsed(f) + (isnan(next) ? 0.0 : next) > f->budget;
 }
 
-static ending find_ending(const follower *f, ending input)
+double follow_patience(const follower *f)
+{
+    if (f->idle > 0.0) {
+        return f->idle;
+    }
+    return run_unread(&f->run) == 0 ? fmax(LEAST_PATIENCE, PATIENCE * run_reading_time(&f->run))
+                                    : (double)INFINITY;
+}
+
+static bool is_idle(const follower *f)
+{
+    return f->o->command == NULL && tool_seconds() - f->idle_since > follow_patience(f);
+}
+
+static ending find_ending(follower *f, ending input)
 {
     if (tool_is_interrupted()) {
         return INTERRUPTED;
@@ -61,7 +86,10 @@ static ending find_ending(const follower *f, ending input)
     if (f->target > 0.0 && f->verdict.expected <= f->target) {
         return TARGET_MET;
     }
-    return run_left(&f->run) == 0 ? ALL_READ : is_time_up(f) ? TIME_UP : input;
+    if (run_left(&f->run) == 0) {
+        return ALL_READ;
+    }
+    return is_time_up(f) ? TIME_UP : is_idle(f) ? NOTHING_CAME : input;
 }
 
 /* One round: what is new, and what follows from it. */
@@ -98,11 +126,12 @@ static gonio_status begin_judge(follower *f)
 {
     const gonio_context_options silent = {.size = sizeof silent, .threads = tool_threads};
     const planning_options planning = {.count = PLANNING_USUAL_COUNT,
-                                       .candidates = f->o->candidates};
+                                       .candidates = f->o->candidates,
+                                       .instrument = f->o->instrument};
+    posterior_options judged = f->o->posterior;
     judge *j = &f->judge;
     j->context = f->t->context;
     gonio_reconstruct_options_default(&j->how);
-    posterior_options_apply(&f->o->posterior, &j->how);
     j->how.other_basis = true;
     j->how.no_checks = true;
     j->how.method = "posterior";
@@ -111,6 +140,10 @@ static gonio_status begin_judge(follower *f)
     gonio_status status = gonio_context_create(&j->silent, &silent);
     if (status == GONIO_OK) {
         status = planning_options_apply(f->t, &planning, &j->plan, &f->inputs);
+    }
+    if (status == GONIO_OK) {
+        follow_set_limits(f, &judged);
+        posterior_options_apply(&judged, &j->how);
     }
     if (status == GONIO_OK && !f->o->no_basis) {
         status = tool_basis(f->t, f->o->basis, NULL, &f->basis);
@@ -133,10 +166,15 @@ static gonio_status begin(follower *f, const char *path)
     if (status == GONIO_OK) {
         const char *from = f->o->follow != NULL ? f->o->follow : "readings";
         f->plan = run_fingerprint(plan);
+        f->plan_basis = gonio_readings_describe(plan)->basis;
         status = run_begin(&f->run, plan, &how, strcmp(from, "-") == 0 ? "standard input" : from);
     }
     if (status == GONIO_OK) {
         status = begin_judge(f);
+    }
+    if (status == GONIO_OK) {
+        follow_note_instrument(f, plan);
+        status = follow_check_reach(f);
     }
     gonio_readings_free(&plan);
     f->began = tool_seconds();
@@ -151,6 +189,7 @@ static void end(follower *f)
     gonio_basis_free(&f->basis);
     gonio_context_free(&f->judge.silent);
     free(f->verdict.doubt);
+    free(f->said);
     planning_inputs_free(&f->inputs);
     free(f->journal_path);
 }
@@ -161,12 +200,16 @@ int follow_run(tool *t, const follow_options *o, const char *plan)
     if (o->budget != NULL) {
         tool_duration(o->budget, &f.budget);
     }
+    if (o->idle != NULL) {
+        tool_duration(o->idle, &f.idle);
+    }
     f.target = o->target != NULL ? planning_percent(o->target) : 0.0;
     f.idle_since = tool_seconds();
     line_source_begin(&f.source, o->follow != NULL ? o->follow : "");
     f.status = begin(&f, plan);
     ending how = GOING_ON;
     if (f.status == GONIO_OK) {
+        follow_show_beginning(&f);
         how = follow_all(&f);
     }
     if (f.status == GONIO_ERROR_MEMORY) {
@@ -181,6 +224,7 @@ bool follow_check(const tool *t, const follow_options *o, const char *const *arg
                   size_t count)
 {
     double budget = 0.0;
+    double idle = 0.0;
     if (count != 1) {
         return tool_refuse(t, "--follow and --exec take one PLAN, and no MATERIAL");
     }
@@ -197,7 +241,13 @@ bool follow_check(const tool *t, const follow_options *o, const char *const *arg
         return tool_refuse(t, "--budget: '%s' is not a duration such as 45min, 2h or 90s",
                            o->budget);
     }
-    const char *inputs[] = {arguments[0], o->follow, o->basis, o->candidates};
+    if (o->idle != NULL && !tool_duration(o->idle, &idle)) {
+        return tool_refuse(t, "--idle: '%s' is not a duration such as 45min, 2h or 90s", o->idle);
+    }
+    if (o->instrument != NULL && o->candidates != NULL) {
+        return tool_refuse(t, "give --instrument or --candidates, not both");
+    }
+    const char *inputs[] = {arguments[0], o->follow, o->basis, o->candidates, o->instrument};
     const size_t inputs_count = sizeof inputs / sizeof *inputs;
     if (o->journal == NULL && o->output != NULL && strcmp(o->output, "-") == 0) {
         return tool_refuse(t, "-o -: give --journal FILE");

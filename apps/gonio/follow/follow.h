@@ -15,8 +15,12 @@ typedef struct follow_options {
     const char *budget;     /* a duration; or NULL */
     const char *target;     /* per cent; or NULL */
     const char *candidates; /* of --adapt */
+    const char *instrument; /* a file or a word; or NULL */
+    const char *idle;       /* a duration; or NULL */
     int adapt;
     int no_basis;
+    bool noise_given; /* otherwise that of the instrument counts */
+    bool floor_given;
     posterior_options posterior;
 } follow_options;
 

@@ -120,23 +120,13 @@ static gonio_status copy_degrees(const gonio_plan *plan, double (**degrees)[4], 
     return *degrees != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
 }
 
-/* Directions that are still to be read for the first time. */
-static size_t unread(const run *r)
-{
-    size_t count = 0;
-    for (size_t k = 0; k < r->wanted_count; k++) {
-        count += !r->wanted[k].dropped && r->wanted[k].row == RUN_NOWHERE;
-    }
-    return count;
-}
-
 gonio_status judge_plan(const judge *j, const run *r, double (**degrees)[4], size_t *count)
 {
     gonio_readings *readings = NULL;
     gonio_plan *plan = NULL;
     size_t *rows = NULL;
     gonio_plan_options what = j->plan;
-    what.count = unread(r);
+    what.count = run_unread(r);
     what.target = 0.0;
     *degrees = NULL;
     *count = 0;

@@ -13,6 +13,12 @@ gonio_status follow_fail(follower *f, gonio_status status, const char *path, con
 /* Asks who runs the instrument for a direction again. */
 void follow_say_repeat(follower *f, size_t wanted, const char *why);
 
+/* Says what the reader of the readings notes, each kind of note once. */
+void follow_say_notes(follower *f, const gonio_readings_view *readings);
+
+/* One line, if there is an instrument: what is to be read and how long that takes. */
+void follow_show_beginning(follower *f);
+
 /* One line: how far the run is. */
 void follow_show_progress(follower *f);
 

@@ -6,6 +6,7 @@
 
 #include "progress.h"
 #include "records.h"
+#include "settings.h"
 
 enum { ADAPT_EVERY = 5 }; /* readings after which the rest is planned again */
 
@@ -43,6 +44,9 @@ void follow_adapt(follower *f)
         return;
     }
     f->status = judge_plan(&f->judge, &f->run, &degrees, &count);
+    if (f->status == GONIO_OK) {
+        f->status = follow_order(f, degrees, count);
+    }
     FILE *stream = f->status == GONIO_OK && count > 0 ? open_memstream(&text, &size) : NULL;
     for (size_t k = 0; stream != NULL && k < 4 * count; k++) {
         fprintf(stream, " %.9f", degrees[k / 4][k % 4]);

@@ -235,6 +235,8 @@ static void give_to_wanted(run *r, size_t number)
     r->unordered += w->row == RUN_NOWHERE && row->wanted != next && !r->wanted[next].asked;
     if (w->asked && w->row != RUN_NOWHERE && differ(row, &r->row[w->row])) {
         r->row[w->row].set_aside = true;
+    } else if (w->row != RUN_NOWHERE && differ(row, &r->row[w->row])) {
+        row->unlike = w->row;
     }
     w->asked = false;
     w->row = number;
@@ -252,7 +254,7 @@ static void note_time(run *r, const run_row *row)
 static run_fate take_row(run *r, size_t line, double seconds, const char *text,
                          gonio_status *status)
 {
-    run_row row = {.line = line, .seconds = seconds, .wanted = RUN_NOWHERE};
+    run_row row = {.line = line, .seconds = seconds, .wanted = RUN_NOWHERE, .unlike = RUN_NOWHERE};
     free(r->problem);
     r->problem = NULL;
     if (!row_read(r, text, &row, status)) {
@@ -354,6 +356,28 @@ size_t run_next(const run *r)
         next = next == RUN_NOWHERE && is_open(&r->wanted[k]) ? k : next;
     }
     return next;
+}
+
+size_t run_unread(const run *r)
+{
+    size_t count = 0;
+    for (size_t k = 0; k < r->wanted_count; k++) {
+        count += !r->wanted[k].dropped && r->wanted[k].row == RUN_NOWHERE;
+    }
+    return count;
+}
+
+size_t run_list_open(const run *r, size_t *wanted)
+{
+    size_t count = 0;
+    for (int again = 1; again >= 0; again--) {
+        for (size_t k = 0; k < r->wanted_count; k++) {
+            if (is_open(&r->wanted[k]) && r->wanted[k].asked == (again == 1)) {
+                wanted[count++] = k;
+            }
+        }
+    }
+    return count;
 }
 
 size_t run_counted(const run *r)

@@ -29,6 +29,8 @@ typedef struct run_row {
     size_t wanted;   /* its direction; RUN_NOWHERE: none of the plan */
     bool of_sample;  /* no reference and no dark level */
     bool set_aside;  /* another row took the place of it */
+    size_t unlike;   /* an earlier row of its direction, of another value, that counts too;
+                      * RUN_NOWHERE: none */
     gonio_pair pair; /* of the sample */
     size_t channels;
     double *value; /* [channels] */
@@ -84,6 +86,12 @@ bool run_ask(run *r, size_t wanted);
  * RUN_NOWHERE if none is left: first those asked for again. */
 size_t run_left(const run *r);
 size_t run_next(const run *r);
+
+/* Directions that were never read. */
+size_t run_unread(const run *r);
+
+/* The directions that are to be read, in order: wanted[run_left]. Returns how many. */
+size_t run_list_open(const run *r, size_t *wanted);
 
 /* Rows that count as readings of the sample. */
 size_t run_counted(const run *r);

@@ -9,9 +9,10 @@
 
 #include "../duration.h"
 #include "command_source.h"
+#include "flags.h"
 #include "progress.h"
 #include "records.h"
-#include "requests.h"
+#include "settings.h"
 
 enum {
     WAIT = 100,       /* milliseconds between looks at the file */
@@ -40,6 +41,11 @@ static void look_at_row(follower *f, size_t unordered, size_t backwards)
             "%s:%zu: no direction of the plan is within a degree of this one; the reading is kept",
             r->path, row->line);
     }
+    if (row->unlike != RUN_NOWHERE) {
+        follow_say(f, GONIO_MESSAGE_WARNING,
+                   "%s:%zu: the direction of line %zu again, with another value: both count",
+                   r->path, row->line, r->row[row->unlike].line);
+    }
     if (r->unordered == 1 && unordered == 0) {
         follow_say(f, GONIO_MESSAGE_NOTE,
                    "%s:%zu: the readings come in another order than that of the plan", r->path,
@@ -49,16 +55,6 @@ static void look_at_row(follower *f, size_t unordered, size_t backwards)
         follow_say(f, GONIO_MESSAGE_WARNING, "%s:%zu: the time is before that of the line above",
                    r->path, row->line);
     }
-}
-
-static bool is_saturated(const follower *f, const run_row *row)
-{
-    bool saturated = false;
-    for (size_t k = 0; k < row->channels; k++) {
-        saturated = saturated || (f->o->posterior.saturation > 0.0 &&
-                                  row->value[k] >= f->o->posterior.saturation);
-    }
-    return saturated;
 }
 
 /* Takes one line: journal first. */
@@ -76,10 +72,7 @@ static void take_line(follower *f, size_t line, const char *text)
     if (fate == RUN_READING) {
         f->fresh++;
         look_at_row(f, unordered, backwards);
-        const run_row *row = &f->run.row[f->run.rows - 1];
-        if (row->wanted != RUN_NOWHERE && is_saturated(f, row)) {
-            follow_ask(f, row->wanted, "saturated: with less light, please");
-        }
+        follow_flag(f);
     } else if (fate == RUN_COPY) {
         follow_say(f, GONIO_MESSAGE_NOTE, "%s:%zu: the same as an earlier line; left out",
                    f->run.path, line);
@@ -107,6 +100,12 @@ static void say_pending(follower *f)
         follow_say(f, GONIO_MESSAGE_NOTE, "%s:%zu: a line without an end is waited for",
                    f->run.path, f->source.line + 1);
         f->said_pending = true;
+    }
+    if (run_unread(&f->run) == 0 && !f->said_repeats) {
+        follow_say(f, GONIO_MESSAGE_NOTE,
+                   "only repeats are left: %zu; waiting for them, %.0f s after the last line",
+                   run_left(&f->run), follow_patience(f));
+        f->said_repeats = true;
     }
     if (f->source.descriptor < 0 && !f->said_waiting) {
         follow_say(f, GONIO_MESSAGE_NOTE, "%s is not there yet: waiting", f->run.path);
@@ -206,7 +205,9 @@ ending follow_take_from_command(follower *f)
         return GOING_ON;
     }
     memcpy(degrees, f->run.wanted[wanted].degrees, sizeof degrees);
-    command_source_run(f->o->command, degrees, &output, &problem);
+    double position[GONIO_MOST_AXES];
+    const size_t axes = follow_positions(f, degrees, position);
+    command_source_run(f->o->command, degrees, position, axes, &output, &problem);
     if (problem == NULL && output != NULL) {
         take_command_output(f, degrees, output, &problem);
     }
