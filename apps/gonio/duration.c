@@ -29,6 +29,17 @@ bool tool_duration(const char *text, double *seconds)
     return false;
 }
 
+void tool_print_duration(FILE *stream, double seconds)
+{
+    if (seconds < 90.0) {
+        fprintf(stream, "%.0f s", seconds);
+    } else if (seconds < 5400.0) {
+        fprintf(stream, "%.1f min", seconds / 60.0);
+    } else {
+        fprintf(stream, "%.2f h", seconds / 3600.0);
+    }
+}
+
 double tool_seconds(void)
 {
     struct timespec t;

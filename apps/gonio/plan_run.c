@@ -4,21 +4,11 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "duration.h"
 #include "json_output.h"
 
 /* A share of the pairs that is worth a word. */
 static const double WORTH_SAYING = 0.0005;
-
-static void print_time(FILE *stream, double seconds)
-{
-    if (seconds < 90.0) {
-        fprintf(stream, "%.0f s", seconds);
-    } else if (seconds < 5400.0) {
-        fprintf(stream, "%.1f min", seconds / 60.0);
-    } else {
-        fprintf(stream, "%.2f h", seconds / 3600.0);
-    }
-}
 
 static void print_parts(FILE *stream, const gonio_plan_run *run)
 {
@@ -45,9 +35,9 @@ void plan_run_print(const gonio_plan *plan, const char *output)
     FILE *stream = tool_results();
     fprintf(stream, "%s: %zu reading%s of the %s in ", output, plan->count,
             tool_plural(plan->count), run->instrument);
-    print_time(stream, run->duration);
+    tool_print_duration(stream, run->duration);
     fputs(" (", stream);
-    print_time(stream, run->unordered);
+    tool_print_duration(stream, run->unordered);
     fprintf(stream, " in the order of choice)\nexpected error (E6) %.2f %%",
             plan->expected[plan->count - 1]);
     if (isfinite(run->free_expected)) {

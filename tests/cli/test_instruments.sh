@@ -98,6 +98,27 @@ if command -v gnuplot >"$root/work/gnuplot"; then
     expect_true 'the picture' test -s picture/reach.svg -a -s picture/reach.png
 fi
 
+# ---- a plan as the instrument makes it ----
+
+expect_output 'arms.csv: 4 readings in ' check two-arms arms.csv -o picture
+expect_also ' of exposures, ' ' of moves, ' ' of incidence, 2.0 min of references'
+expect_true 'the data of the tour' test -s picture/tour.csv
+expect_true 'an axis that stands is not drawn' eval '! grep -q stage picture/tour.csv'
+expect_true 'the readings are drawn' grep -q 'readings of the plan' picture/reach.gp
+sed '12s/^[^,]*/17.5/' arms.csv >edited.csv
+checks=$((checks + 1))
+gonio check two-arms edited.csv >"$root/work/stdout" 2>"$root/work/stderr" || failed 'check edited.csv'
+expect_true 'edited angles are noticed' grep -q 'edited.csv:12: the positions of the axes do not read the angles' \
+    "$root/work/stderr"
+cut -d, -f1-6,11 edited.csv >plain.csv
+expect_ok check two-arms plain.csv
+expect_fail 1 'arms.csv:12: the instrument in-plane cannot read theta_i' check in-plane arms.csv
+if command -v jq >"$root/work/jq"; then
+    expect_ok check two-arms arms.csv --json
+    expect_true 'the parts of the time' holds \
+        '.run | (.exposures_s + .moves_s + .incidence_changes_s + .references_s - .duration_s | fabs) < 1e-6'
+fi
+
 # ---- the schema ----
 
 if python3 -c 'import jsonschema' 2>"$root/work/python"; then

@@ -262,6 +262,26 @@ static gonio_status sample_directions(fixture *f, gonio_i_figures *figures)
     return status == GONIO_OK ? gonio_i_figure_directions(f->context, figures, &figure) : status;
 }
 
+/* Half of the hemisphere is one region, a spot another; the third is nowhere. */
+static gonio_status sample_regions(fixture *f, gonio_i_figures *figures)
+{
+    enum { RINGS = 9, SPOKES = 24 };
+    static const char *const names[] = {"can be read", "the detector's arm", "nowhere"};
+    static int region[RINGS][SPOKES];
+    static const gonio_angles point[] = {{0.3, 3.0}, {1.0, 2.0}};
+    for (int ring = 0; ring < RINGS; ring++) {
+        for (int spoke = 0; spoke < SPOKES; spoke++) {
+            region[ring][spoke] = ring > 6 || (ring == 3 && (spoke < 2 || spoke == SPOKES - 1));
+        }
+    }
+    const gonio_i_region_panel panels[] = {
+        {"theta_i = 35 degrees", {0.61, 0.0}, region[0], 2, point},
+        {"theta_i = 40 degrees", {0.70, 0.0}, region[0], 0, NULL}};
+    const gonio_i_regions figure = {"regions", "An instrument", RINGS, SPOKES, 3,
+                                    names,     "a reading",     2,     panels};
+    return gonio_i_figure_regions(f->context, figures, &figure);
+}
+
 static gonio_status sample_categories(fixture *f, gonio_i_figures *figures)
 {
     static double values[5][SUPPORT_MERL];
@@ -289,13 +309,13 @@ static gonio_status sample_categories(fixture *f, gonio_i_figures *figures)
 
 typedef gonio_status (*sample)(fixture *f, gonio_i_figures *figures);
 
-static const sample samples[] = {sample_spectrum,  sample_convergence, sample_counts,
-                                 sample_methods,   sample_map,         sample_directions,
-                                 sample_categories};
+static const sample samples[] = {sample_spectrum,   sample_convergence, sample_counts,
+                                 sample_methods,    sample_map,         sample_directions,
+                                 sample_categories, sample_regions};
 
-static const char *const sample_names[] = {"fig-2a", "fig-2b",       "fig-3a-curves",
-                                           "fig-3b", "fig-3b-bands", "fig-3a",
-                                           "fig-4",  "fig-4-one",    "fig-5"};
+static const char *const sample_names[] = {"fig-2a",       "fig-2b", "fig-3a-curves", "fig-3b",
+                                           "fig-3b-bands", "fig-3a", "fig-4",         "fig-4-one",
+                                           "fig-5",        "regions"};
 
 enum {
     SAMPLES = sizeof samples / sizeof *samples,
@@ -392,7 +412,7 @@ static gonio_status draw_hostile(fixture *f, const char *text)
     const gonio_i_panel panel = {text, 1, &pair};
     const gonio_i_series series = {text, x};
     const char *const categories[] = {text, "plain", text};
-    const gonio_i_curves curves = {"a", text, axis, axis, GONIO_I_BAND, 1, &curve, 0.0};
+    const gonio_i_curves curves = {"a", text, axis, axis, GONIO_I_BAND, 1, &curve, 0.0, false};
     const gonio_i_map map = {"b", text, axis, axis, axis, 3, 3, x, x, grid, 0, NULL, 1, &mark};
     const gonio_i_directions directions = {"c", text, GONIO_I_EQUAL_ANGLE, 1, &panel};
     const gonio_i_categories many = {"d", text, text, axis, 3, categories, 1, &series, 0};
@@ -400,7 +420,12 @@ static gonio_status draw_hostile(fixture *f, const char *text)
     status = status != GONIO_OK ? status : gonio_i_figure_map(f->context, &f->figures, &map);
     status = status != GONIO_OK ? status
                                 : gonio_i_figure_directions(f->context, &f->figures, &directions);
-    return status != GONIO_OK ? status : gonio_i_figure_categories(f->context, &f->figures, &many);
+    status =
+        status != GONIO_OK ? status : gonio_i_figure_categories(f->context, &f->figures, &many);
+    const int region = 0;
+    const gonio_i_region_panel part = {text, {0.1, 0.2}, &region, 1, &pair.outgoing};
+    const gonio_i_regions regions = {"e", text, 1, 1, 1, &text, text, 1, &part};
+    return status != GONIO_OK ? status : gonio_i_figure_regions(f->context, &f->figures, &regions);
 }
 
 static void test_hostile_text_is_only_shown(void **state)
@@ -419,8 +444,8 @@ static void test_hostile_text_is_only_shown(void **state)
         assert_int_equal(access(path, F_OK), -1); /* nor anything left */
     }
     assert_int_equal(draw_hostile(f, "`id` 'x' 5% _a"), GONIO_OK);
-    static const char *const names[] = {"a", "b", "c", "d"};
-    for (int k = 0; k < 4; k++) { /* as it is */
+    static const char *const names[] = {"a", "b", "c", "d", "e"};
+    for (int k = 0; k < 5; k++) { /* as it is */
         char *svg = read_file(f->figures_path, names[k], "svg", NULL);
         assert_non_null(strstr(svg, "`id` \xe2\x80\x99x\xe2\x80\x99 5% _a"));
         free(svg);
@@ -433,8 +458,8 @@ static void test_the_data(void **state)
     const double x[] = {1.0, 0.1, 1e-300}, y[] = {1.0 / 3.0, NAN, INFINITY};
     const gonio_i_curve curve = {"a \"b\", c", 3, x, y, NULL, NULL, false};
     const gonio_i_curves figure = {
-        "data", NULL, {"x", "cm", false, 0, 0}, {"y", NULL, false, 0, 0}, GONIO_I_BAND, 1,
-        &curve, 0.0};
+        "data", NULL, {"x", "cm", false, 0, 0}, {"y", NULL, false, 0, 0}, GONIO_I_BAND, 1, &curve,
+        0.0,    true};
     const gonio_i_axis axis = {"E6", "%", false, 0, 0};
     const double a[] = {3.0, NAN, 1.0, 2.0}, b[] = {30.0, 40.0, 10.0, 20.0};
     const gonio_i_series series[] = {{"a", a}, {"b", b}};
@@ -507,7 +532,8 @@ static void test_what_cannot_be_shown(void **state)
     const double x[] = {1.0, 0.0}, values[] = {1.0, 2.0, 3.0, 4.0};
     const gonio_i_axis plain = {"x", NULL, false, 0, 0}, logarithmic = {"y", NULL, true, 0, 0};
     const gonio_i_curve curve = {"c", 2, x, x, NULL, NULL, false};
-    gonio_i_curves curves = {"c", NULL, plain, logarithmic, GONIO_I_NO_INTERVALS, 1, &curve, 0.0};
+    gonio_i_curves curves = {"c", NULL,   plain, logarithmic, GONIO_I_NO_INTERVALS,
+                             1,   &curve, 0.0,   false};
     const gonio_i_map map = {"m", NULL, plain, plain, plain, 2, 2, x, x, values, 0, NULL, 0, NULL};
     const gonio_i_directions directions = {"d", NULL, GONIO_I_EQUAL_ANGLE, 0, NULL};
     const gonio_i_categories none = {.name = "n", .y = plain};
@@ -523,6 +549,9 @@ static void test_what_cannot_be_shown(void **state)
     assert_int_equal(gonio_i_figure_directions(f->context, &f->figures, &directions),
                      GONIO_ERROR_ARGUMENT);
     assert_int_equal(gonio_i_figure_categories(f->context, &f->figures, &none),
+                     GONIO_ERROR_ARGUMENT);
+    const gonio_i_regions regions = {.name = "r"};
+    assert_int_equal(gonio_i_figure_regions(f->context, &f->figures, &regions),
                      GONIO_ERROR_ARGUMENT);
     assert_int_equal(access(f->figures_path, F_OK), -1);
     f->figures.folder = "/nowhere/at/all";

@@ -5,16 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "instrument/settings.h"
+#include "../nearest_setting.h"
 #include "measurement/readings.h"
 #include "progress.h"
 
 static const double DEGREE = M_PI / 180.0;
-
-/* The freedom that is used to read a direction, the least first. */
-static const gonio_freedom freedoms[] = {
-    {false, false, false}, {true, false, false}, {true, true, false}};
-enum { FREEDOMS = sizeof freedoms / sizeof *freedoms };
 
 static gonio_pair pair_of(const double degrees[4])
 {
@@ -24,38 +19,10 @@ static gonio_pair pair_of(const double degrees[4])
 
 /* ---- settings ---- */
 
-/* All settings with the least freedom that has any: found[GONIO_MOST_SETTINGS]. */
-static size_t find_settings(const gonio_instrument *instrument, gonio_pair pair,
-                            gonio_setting *found)
-{
-    size_t count = 0;
-    for (size_t k = 0; k < FREEDOMS && count == 0; k++) {
-        count =
-            gonio_instrument_settings(instrument, pair, freedoms[k], found, GONIO_MOST_SETTINGS);
-    }
-    return count;
-}
-
-static bool nearest(const follower *f, gonio_pair pair, const gonio_setting *from,
-                    gonio_setting *setting)
-{
-    gonio_setting found[GONIO_MOST_SETTINGS];
-    const size_t count = find_settings(f->inputs.instrument, pair, found);
-    double least = INFINITY;
-    for (size_t k = 0; k < count; k++) {
-        const double time = gonio_instrument_travel(f->inputs.instrument, from, &found[k]);
-        if (time < least) {
-            least = time;
-            *setting = found[k];
-        }
-    }
-    return count > 0;
-}
-
 bool follow_setting(const follower *f, const double degrees[4], const gonio_setting *from,
                     gonio_setting *setting)
 {
-    return nearest(f, pair_of(degrees), from, setting);
+    return nearest_setting(f->inputs.instrument, pair_of(degrees), from, setting);
 }
 
 void follow_place(follower *f, gonio_setting *place)
@@ -67,7 +34,8 @@ void follow_place(follower *f, gonio_setting *place)
     for (; f->placed < r->rows; f->placed++) {
         const run_row *row = &r->row[f->placed];
         if (row->of_sample) {
-            nearest(f, row->pair, &f->place, &f->place);
+            const gonio_setting from = f->place;
+            nearest_setting(f->inputs.instrument, row->pair, &from, &f->place);
         }
     }
     *place = f->place;
@@ -144,14 +112,6 @@ double follow_time_left(follower *f)
 
 /* ---- reach ---- */
 
-static const char *obstacle_of(const follower *f, const double degrees[4])
-{
-    gonio_setting one;
-    gonio_i_settings s = {.setting = &one, .most = 1};
-    gonio_i_find_settings(f->inputs.instrument, pair_of(degrees), freedoms[FREEDOMS - 1], &s);
-    return s.obstacle != NULL ? s.obstacle : "its kinematics";
-}
-
 void follow_note_instrument(follower *f, const gonio_readings *plan)
 {
     if (f->inputs.instrument == NULL) {
@@ -175,7 +135,7 @@ gonio_status follow_check_reach(follower *f)
     size_t missing = 0;
     for (size_t k = 0; k < r->wanted_count && f->inputs.instrument != NULL; k++) {
         const double *degrees = r->wanted[k].degrees;
-        if (find_settings(f->inputs.instrument, pair_of(degrees), found) == 0) {
+        if (nearest_candidates(f->inputs.instrument, pair_of(degrees), found) == 0) {
             first = missing++ == 0 ? degrees : first;
         }
     }
@@ -186,8 +146,9 @@ gonio_status follow_check_reach(follower *f)
                "the instrument %s cannot read theta_i %.4g, phi_i %.4g, theta_o %.4g, phi_o %.4g "
                "of the plan (%s), nor %zu others of %zu: plan with --instrument %s, or take these "
                "lines out of the plan",
-               f->o->instrument, first[0], first[1], first[2], first[3], obstacle_of(f, first),
-               missing - 1, r->wanted_count, f->o->instrument);
+               f->o->instrument, first[0], first[1], first[2], first[3],
+               nearest_obstacle(f->inputs.instrument, pair_of(first)), missing - 1, r->wanted_count,
+               f->o->instrument);
     return GONIO_ERROR_MISMATCH;
 }
 
@@ -201,7 +162,7 @@ static gonio_status list_settings(const follower *f, double (*degrees)[4], size_
     size_t used = 0;
     *all = NULL;
     for (size_t k = 0; k < count; k++) {
-        const size_t n = find_settings(f->inputs.instrument, pair_of(degrees[k]), found);
+        const size_t n = nearest_candidates(f->inputs.instrument, pair_of(degrees[k]), found);
         gonio_setting *more = reallocarray(*all, used + n + 1, sizeof *more);
         if (more == NULL) {
             return GONIO_ERROR_MEMORY;

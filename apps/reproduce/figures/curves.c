@@ -87,6 +87,8 @@ static void put_curve(FILE *script, const gonio_i_curves *figure, size_t k)
     fprintf(script, ", \\\n    data skip 1 using (x_of(%zu)):2 with ", k + 1);
     if (c->faint) {
         fputs("lines lw 0.7 dt 1 lc rgb '#A8A8A8'", script);
+    } else if (figure->dots) {
+        fprintf(script, "linespoints lt %d dt 1 lw 1.2 pt 7 ps 0.4", type);
     } else if (c->count > MOST_MARKERS) {
         fprintf(script, "linespoints lt %d pointinterval %zu", type, c->count / MARKERS);
     } else {

@@ -55,6 +55,7 @@ typedef struct gonio_i_curves {
     const gonio_i_curve *curves;
     double apart; /* if not 0, how far each curve is drawn to the right of the one before, so that
                    * error bars do not hide each other; on a logarithmic axis a factor */
+    bool dots;    /* a small dot at each point in place of markers */
 } gonio_i_curves;
 
 gonio_status gonio_i_figure_curves(gonio_context *context, gonio_i_figures *figures,
@@ -107,6 +108,32 @@ typedef struct gonio_i_directions {
 
 gonio_status gonio_i_figure_directions(gonio_context *context, gonio_i_figures *figures,
                                        const gonio_i_directions *figure);
+
+/* ---- regions of the hemisphere for a direction of the light, seen from above; panels side by side
+ * ---- */
+
+typedef struct gonio_i_region_panel {
+    const char *name;
+    gonio_angles light; /* marked by a cross */
+    const int *region;  /* [rings][spokes]: of the cell around theta = 90 (ring + 1/2) / rings and
+                         * phi = 360 spoke / spokes degrees */
+    size_t count;
+    const gonio_angles *point; /* [count], marked by dots */
+} gonio_i_region_panel;
+
+typedef struct gonio_i_regions {
+    const char *name;
+    const char *title;
+    size_t rings, spokes;
+    size_t regions;
+    const char *const *region; /* [regions], in the key; the first is a pale ground */
+    const char *points;        /* what the dots are; NULL for no dots */
+    size_t count;
+    const gonio_i_region_panel *panels;
+} gonio_i_regions;
+
+gonio_status gonio_i_figure_regions(gonio_context *context, gonio_i_figures *figures,
+                                    const gonio_i_regions *figure);
 
 /* ---- many categories, each with a point of every series ---- */
 
