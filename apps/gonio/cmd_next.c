@@ -2,6 +2,7 @@
 #include "builtin_basis.h"
 #include "command_line.h"
 #include "correction_options.h"
+#include "duration.h"
 #include "inputs.h"
 #include "interpretation.h"
 #include "json_output.h"
@@ -47,9 +48,13 @@ static int report(const tool *t, const options *o, const answer *a)
                 a->now);
     } else if (!tool_quiet) {
         fprintf(tool_results(),
-                "%s: %zu more reading%s; expected error (E6) now %.2f %%, then %.2f %%\n",
-                o->output, plan->count, tool_plural(plan->count), a->now,
-                plan->expected[plan->count - 1]);
+                "%s: %zu more reading%s; expected error (E6) now %.2f %%, then %.2f %%", o->output,
+                plan->count, tool_plural(plan->count), a->now, plan->expected[plan->count - 1]);
+        if (plan->run != NULL) {
+            fputs("; a run of ", tool_results());
+            tool_print_duration(tool_results(), plan->run->duration);
+        }
+        fputc('\n', tool_results());
     }
     return 0;
 }

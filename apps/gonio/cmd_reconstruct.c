@@ -26,6 +26,7 @@ typedef struct options {
     const char *albedo_at;
     tool_reflectances reflectances; /* of albedo_at */
     const char *predict_at;
+    int bands;
     const char *deviation;
     int components;
     int all_channels;
@@ -242,7 +243,8 @@ static gonio_reconstruct_options settings(const options *o)
                                      .other_basis = o->other_basis,
                                      .method = o->method,
                                      .eta = o->eta,
-                                     .deviation = o->deviation != NULL || o->albedo_at != NULL,
+                                     .deviation =
+                                         o->deviation != NULL || o->albedo_at != NULL || o->bands,
                                      .symmetry = o->symmetry};
     posterior_options_apply(&o->posterior, &how);
     return how;
@@ -265,6 +267,9 @@ static gonio_status write_more(tool *t, const options *o, const gonio_basis *bas
     }
     if (status == GONIO_OK && at != NULL) {
         status = gonio_reconstruction_predict_readings(t->context, basis, made, at);
+    }
+    if (status == GONIO_OK && at != NULL && !o->bands) {
+        status = gonio_readings_set_deviations(t->context, at, NULL);
     }
     if (status == GONIO_OK && deviation != NULL) {
         status = gonio_material_write_merl(t->context, deviation, o->deviation);
@@ -474,6 +479,9 @@ static bool check_more(const tool *t, const options *o, const char *const *input
     if (o->predict_at != NULL && !tool_check_output(t, o->output, &o->predict_at, 1)) {
         return false;
     }
+    if (o->bands && o->predict_at == NULL) {
+        return tool_refuse(t, "--bands needs --predict-at FILE");
+    }
     if (o->deviation != NULL && tool_is_one_output(o->deviation, o->output)) {
         return tool_refuse(t, "--deviation and -o name the same file");
     }
@@ -599,6 +607,8 @@ int cmd_reconstruct(int argc, const char **argv)
         {"predict-at", '\0', POPT_ARG_STRING, &o.predict_at, 0,
          "Predict readings at the directions of this file, as CSV, in place of a table (posterior)",
          "FILE"},
+        {"bands", '\0', POPT_ARG_NONE, &o.bands, 0,
+         "Predict readings with their standard deviations, in columns of their own", NULL},
         {"anisotropic", '\0', POPT_ARG_NONE, &o.anisotropic, 0,
          "The material changes as the sample turns: azimuths of all directions count (posterior)",
          NULL},

@@ -62,7 +62,7 @@ static bool take_row(const gonio_i_csv_reader *reader, const gonio_instrument *i
 static gonio_status take_rows(gonio_i_csv_reader *reader, const gonio_instrument *instrument,
                               const gonio_readings_view *plan, gonio_setting *setting, bool *found)
 {
-    int column[GONIO_MOST_AXES];
+    int column[GONIO_MOST_AXES] = {NO_COLUMN};
     size_t rows = 0;
     gonio_status status = GONIO_OK;
     *found = find_columns(reader, gonio_instrument_describe(instrument), column);

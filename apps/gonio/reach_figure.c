@@ -121,9 +121,10 @@ static void fill_panel(picture *p, double theta, panel *made)
     made->count = 0;
     snprintf(made->name, sizeof made->name, "theta_i = %.3g degrees", theta / DEGREE);
     for (int k = 0; k < CELLS; k++) {
-        const double ring = (double)(k / SPOKES) + 0.5;
+        const int ring = k / SPOKES;
         const gonio_pair pair = {
-            {theta, 0.0}, {ring * 90.0 / RINGS * DEGREE, k % SPOKES * 360.0 / SPOKES * DEGREE}};
+            {theta, 0.0},
+            {(ring + 0.5) * 90.0 / RINGS * DEGREE, k % SPOKES * 360.0 / SPOKES * DEGREE}};
         made->region[k] = region_of(p, obstacle_at(p->instrument, pair));
     }
 }

@@ -98,7 +98,8 @@ GONIO_API bool gonio_reconstruction_predict(const gonio_basis *basis,
 
 /* Predicts what the instrument would read at the directions of `readings`, whose values are
  * replaced: the BRDF less gonio_reconstruction.dark / cos theta_i, at least 0. `readings` then has
- * as many channels as the reconstruction. Errors: _MEMORY; _ARGUMENT for another method than
+ * as many channels as the reconstruction, and the standard deviations of the BRDF, 1/sr, if the
+ * reconstruction has gonio_reconstruction.deviation. Errors: _MEMORY; _ARGUMENT for another method than
  * posterior. */
 GONIO_API gonio_status gonio_reconstruction_predict_readings(
     gonio_context *context, const gonio_basis *basis, const gonio_reconstruction *reconstruction,

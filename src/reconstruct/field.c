@@ -67,6 +67,23 @@ bool gonio_reconstruction_predict(const gonio_basis *basis, const gonio_reconstr
     return true;
 }
 
+/* Predicts one reading. deviation[channels], 1/sr, or NULL. */
+static void predict_reading(const gonio_basis *basis, const gonio_reconstruction *r,
+                            gonio_readings *readings, size_t reading, double *deviation)
+{
+    const gonio_pair *pair = &readings->pair[reading];
+    double *value = gonio_i_readings_values(readings, reading);
+    gonio_reconstruction_predict(basis, r, gonio_half_difference_from_pair(*pair), value,
+                                 deviation);
+    for (size_t c = 0; c < readings->channels; c++) {
+        if (deviation != NULL) {
+            deviation[c] *= value[c] + scale_of(basis, r, c);
+        }
+        value[c] =
+            fmax(value[c] - gonio_i_dark_level_missing(r->dark, c, pair->incident.theta), 0.0);
+    }
+}
+
 gonio_status gonio_reconstruction_predict_readings(gonio_context *context, const gonio_basis *basis,
                                                    const gonio_reconstruction *r,
                                                    gonio_readings *readings)
@@ -76,16 +93,19 @@ gonio_status gonio_reconstruction_predict_readings(gonio_context *context, const
                             "only a reconstruction by posterior predicts single readings");
     }
     const size_t channels = channels_of(basis, r);
-    gonio_status status = gonio_i_readings_set_channels(context, readings, channels, r->wavelength);
-    for (size_t k = 0; k < readings->count && status == GONIO_OK; k++) {
-        const gonio_pair *pair = &readings->pair[k];
-        double *value = gonio_i_readings_values(readings, k);
-        gonio_reconstruction_predict(basis, r, gonio_half_difference_from_pair(*pair), value, NULL);
-        for (size_t c = 0; c < channels; c++) {
-            const double missing = gonio_i_dark_level_missing(r->dark, c, pair->incident.theta);
-            value[c] = fmax(value[c] - missing, 0.0);
-        }
+    const size_t count = r->deviation != NULL ? readings->count * channels : 0;
+    double *deviation = count > 0 ? gonio_i_allocate(context, count, sizeof *deviation) : NULL;
+    gonio_status status = count == 0 || deviation != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
+    if (status == GONIO_OK) {
+        status = gonio_i_readings_set_channels(context, readings, channels, r->wavelength);
     }
+    for (size_t k = 0; k < readings->count && status == GONIO_OK; k++) {
+        predict_reading(basis, r, readings, k, deviation != NULL ? deviation + k * channels : NULL);
+    }
+    if (status == GONIO_OK && deviation != NULL) {
+        status = gonio_readings_set_deviations(context, readings, deviation);
+    }
+    free(deviation);
     return status;
 }
 

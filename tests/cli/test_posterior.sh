@@ -53,6 +53,9 @@ done
 
 expect_ok measure p40.csv $new -o all.csv
 expect_ok reconstruct b.gonio r.csv --predict-at all.csv -o at.csv
+expect_ok reconstruct b.gonio r.csv --predict-at all.csv --bands -o bands.csv
+expect_true 'predictions have bands' grep -q '^theta.*R_deviation_per_sr' bands.csv
+expect_fail 2 '--bands needs --predict-at' reconstruct b.gonio r.csv --bands -o bands.binary
 expect_true 'as many directions as asked for' test "$(grep -vc '^[#t]' at.csv)" -eq 40
 expect_output '40 readings compared' compare all.csv at.csv
 expect_output '30 readings compared' compare all.csv at.csv --leave-out p.csv

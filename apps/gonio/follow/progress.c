@@ -40,7 +40,7 @@ void follow_say_repeat(follower *f, size_t wanted, const char *why)
     tool_clear_progress(&f->t->messages);
     if (!tool_quiet) {
         fprintf(stream, "read again: theta_i %.4g, phi_i %.4g, theta_o %.4g, phi_o %.4g: %s\n",
-                w->degrees[0], w->degrees[1], w->degrees[2], w->degrees[3], why);
+                w->degrees[0], w->degrees[1] + 0.0, w->degrees[2], w->degrees[3] + 0.0, why);
         fflush(stream);
     }
 }

@@ -116,7 +116,7 @@ static void say_what_was_found(follower *f, const journal_found *found)
     }
     if (found->records > 0) {
         follow_say(f, GONIO_MESSAGE_NOTE, "%s: going on after %zu reading%s", f->journal_path,
-                   f->run.rows, tool_plural(f->run.rows));
+                   run_counted(&f->run), tool_plural(run_counted(&f->run)));
     }
     if (f->plan_before != 0 && f->plan_before != f->plan) {
         follow_say(

@@ -187,7 +187,7 @@ static void put_entry(key *k, const char *name, const char *colour, const char *
         k->row++;
     }
     if (k->script != NULL) {
-        const double x = (double)(k->x + KEY_SYMBOL / 2) / k->width;
+        const double x = (k->x + 0.5 * KEY_SYMBOL) / k->width;
         const double y = (double)(KEY_ROW * (k->row + 1)) / k->height;
         fprintf(k->script, "  set label %d '%s' at screen %.4f,%.4f center textcolor rgb '%s' %s\n",
                 KEY_LABELS + 2 * k->entries, symbol, x, y, colour, "front");
