@@ -4,6 +4,7 @@
  *                  calls: open for writing, write, pwrite, fsync, fallocate, ftruncate, linkat,
  *                  rename, close
  *     FAULT_NTH    which one; 0 for none
+ *     FAULT_SIGNAL a number: the call does not fail, but this signal comes before it
  *     FAULT_COUNT  a file for the number of calls, written at the end
  *     FAULT_SAY    if set, where it failed is printed on standard error */
 #include <dlfcn.h>
@@ -11,6 +12,7 @@
 #include <execinfo.h>
 #include <fcntl.h>
 #include <link.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdatomic.h>
 #include <stdbool.h>
@@ -63,18 +65,21 @@ static _Thread_local bool inside;
 static atomic_long count;
 static long nth = -1;
 static bool memory;
+static int signal_number; /* 0: calls fail */
 
 static void begin(void)
 {
     int index = 0;
     const char *kind = getenv("FAULT_KIND");
     const char *number = getenv("FAULT_NTH");
+    const char *instead = getenv("FAULT_SIGNAL");
     inside = true;
     dl_iterate_phdr(find_ranges, &index);
     void *frame[2];
     (void)backtrace(frame, 2); /* loads what it needs */
     memory = kind != NULL && strcmp(kind, "memory") == 0;
     nth = number != NULL ? strtol(number, NULL, 10) : 0;
+    signal_number = instead != NULL ? (int)strtol(instead, NULL, 10) : 0;
     inside = false;
 }
 
@@ -122,8 +127,11 @@ static bool fails(bool of_memory, const void *caller)
         void *frame[16];
         backtrace_symbols_fd(frame, backtrace(frame, 16), STDERR_FILENO);
     }
+    if (failing && signal_number != 0) {
+        kill(getpid(), signal_number);
+    }
     inside = false;
-    return failing;
+    return failing && signal_number == 0;
 }
 
 #define NO_MEMORY                                                                                  \

@@ -1,8 +1,9 @@
 #!/bin/bash
 # Runs on a real instrument: a file that a robot appends to, standard input, a command; everything that goes wrong on
-# the way; and kill -9 at random moments, KILLS of them, after which nothing is lost.
+# the way; and kill -9 and signals at random moments, KILLS of them, after which nothing is lost.
 . "$(dirname "$0")/lib.sh"
 kills=${KILLS:-15}
+signals=(KILL TERM HUP)
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 gonio() { timeout 60 "$GONIO" "$@"; }
 
@@ -50,11 +51,11 @@ slowly() { # writes robot.csv, each line in two pieces
 RANDOM=7
 slowly &
 robot=$!
-for _ in $(seq "$kills"); do
+for k in $(seq "$kills"); do
     "$GONIO" measure --follow robot.csv plan.csv --no-basis -o out.csv >/dev/null 2>&1 &
     process=$!
     sleep "0.$(printf %02d $((RANDOM % 15)))"
-    kill -9 $process 2>/dev/null
+    kill -s "${signals[k % 3]}" $process 2>/dev/null
     wait $process 2>/dev/null
 done
 wait $robot
@@ -82,11 +83,11 @@ awk -F, -v i="$1" -v o="$3" -v p="$4" '!/^#/ && NR > 1 && $1 == i + 0 && $3 == o
 END
 chmod +x instrument.sh
 command_run() { gonio measure --exec ./instrument.sh plan.csv --no-basis -o out.csv "$@"; }
-for _ in $(seq $((kills / 3 + 1))); do
+for k in $(seq $((kills / 3 + 1))); do
     "$GONIO" measure --exec ./instrument.sh plan.csv --no-basis -o out.csv >/dev/null 2>&1 &
     process=$!
     sleep "0.$(printf %02d $((RANDOM % 20)))"
-    kill -9 $process 2>/dev/null
+    kill -s "${signals[k % 3]}" $process 2>/dev/null
     wait $process 2>/dev/null
 done
 sleep 0.1
