@@ -7,7 +7,7 @@ double gonio_i_azimuth(double phi)
 {
     const double turned = fmod(phi, 2.0 * M_PI);
     const double positive = turned < 0.0 ? turned + 2.0 * M_PI : turned;
-    return positive < 2.0 * M_PI ? positive : 0.0;
+    return positive < 2.0 * M_PI ? positive + 0.0 : 0.0; /* no -0 */
 }
 
 gonio_angles gonio_i_signed_direction(double theta, double phi)

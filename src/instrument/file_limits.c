@@ -22,7 +22,7 @@ static const char *quantity_of(const gonio_instrument *instrument, const char *k
     for (size_t k = 0; k < instrument->view.axes; k++) {
         const gonio_axis *axis = &instrument->axis[k];
         if (axis->present && strcmp(axis->name, name) == 0 &&
-            gonio_i_quantity_named(name) == NULL) {
+            (gonio_i_quantity_named(name) == NULL || gonio_i_quantity_gives_way(name))) {
             return axis->name;
         }
     }

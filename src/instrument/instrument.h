@@ -82,6 +82,9 @@ const char *gonio_i_quantity_named(const char *name);
 /* The names of all quantities, by their places; NULL past the last. */
 const char *gonio_i_quantity_at(int index);
 
+/* Whether an axis of this name is meant in place of the quantity. */
+bool gonio_i_quantity_gives_way(const char *name);
+
 /* Moves the axes of a setting to the nearest positions that they can take, and finds its pair.
  * Returns what keeps it from being used, as gonio_instrument_obstacle does, or NULL. */
 const char *gonio_i_take_position(const gonio_instrument *instrument, gonio_setting *setting);

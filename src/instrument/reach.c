@@ -59,14 +59,15 @@ static double from_specular(const gonio_pair *p)
 static const struct {
     const char *name;
     double (*value)(const gonio_pair *pair);
-    bool turns; /* an azimuth, to which whole turns may be added */
-} quantities[] = {{"theta_i", theta_i, false},
-                  {"theta_o", theta_o, false},
-                  {"phi_i", phi_i, true},
-                  {"phi_o", phi_o, true},
-                  {"azimuth", azimuth, false},
-                  {"separation", separation, false},
-                  {"from_specular", from_specular, false}};
+    bool turns;       /* an azimuth, to which whole turns may be added */
+    bool axis_before; /* an axis of this name is another angle, and is meant where there is one */
+} quantities[] = {{"theta_i", theta_i, false, false},
+                  {"theta_o", theta_o, false, false},
+                  {"phi_i", phi_i, true, false},
+                  {"phi_o", phi_o, true, false},
+                  {"azimuth", azimuth, false, true},
+                  {"separation", separation, false, false},
+                  {"from_specular", from_specular, false, false}};
 
 enum { QUANTITIES = sizeof quantities / sizeof *quantities };
 
@@ -84,22 +85,39 @@ const char *gonio_i_quantity_named(const char *name)
     return found;
 }
 
+bool gonio_i_quantity_gives_way(const char *name)
+{
+    bool found = false;
+    for (int k = 0; k < QUANTITIES; k++) {
+        found = found || (quantities[k].axis_before && strcmp(quantities[k].name, name) == 0);
+    }
+    return found;
+}
+
+/* The axis that a range names; the number of axes if it names none. */
+static size_t axis_of(const gonio_instrument *instrument, const gonio_range *range)
+{
+    size_t k = 0;
+    while (k < instrument->view.axes &&
+           (instrument->axis[k].name != range->quantity || !instrument->axis[k].present)) {
+        k++;
+    }
+    return k;
+}
+
 /* The value of a range's quantity, turned into the range if it is an azimuth. */
 static double value_of(const gonio_instrument *instrument, const gonio_range *range,
                        const gonio_setting *setting)
 {
+    const size_t axis = axis_of(instrument, range);
     for (int k = 0; k < QUANTITIES; k++) {
-        if (quantities[k].name == range->quantity) {
+        const bool is_axis = quantities[k].axis_before && axis < instrument->view.axes;
+        if (quantities[k].name == range->quantity && !is_axis) {
             const double value = quantities[k].value(&setting->pair);
             return quantities[k].turns ? gonio_i_turn_into(value, range->low) : value;
         }
     }
-    for (size_t k = 0; k < instrument->view.axes; k++) {
-        if (instrument->axis[k].name == range->quantity) {
-            return setting->axis[k];
-        }
-    }
-    return NAN;
+    return axis < instrument->view.axes ? setting->axis[axis] : NAN;
 }
 
 /* ---- what keeps a setting out ---- */

@@ -238,6 +238,31 @@ static void test_kinematics_forth_and_back(void **state)
     gonio_context_free(&context);
 }
 
+/* A zone of the axis azimuth of arms is of the axis, not of the angle between the azimuths. */
+static void test_shadow_of_a_cable(void **state)
+{
+    (void)state;
+    static const char text[] =
+        "{\"gonio_instrument\": 1, \"kinematics\": \"arms\", \"axes\": {"
+        "\"incidence\": {\"from_deg\": 0, \"to_deg\": 80}, \"azimuth\": {\"from_deg\": -90, "
+        "\"to_deg\": 90}, \"receive\": {\"from_deg\": -80, \"to_deg\": 80}}, \"forbidden\": "
+        "[{\"name\": \"cable\", \"azimuth_deg\": [-91, -45], \"receive_deg\": [40, 81]}]}";
+    gonio_context *context = support_context();
+    gonio_instrument *rig = parse(context, text);
+    gonio_setting shaded = {.axis = {60.0 * DEGREE, -60.0 * DEGREE, 60.0 * DEGREE}};
+    gonio_setting free = {.axis = {60.0 * DEGREE, 60.0 * DEGREE, 60.0 * DEGREE}};
+    shaded.pair = gonio_instrument_pair(rig, shaded.axis);
+    free.pair = gonio_instrument_pair(rig, free.axis);
+    assert_string_equal(gonio_instrument_obstacle(rig, &shaded), "cable");
+    assert_null(gonio_instrument_obstacle(rig, &free));
+    const gonio_freedom none = {false, false, false};
+    gonio_setting found[GONIO_MOST_SETTINGS];
+    assert_int_equal(gonio_instrument_settings(rig, shaded.pair, none, found, GONIO_MOST_SETTINGS),
+                     0);
+    gonio_instrument_free(&rig);
+    gonio_context_free(&context);
+}
+
 static void test_in_plane_goniometer(void **state)
 {
     (void)state;
@@ -463,6 +488,7 @@ int main(void)
         cmocka_unit_test(test_builtin_instruments),
         cmocka_unit_test(test_mistakes_name_the_key),
         cmocka_unit_test(test_kinematics_forth_and_back),
+        cmocka_unit_test(test_shadow_of_a_cable),
         cmocka_unit_test(test_in_plane_goniometer),
         cmocka_unit_test(test_footprint_and_limits),
         cmocka_unit_test(test_table_of_directions),
