@@ -103,7 +103,7 @@ static void say_pending(follower *f)
     }
     if (run_unread(&f->run) == 0 && !f->said_repeats) {
         follow_say(f, GONIO_MESSAGE_NOTE,
-                   "only repeats are left: %zu; waiting for them, %.0f s after the last line",
+                   "only repeats are left: %zu; waiting for them, %.3g s after the last line",
                    run_left(&f->run), follow_patience(f));
         f->said_repeats = true;
     }
