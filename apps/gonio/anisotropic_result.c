@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "azimuths.h"
 #include "inputs.h"
 #include "json_output.h"
 
@@ -43,7 +44,8 @@ void print_anisotropy(const gonio_anisotropy *a)
     }
 }
 
-static void print(const gonio_anisotropic_reconstruction_view *view, const char *output)
+static void print(const gonio_anisotropic_reconstruction_view *view, const char *output,
+                  double albedo)
 {
     const gonio_anisotropy *a = &view->anisotropy;
     fprintf(tool_results(),
@@ -56,6 +58,9 @@ static void print(const gonio_anisotropic_reconstruction_view *view, const char 
     } else {
         fprintf(tool_results(), "isotropic (%.3g %%)", 100.0 * (1.0 - a->probability));
     }
+    if (!isnan(albedo)) {
+        fprintf(tool_results(), ", albedo at most %.2f", albedo);
+    }
     if (view->outlying > 0) {
         fprintf(tool_results(), ", %zu value%s contradicted by the others", view->outlying,
                 tool_plural(view->outlying));
@@ -63,20 +68,36 @@ static void print(const gonio_anisotropic_reconstruction_view *view, const char 
     fputc('\n', tool_results());
 }
 
-static void report(const gonio_anisotropic_reconstruction *made, const char *output,
+static json_t *as_json(const gonio_anisotropic_reconstruction_view *view, const char *output,
+                       double albedo)
+{
+    json_t *made =
+        json_pack("{s:o, s:I, s:I, s:f, s:I, s:o}", "output", tool_json_text(output), "channels",
+                  (json_int_t)view->channels, "readings", (json_int_t)view->readings,
+                  "expected_e6_percent", view->predicted_e6, "outlying", (json_int_t)view->outlying,
+                  "anisotropy", anisotropy_json(&view->anisotropy));
+    if (!isnan(albedo)) {
+        json_object_set_new(made, "largest_albedo", tool_json_number(albedo));
+    }
+    return made;
+}
+
+/* albedo: the largest of the material; NaN if none was made. */
+static void report(const gonio_anisotropic_reconstruction *made, const char *output, double albedo,
                    json_t *results)
 {
     const gonio_anisotropic_reconstruction_view *view =
         gonio_anisotropic_reconstruction_describe(made);
+    if (albedo > 1.0 && !tool_quiet) {
+        fprintf(stderr,
+                "gonio reconstruct: note: %s reflects %.2f times the light at some incidence, "
+                "which no material can do\n",
+                output, albedo);
+    }
     if (results != NULL) {
-        json_array_append_new(
-            results, json_pack("{s:o, s:I, s:I, s:f, s:I, s:o}", "output", tool_json_text(output),
-                               "channels", (json_int_t)view->channels, "readings",
-                               (json_int_t)view->readings, "expected_e6_percent",
-                               view->predicted_e6, "outlying", (json_int_t)view->outlying,
-                               "anisotropy", anisotropy_json(&view->anisotropy)));
+        json_array_append_new(results, as_json(view, output, albedo));
     } else if (!tool_quiet) {
-        print(view, output);
+        print(view, output, albedo);
     }
 }
 
@@ -98,18 +119,46 @@ static gonio_status write_predictions(tool *t, const anisotropic_task *task,
     return status;
 }
 
+/* Writes the material, and says if it reflects more light than arrives. */
+static gonio_status write_material(tool *t, const anisotropic_task *task,
+                                   const gonio_anisotropic_reconstruction *made, const char *output,
+                                   double *albedo)
+{
+    gonio_material *material = NULL;
+    tool_azimuths found;
+    gonio_status status =
+        gonio_anisotropic_reconstruction_material(t->context, made, "reconstruction", &material);
+    if (status == GONIO_OK) {
+        status = write_options_apply(t, task->write, material);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_material_write(t->context, material, output, task->format);
+    }
+    if (status == GONIO_OK) {
+        status = write_options_state_loss(t, task->format, material, output);
+    }
+    if (status == GONIO_OK) {
+        status = tool_find_azimuths(t->context, material, &found);
+        *albedo = found.largest;
+    }
+    gonio_material_free(&material);
+    return status;
+}
+
 gonio_status anisotropic_result_write(tool *t, const anisotropic_task *task,
                                       const gonio_readings *readings, const char *output,
                                       json_t *results)
 {
     gonio_anisotropic_reconstruction *made = NULL;
+    double albedo = NAN;
     gonio_status status =
         gonio_reconstruct_anisotropic(t->context, task->basis, readings, task->how, &made);
     if (status == GONIO_OK) {
-        status = write_predictions(t, task, made, output);
+        status = task->predict_at != NULL ? write_predictions(t, task, made, output)
+                                          : write_material(t, task, made, output, &albedo);
     }
     if (status == GONIO_OK) {
-        report(made, output, results);
+        report(made, output, albedo, results);
     }
     gonio_anisotropic_reconstruction_free(&made);
     return status;

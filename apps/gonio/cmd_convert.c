@@ -1,6 +1,5 @@
 /* gonio convert: materials to any format that gonio writes, readings to CSV or BRDF JSON, bases of
  * an older gonio to the present format. */
-#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
@@ -25,48 +24,6 @@ static int report(const tool *t, const gonio_material *material, const char *out
                      : 0;
 }
 
-static gonio_status read_mean(void *self, gonio_context *context, int theta_h, double *rho)
-{
-    return gonio_material_read_slab(context, self, theta_h, rho);
-}
-
-/* Says what the mean over azimuths lacks of an anisotropic material. */
-static gonio_status state_loss(tool *t, gonio_material *material)
-{
-    const gonio_material_source source = {
-        .size = sizeof source, .self = material, .read_slab = read_mean};
-    gonio_material *mean = NULL;
-    gonio_comparison comparison;
-    gonio_status status = gonio_material_create(t->context, gonio_material_name(material),
-                                                "mean over azimuths", &source, &mean);
-    if (status == GONIO_OK) {
-        status = gonio_compare(t->context, material, mean, &comparison);
-    }
-    if (status == GONIO_OK) {
-        char text[256];
-        snprintf(text, sizeof text,
-                 "the mean over azimuths differs from the anisotropic material by %.1f %% (E6)",
-                 comparison.all.value[GONIO_E6]);
-        tool_say(&t->messages, GONIO_MESSAGE_NOTE, text);
-    }
-    gonio_material_free(&mean);
-    return status;
-}
-
-/* Whether the mean over azimuths was asked for, of a material that has azimuths, in a format that
- * takes it. */
-static bool is_averaged(const gonio_material *material, const gonio_write_options *how,
-                        const char *output)
-{
-    static const char *const formats[] = {"merl", "rgl", "table", "zemax"};
-    const char *name = gonio_material_writer_name(gonio_material_writer_find(output, how->format));
-    bool takes = false;
-    for (size_t k = 0; k < sizeof formats / sizeof *formats; k++) {
-        takes = takes || strcmp(name, formats[k]) == 0;
-    }
-    return how->average_azimuths && takes && gonio_material_describe(material)->anisotropic;
-}
-
 static int convert_material(tool *t, const write_options *write, const gonio_write_options *how,
                             const char *input, const char *output)
 {
@@ -78,8 +35,8 @@ static int convert_material(tool *t, const write_options *write, const gonio_wri
     if (status == GONIO_OK) {
         status = gonio_material_write(t->context, material, output, how);
     }
-    if (status == GONIO_OK && is_averaged(material, how, output)) {
-        status = state_loss(t, material);
+    if (status == GONIO_OK) {
+        status = write_options_state_loss(t, how, material, output);
     }
     const int code = status == GONIO_OK ? report(t, material, output) : tool_exit_code(status);
     gonio_material_free(&material);

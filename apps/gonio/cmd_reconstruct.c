@@ -499,8 +499,9 @@ static bool check_anisotropic(const tool *t, const options *o)
         return tool_refuse(t, "--deviation is a table of an isotropic material; with --anisotropic "
                               "--predict-at has the deviations");
     }
-    if (o->predict_at == NULL) {
-        return tool_refuse(t, "--anisotropic needs --predict-at FILE");
+    if (o->albedo_at != NULL) {
+        return tool_refuse(t, "--albedo-at is of isotropic materials; 'gonio info' of what "
+                              "--anisotropic writes has its albedo");
     }
     return anisotropic_check_symmetry(t, o->symmetry);
 }

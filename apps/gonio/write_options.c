@@ -2,6 +2,7 @@
 #include "write_options.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -77,4 +78,54 @@ gonio_status write_options_apply(const tool *t, const write_options *options,
                ? GONIO_OK
                : gonio_material_set_illuminant(
                      t->context, material, (gonio_illuminant)find_illuminant(options->illuminant));
+}
+
+/* ---- the mean over azimuths ---- */
+
+static gonio_status read_mean(void *self, gonio_context *context, int theta_h, double *rho)
+{
+    return gonio_material_read_slab(context, self, theta_h, rho);
+}
+
+/* Says what the mean over azimuths lacks of an anisotropic material. */
+static gonio_status state_loss(tool *t, gonio_material *material)
+{
+    const gonio_material_source source = {
+        .size = sizeof source, .self = material, .read_slab = read_mean};
+    gonio_material *mean = NULL;
+    gonio_comparison comparison;
+    gonio_status status = gonio_material_create(t->context, gonio_material_name(material),
+                                                "mean over azimuths", &source, &mean);
+    if (status == GONIO_OK) {
+        status = gonio_compare(t->context, material, mean, &comparison);
+    }
+    if (status == GONIO_OK) {
+        char text[256];
+        snprintf(text, sizeof text,
+                 "the mean over azimuths differs from the anisotropic material by %.1f %% (E6)",
+                 comparison.all.value[GONIO_E6]);
+        tool_say(&t->messages, GONIO_MESSAGE_NOTE, text);
+    }
+    gonio_material_free(&mean);
+    return status;
+}
+
+/* Whether the mean over azimuths was asked for, of a material that has azimuths, in a format that
+ * takes it. */
+static bool is_averaged(const gonio_material *material, const gonio_write_options *how,
+                        const char *output)
+{
+    static const char *const formats[] = {"merl", "rgl", "table", "zemax"};
+    const char *name = gonio_material_writer_name(gonio_material_writer_find(output, how->format));
+    bool takes = false;
+    for (size_t k = 0; k < sizeof formats / sizeof *formats; k++) {
+        takes = takes || strcmp(name, formats[k]) == 0;
+    }
+    return how->average_azimuths && takes && gonio_material_describe(material)->anisotropic;
+}
+
+gonio_status write_options_state_loss(tool *t, const gonio_write_options *how,
+                                      gonio_material *material, const char *output)
+{
+    return is_averaged(material, how, output) ? state_loss(t, material) : GONIO_OK;
 }

@@ -48,4 +48,8 @@ bool write_options_check(const tool *t, const write_options *options, gonio_writ
 gonio_status write_options_apply(const tool *t, const write_options *options,
                                  gonio_material *material);
 
+/* Says what the mean over azimuths lacks of an anisotropic material, if it was written. */
+gonio_status write_options_state_loss(tool *t, const gonio_write_options *how,
+                                      gonio_material *material, const char *output);
+
 #endif

@@ -261,6 +261,14 @@ GONIO_API gonio_status gonio_anisotropic_reconstruction_predict(
 GONIO_API gonio_status gonio_anisotropic_reconstruction_predict_readings(
     gonio_context *context, const gonio_anisotropic_reconstruction *made, gonio_readings *readings);
 
+/* The mean as a material: an anisotropic table (material.h) of 36 cells of phi_d, with as many
+ * orders of phi_h as the hypotheses need. It has no phi_h, and is isotropic, if no hypothesis that
+ * counts has. The reconstruction need not outlive it. Errors: _MEMORY, _CANCELLED, _ARGUMENT (more
+ * channels than a table of 1 GiB has room for). */
+GONIO_API gonio_status gonio_anisotropic_reconstruction_material(
+    gonio_context *context, const gonio_anisotropic_reconstruction *made, const char *name,
+    gonio_material **material);
+
 /* What readings say of a material's anisotropy, and what they leave open. */
 typedef struct gonio_isotropy_check {
     gonio_anisotropy anisotropy;

@@ -40,6 +40,7 @@ UNBOUND = {
     "anisotropic reconstructions are for C and the command line so far": """gonio_reconstruct_anisotropic
         gonio_anisotropic_reconstruction_free gonio_anisotropic_reconstruction_describe
         gonio_anisotropic_reconstruction_predict gonio_anisotropic_reconstruction_predict_readings
+        gonio_anisotropic_reconstruction_material
         gonio_check_isotropy""",
     "of the C interface alone": """gonio_material_create gonio_fingerprint_create gonio_fingerprint_add
         gonio_fingerprint_value gonio_fingerprint_free gonio_kind_format gonio_material_writer_extension

@@ -7,17 +7,18 @@
 #include "../core/core.h"
 #include "../direction/grid.h"
 #include "anisotropic_table.h"
+#include "azimuth_series.h"
 #include "formats/merl.h"
 
 enum {
-    PHI_D_CELLS = 36,      /* of a usual table */
-    FEW_PHI_D_CELLS = 12,  /* of one with many channels */
-    TURN = 64,             /* phi_h in a full turn, while the symmetry is found */
-    LEAST_NODES = 32,      /* phi_h in a period */
-    SIDES = 2,             /* of the reciprocal pair */
-    EVERY = 9,             /* which theta_h and theta_d are looked at first */
-    FIRST_PHI_D = 4,       /* and how many phi_d of each */
-    MOST_VALUES = 1 << 22, /* in memory at a time */
+    PHI_D_CELLS = 36,             /* of a usual table */
+    FEW_PHI_D_CELLS = 12,         /* of one with many channels */
+    TURN = GONIO_I_MOST_AZIMUTHS, /* phi_h in a full turn, while the symmetry is found */
+    LEAST_NODES = 32,             /* phi_h in a period */
+    SIDES = 2,                    /* of the reciprocal pair */
+    EVERY = 9,                    /* which theta_h and theta_d are looked at first */
+    FIRST_PHI_D = 4,              /* and how many phi_d of each */
+    MOST_VALUES = 1 << 22,        /* in memory at a time */
     LEAST_ORDERS = 2
 };
 
@@ -106,40 +107,6 @@ static bool read_cell(const batch *b, size_t cell, size_t channel, double *v)
     return count > 0;
 }
 
-/* cos and sin of the phi_h of a period, [nodes]. */
-typedef struct circle {
-    size_t nodes;
-    double cosine[TURN];
-    double sine[TURN];
-} circle;
-
-static circle make_circle(size_t nodes)
-{
-    circle c = {.nodes = nodes};
-    for (size_t n = 0; n < nodes; n++) {
-        c.cosine[n] = cos(2.0 * M_PI * (double)n / (double)nodes);
-        c.sine[n] = sin(2.0 * M_PI * (double)n / (double)nodes);
-    }
-    return c;
-}
-
-/* The coefficients of a series with `orders` orders. */
-static void transform(const circle *at, const double *v, int orders, double *coefficient)
-{
-    for (int k = 0; k <= orders; k++) {
-        double c = 0.0;
-        double s = 0.0;
-        for (size_t n = 0, place = 0; n < at->nodes; n++, place = (place + (size_t)k) % at->nodes) {
-            c += v[n] * at->cosine[place];
-            s += v[n] * at->sine[place];
-        }
-        coefficient[k == 0 ? 0 : 2 * k - 1] = (k == 0 ? 1.0 : 2.0) * c / (double)at->nodes;
-        if (k > 0) {
-            coefficient[2 * k] = 2.0 * s / (double)at->nodes;
-        }
-    }
-}
-
 /* ---- symmetry and orders ---- */
 
 /* Sums over the cells that are looked at first. */
@@ -150,12 +117,12 @@ typedef struct spectrum {
 
 static void add_power(const batch *b, size_t cells, spectrum *s)
 {
-    const circle turn = make_circle(TURN);
+    const gonio_i_circle turn = gonio_i_circle_of(TURN);
     double v[TURN] = {0.0};
     double coefficient[TURN];
     for (size_t k = 0; k < cells * b->channels; k++) {
         if (read_cell(b, k / b->channels, k % b->channels, v)) {
-            transform(&turn, v, TURN / 2 - 1, coefficient);
+            gonio_i_circle_series(&turn, v, TURN / 2 - 1, coefficient);
             for (int n = 1; n < TURN / 2; n++) {
                 s->power[n] += 0.5 * (coefficient[2 * n - 1] * coefficient[2 * n - 1] +
                                       coefficient[2 * n] * coefficient[2 * n]);
@@ -219,7 +186,7 @@ static int find_orders(const spectrum *s, int symmetry)
 typedef ptrdiff_t slot;
 
 /* Writes the series of a cell in all channels. */
-static void store_cell(const batch *b, const gonio_anisotropic_table *t, const circle *turn,
+static void store_cell(const batch *b, const gonio_anisotropic_table *t, const gonio_i_circle *turn,
                        slot at, float *coefficient)
 {
     const size_t terms = 1 + 2 * (size_t)t->orders;
@@ -228,7 +195,7 @@ static void store_cell(const batch *b, const gonio_anisotropic_table *t, const c
         double series[1 + 2 * GONIO_ANISOTROPIC_ORDERS];
         const bool data = at >= 0 && read_cell(b, (size_t)at, c, v);
         if (data) {
-            transform(turn, v, t->orders, series);
+            gonio_i_circle_series(turn, v, t->orders, series);
         }
         for (size_t k = 0; k < terms; k++) {
             coefficient[c * terms + k] = data ? (float)series[k] : NAN;
@@ -239,7 +206,7 @@ static void store_cell(const batch *b, const gonio_anisotropic_table *t, const c
 static void store(const batch *b, const gonio_anisotropic_table *t, float *coefficient,
                   size_t cells, const slot *slots)
 {
-    const circle turn = make_circle(b->nodes);
+    const gonio_i_circle turn = gonio_i_circle_of(b->nodes);
     const size_t numbers = t->channels * (1 + 2 * (size_t)t->orders);
 #pragma omp parallel for schedule(static) num_threads(gonio_context_threads(b->context))
     for (size_t cell = 0; cell < cells; cell++) {

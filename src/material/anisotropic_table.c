@@ -89,7 +89,7 @@ char *gonio_i_anisotropic_describe(const gonio_anisotropic_table *t)
         t->wavelength != NULL ? "wavelength" : "channel", t->channels == 1 ? "" : "s");
 }
 
-/* ---- evaluation ---- */
+/* ---- series ---- */
 
 /* The terms of the series at a phi_h: 1, cos s phi_h, sin s phi_h, cos 2 s phi_h, ... */
 typedef struct series {
@@ -112,6 +112,18 @@ static void set_terms(const gonio_anisotropic_table *t, double phi_h, series *at
     }
 }
 
+/* rho of a cell's channel at a phi_h; NaN as its first coefficient: no data. */
+static double value_of(const float *coefficient, size_t terms, const series *at, double floor)
+{
+    double value = 0.0;
+    for (size_t k = 0; k < terms; k++) {
+        value += (double)coefficient[k] * at->term[k];
+    }
+    return fmax(exp(value) - floor, 0.0);
+}
+
+/* ---- evaluation ---- */
+
 /* Directions while they are evaluated. */
 typedef struct evaluation {
     const gonio_anisotropic_table *table;
@@ -119,7 +131,7 @@ typedef struct evaluation {
     double *total; /* [channels] of weights with data */
 } evaluation;
 
-/* Adds a cell's values. NaN as its first coefficient: no data. */
+/* Adds a cell's values. */
 static void add_cell(const evaluation *e, gonio_bin bin, const series *at, double weight)
 {
     const gonio_anisotropic_table *t = e->table;
@@ -129,15 +141,10 @@ static void add_cell(const evaluation *e, gonio_bin bin, const series *at, doubl
     const size_t cell = place * (size_t)t->phi_d_cells + (size_t)bin.phi_d / run;
     const float *coefficient = t->coefficient + cell * t->channels * terms;
     for (size_t c = 0; c < t->channels && weight > 0.0; c++, coefficient += terms) {
-        double value = 0.0;
-        if (isnan(coefficient[0])) {
-            continue;
+        if (!isnan(coefficient[0])) {
+            e->sum[c] += weight * value_of(coefficient, terms, at, t->floor[c]);
+            e->total[c] += weight;
         }
-        for (size_t k = 0; k < terms; k++) {
-            value += (double)coefficient[k] * at->term[k];
-        }
-        e->sum[c] += weight * fmax(exp(value) - t->floor[c], 0.0);
-        e->total[c] += weight;
     }
 }
 
@@ -204,6 +211,61 @@ static void evaluate_pair(const evaluation *e, gonio_pair pair, double *values)
     }
 }
 
+/* ---- means over phi_h ---- */
+
+enum { PERIOD_AZIMUTHS = 32, TURN_AZIMUTHS = 64 };
+
+/* Means of the cells of one theta_h and theta_d: cell[phi_d_cells][channels]. */
+static void average_cells(const gonio_anisotropic_table *t, const float *coefficient, double *cell)
+{
+    const size_t azimuths = t->orders == 0 ? 1 : t->symmetry > 1 ? PERIOD_AZIMUTHS : TURN_AZIMUTHS;
+    const size_t numbers = (size_t)t->phi_d_cells * t->channels;
+    memset(cell, 0, numbers * sizeof *cell);
+    for (size_t n = 0; n < azimuths; n++) {
+        series at = {0};
+        set_terms(t, 2.0 * M_PI * (double)n / (double)(azimuths * (size_t)t->symmetry), &at);
+        for (size_t k = 0; k < numbers; k++) {
+            const float *here = coefficient + k * terms_of(t);
+            const double floor = t->floor[k % t->channels];
+            cell[k] += isnan(here[0]) ? NAN : value_of(here, terms_of(t), &at, floor);
+        }
+    }
+    for (size_t k = 0; k < numbers; k++) {
+        cell[k] /= (double)azimuths;
+    }
+}
+
+/* A bin between the middles of two cells. */
+static double mean_between(double first, double second, double share)
+{
+    return isnan(first)                    ? (share > 0.0 ? second : NAN)
+           : isnan(second) || share <= 0.0 ? first
+                                           : first + share * (second - first);
+}
+
+gonio_status gonio_i_anisotropic_means(gonio_context *context, const gonio_anisotropic_table *t,
+                                       int theta_h, int theta_d, double *mean)
+{
+    const size_t cells = (size_t)t->phi_d_cells;
+    const size_t place = (size_t)theta_h * GONIO_THETA_D_BINS + (size_t)theta_d;
+    double *cell = gonio_i_allocate(context, cells * t->channels, sizeof *cell);
+    if (cell == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    average_cells(t, t->coefficient + place * cells * t->channels * terms_of(t), cell);
+    for (size_t k = 0; k < GONIO_PHI_D_BINS * t->channels; k++) {
+        const size_t c = k % t->channels;
+        const size_t phi_d = k / t->channels;
+        const double at =
+            ((double)phi_d + 0.5) * (double)cells / GONIO_PHI_D_BINS - 0.5 + (double)cells;
+        const size_t before = (size_t)at;
+        mean[k] = mean_between(cell[before % cells * t->channels + c],
+                               cell[(before + 1) % cells * t->channels + c], at - (double)before);
+    }
+    free(cell);
+    return GONIO_OK;
+}
+
 static gonio_status evaluate(void *self, gonio_context *context, const gonio_pair *pairs,
                              size_t count, double *values)
 {
@@ -225,9 +287,14 @@ static gonio_status evaluate(void *self, gonio_context *context, const gonio_pai
     return GONIO_OK;
 }
 
+const gonio_anisotropic_table *gonio_i_anisotropic_of_source(const gonio_material_source *source)
+{
+    return source->evaluate == evaluate ? source->self : NULL;
+}
+
 const gonio_anisotropic_table *gonio_i_anisotropic_of(const gonio_material *material)
 {
-    return material->source.evaluate == evaluate ? material->source.self : NULL;
+    return gonio_i_anisotropic_of_source(&material->source);
 }
 
 /* ---- as a material ---- */

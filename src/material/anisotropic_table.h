@@ -20,6 +20,12 @@ size_t gonio_i_anisotropic_count(const gonio_anisotropic_table *table);
 
 /* The table that a material was made from, which belongs to the material; NULL if it was not. */
 const gonio_anisotropic_table *gonio_i_anisotropic_of(const gonio_material *material);
+const gonio_anisotropic_table *gonio_i_anisotropic_of_source(const gonio_material_source *source);
+
+/* Means over phi_h at the centres of the bins of one theta_h and theta_d: mean[phi_d][channels],
+ * 1/sr, NaN for no data. Errors: _MEMORY. */
+gonio_status gonio_i_anisotropic_means(gonio_context *context, const gonio_anisotropic_table *table,
+                                       int theta_h, int theta_d, double *mean);
 
 /* Fills in `source` with a source of this table, which takes the table's arrays: they are released
  * with free(). On failure they stay the caller's. Errors: _ARGUMENT, _MEMORY. */

@@ -3,8 +3,10 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "../core/core.h"
+#include "anisotropic_table.h"
 #include "azimuth_mean.h"
 #include "inside.h"
 
@@ -15,6 +17,7 @@ typedef struct row {
     size_t channels;
     gonio_pair *pair; /* [GONIO_PHI_D_BINS] */
     double *mean;     /* [GONIO_PHI_D_BINS][channels] */
+    double *table;    /* the same, of an anisotropic table; NULL for others */
 } row;
 
 static bool has_data(const row *r, const double *mean)
@@ -69,6 +72,22 @@ static gonio_status evaluate_runs(gonio_context *context, const row *r, gonio_bi
     return gonio_i_azimuth_mean(context, &averaged, r->pair, runs, r->mean);
 }
 
+/* The same of an anisotropic table, which averages its series. */
+static gonio_status average_runs(gonio_context *context, const row *r, gonio_bin at, int first,
+                                 int last, int run)
+{
+    const gonio_anisotropic_table *table = gonio_i_anisotropic_of_source(r->source);
+    const gonio_status status =
+        gonio_i_anisotropic_means(context, table, at.theta_h, at.theta_d, r->table);
+    size_t runs = 0;
+    for (int k = first; k < last && status == GONIO_OK; k += run) {
+        const int length = run < last - k ? run : last - k;
+        const double *bin = r->table + (size_t)(k + length / 2) * r->channels;
+        memcpy(r->mean + runs++ * r->channels, bin, r->channels * sizeof *bin);
+    }
+    return status;
+}
+
 /* The bins first .. 179 - first are inside; the others have no data. */
 static gonio_status fill_row(gonio_context *context, row *r, int theta_h, int theta_d, int run,
                              double *rho)
@@ -81,7 +100,8 @@ static gonio_status fill_row(gonio_context *context, row *r, int theta_h, int th
     gonio_status status = GONIO_OK;
     if (first < last) {
         const gonio_bin at = {theta_h, theta_d, first};
-        status = evaluate_runs(context, r, at, first, last, run);
+        status = r->table != NULL ? average_runs(context, r, at, first, last, run)
+                                  : evaluate_runs(context, r, at, first, last, run);
     }
     for (int k = 0; k < GONIO_PHI_D_BINS && status == GONIO_OK; k++) {
         const bool inside = k >= first && k < last;
@@ -101,12 +121,18 @@ static gonio_status evaluate(gonio_context *context, const gonio_material_source
     row r = {.source = source, .weight = weight, .channels = source->channels};
     r.pair = gonio_i_allocate(context, GONIO_PHI_D_BINS, sizeof *r.pair);
     r.mean = gonio_i_allocate(context, GONIO_PHI_D_BINS * r.channels, sizeof *r.mean);
-    gonio_status status = r.pair != NULL && r.mean != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
+    const bool table = gonio_i_anisotropic_of_source(source) != NULL;
+    r.table =
+        table ? gonio_i_allocate(context, GONIO_PHI_D_BINS * r.channels, sizeof *r.table) : NULL;
+    gonio_status status = r.pair != NULL && r.mean != NULL && (r.table != NULL || !table)
+                              ? GONIO_OK
+                              : GONIO_ERROR_MEMORY;
     for (int theta_d = 0; theta_d < GONIO_THETA_D_BINS && status == GONIO_OK; theta_d++) {
         status = fill_row(context, &r, theta_h, theta_d, run, rho);
     }
     free(r.pair);
     free(r.mean);
+    free(r.table);
     return status;
 }
 

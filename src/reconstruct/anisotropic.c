@@ -208,6 +208,13 @@ gonio_anisotropic_reconstruction_describe(const gonio_anisotropic_reconstruction
     return &made->view;
 }
 
+const gonio_i_anisotropic *
+gonio_i_anisotropic_estimate(const gonio_anisotropic_reconstruction *made, const double **scale)
+{
+    *scale = made->scale;
+    return made->estimate;
+}
+
 void gonio_i_anisotropic_weighed(const gonio_anisotropic_reconstruction *made,
                                  gonio_i_weighed_stretches *weighed)
 {

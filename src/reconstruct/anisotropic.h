@@ -4,7 +4,7 @@
 
 #include <gonio/reconstruct.h>
 
-#include "../posterior/stretches.h"
+#include "../posterior/anisotropic.h"
 
 /* What weights of stretches say of a material's anisotropy: all but cannot_tell. */
 gonio_anisotropy gonio_i_anisotropy_of(const gonio_i_stretches *stretches);
@@ -19,6 +19,10 @@ typedef struct gonio_i_weighed_stretches {
 
 void gonio_i_anisotropic_weighed(const gonio_anisotropic_reconstruction *made,
                                  gonio_i_weighed_stretches *weighed);
+
+/* What a reconstruction predicts from; it belongs to the reconstruction. scale: [channels], s. */
+const gonio_i_anisotropic *
+gonio_i_anisotropic_estimate(const gonio_anisotropic_reconstruction *made, const double **scale);
 
 /* As gonio_plan_next, of a material whose azimuths count. Errors: those of
  * gonio_reconstruct_anisotropic and gonio_plan_create. */

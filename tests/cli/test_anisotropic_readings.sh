@@ -25,6 +25,25 @@ error() { "$GONIO" compare "$@" | sed -n '2s/^[^ ]* *\([0-9]*\)\..*/\1/p'; }
 expect_true 'better than the isotropic model' \
     test "$(error truth.csv at.csv)" -lt "$(error truth.csv isotropic.csv)"
 
+# ---- as a material ----
+
+expect_output ', albedo at most ' reconstruct b.gonio r.csv --anisotropic -o m.h5
+expect_output 'gonio anisotropic BRDF table 90 x 90 x 36, 7 orders of phi_h, 2-fold, 3 channels' info m.h5
+expect_true 'the table is the prediction' \
+    test "$(error truth.csv m.h5)" -eq "$(error truth.csv at.csv)"
+expect_ok reconstruct b.gonio r.csv --anisotropic --json --threads 1 -o same.h5
+expect_same m.h5 same.h5
+expect_ok reconstruct b.gonio r.csv --anisotropic -o m.bsdf
+expect_output 'RGL anisotropic BSDF' info m.bsdf
+expect_fail 2 'cannot hold; .bsdf, .h5, .xml and .csv can' \
+    reconstruct b.gonio r.csv --anisotropic -o m.binary
+expect_true 'nothing is left behind' test ! -e m.binary
+expect_ok reconstruct b.gonio r.csv --anisotropic --average-azimuths -o m.binary
+expect_true 'the loss is stated' \
+    grep -q 'the mean over azimuths differs from the anisotropic material by' "$root/work/stderr"
+expect_fail 2 '--albedo-at is of isotropic materials' \
+    reconstruct b.gonio r.csv --anisotropic --albedo-at 0 -o m.h5
+
 # ---- noticed and checked ----
 
 expect_ok reconstruct b.gonio r.csv -o isotropic.binary

@@ -208,6 +208,57 @@ static void test_readings_are_predicted_with_deviations(void **state)
     gonio_readings_free(&readings);
 }
 
+/* ---- as a material ---- */
+
+/* RMS of the differences in log space of a material to predictions where both directions are. */
+static double apart_in_log(const fixture *f, const gonio_material *material,
+                           const double *predicted)
+{
+    double value[ASKED * GONIO_CHANNELS];
+    double sum = 0.0;
+    double square = 0.0;
+    assert_int_equal(gonio_material_evaluate(f->context, material, f->asked, ASKED, value),
+                     GONIO_OK);
+    for (size_t k = 0; k < (size_t)ASKED * GONIO_CHANNELS; k++) {
+        const int channel = (int)(k % GONIO_CHANNELS);
+        const double g = gonio_log_from_brdf(predicted[k], channel);
+        const double there = isnan(value[k]) ? g : gonio_log_from_brdf(value[k], channel);
+        sum += (g - there) * (g - there);
+        square += g * g;
+    }
+    return sqrt(sum / square);
+}
+
+static void test_the_material_is_the_prediction(void **state)
+{
+    const fixture *f = *state;
+    const gonio_i_stretch stretch = {.log_ratio = log(4.0), .rotation = 0.5};
+    const gonio_context_options one = {.size = sizeof one, .threads = 1};
+    gonio_material *material[2] = {NULL, NULL};
+    double value[2][ASKED * GONIO_CHANNELS];
+    gonio_readings *readings = readings_of(f, &stretch, f->read, READ);
+    gonio_anisotropic_reconstruction *made = reconstruct(f, readings);
+    gonio_context *alone = NULL;
+    predict(f, made, value[0], NULL);
+    assert_int_equal(gonio_context_create(&alone, &one), GONIO_OK);
+    assert_int_equal(gonio_anisotropic_reconstruction_material(f->context, made, "m", &material[0]),
+                     GONIO_OK);
+    assert_int_equal(gonio_anisotropic_reconstruction_material(alone, made, "m", &material[1]),
+                     GONIO_OK);
+    gonio_anisotropic_reconstruction_free(&made);
+    assert_true(gonio_material_describe(material[0])->anisotropic);
+    assert_true(apart_in_log(f, material[0], value[0]) < 0.01);
+    for (int k = 0; k < 2; k++) {
+        assert_int_equal(
+            gonio_material_evaluate(f->context, material[k], f->asked, ASKED, value[k]), GONIO_OK);
+    }
+    assert_memory_equal(value[0], value[1], sizeof value[0]);
+    gonio_material_free(&material[0]);
+    gonio_material_free(&material[1]);
+    gonio_readings_free(&readings);
+    gonio_context_free(&alone);
+}
+
 /* ---- checks of isotropy ---- */
 
 static gonio_isotropy_check check(const fixture *f, const gonio_i_stretch *stretch,
@@ -315,6 +366,7 @@ int main(void)
         cmocka_unit_test(test_an_isotropic_material_stays),
         cmocka_unit_test(test_threads_do_not_matter),
         cmocka_unit_test(test_readings_are_predicted_with_deviations),
+        cmocka_unit_test(test_the_material_is_the_prediction),
         cmocka_unit_test(test_isotropy_is_checked),
         cmocka_unit_test(test_one_azimuth_cannot_tell),
         cmocka_unit_test(test_other_symmetries_are_refused),
