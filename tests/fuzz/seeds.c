@@ -146,5 +146,6 @@ int main(int argc, char **argv)
     seed_runs();
     seed_results();
     seed_chains();
+    seed_rigs();
     return 0;
 }

@@ -8,6 +8,8 @@ PLAIN(mesh)
 #endif
 PLAIN(readings)
 PLAIN(plan)
+PLAIN(instrument)
+PLAIN(run)
 PLAIN(splits)
 PLAIN(pieces)
 MUTATED(results)
