@@ -101,6 +101,8 @@ expect_fail_in "'false' failed (exit code 1)" benchmark --learn b.gonio cloth.cs
 expect_fail_in 'line 2 of its predictions' benchmark --learn b.gonio cloth.csv -n 4 --directions random \
     --methods external --external 'sh -c "echo R,G,B >$2" x' -o worse
 
+expect_fail_in 'cloth.csv: not a material' benchmark --learn cloth.csv cloth.csv -n 4 -o bad-lesson
+
 # ---- what it refuses ----
 
 expect_fail 2 'no output' benchmark cloth.csv

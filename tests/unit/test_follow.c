@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "follow/command_source.h"
@@ -113,6 +114,23 @@ static void test_not_a_journal(void **state)
     assert_int_equal(journal_open(path, gather, all, &found, &j, &problem), GONIO_ERROR_FORMAT);
     assert_non_null(strstr(problem, "not the journal"));
     free(problem);
+    /* Nor is a file without a line end, which stays as it is. */
+    static const char *const others[] = {"{\"a\": 1}", "12345678", "0123abcd{",
+                                         "abcdef01 li\x01ne"};
+    for (size_t k = 0; k < sizeof others / sizeof *others; k++) {
+        write_file(path, "w", others[k]);
+        const bool begun = k == 1; /* only this may be the beginning of a journal */
+        problem = NULL;
+        assert_int_equal(journal_open(path, gather, all, &found, &j, &problem),
+                         begun ? GONIO_OK : GONIO_ERROR_FORMAT);
+        struct stat about;
+        assert_int_equal(stat(path, &about), 0);
+        assert_int_equal(about.st_size, begun ? 0 : strlen(others[k]));
+        if (begun) {
+            journal_close(&j);
+        }
+        free(problem);
+    }
     support_remove(folder);
 }
 

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
 #include "score.h"
@@ -15,11 +16,27 @@ typedef struct state {
     const benchmark_trial *trial;
     gonio_context *context; /* asks whether to stop */
     gonio_context *silent;  /* for the work: what it notes of each reading does not matter here */
+    char *fault;            /* what it said last of an error; NULL: nothing */
     benchmark_sample sample;
     benchmark_pairs chosen;
     gonio_reference *reference; /* the rendered table; NULL until it is needed */
     json_t *rows;
 } state;
+
+static void keep_fault(void *user, gonio_message_level level, const char *text)
+{
+    state *s = user;
+    if (level == GONIO_MESSAGE_ERROR) {
+        free(s->fault);
+        s->fault = strdup(text);
+    }
+}
+
+/* Why the work failed, in words. */
+static const char *reason(const state *s, gonio_status status)
+{
+    return s->fault != NULL ? s->fault : gonio_status_text(status);
+}
 
 static double seconds_now(void)
 {
@@ -148,10 +165,12 @@ static gonio_status try_method(state *s, const benchmark_task *task, size_t n,
         complete_and_judge(s, loud ? s->context : s->silent, task, n, method, &o);
     if (status == GONIO_OK || (is_excused(status) && !loud)) {
         add_row(s, n, name, read, &o.score, o.expected, &o.image, o.seconds);
+        free(s->fault);
+        s->fault = NULL;
         return GONIO_OK;
     }
     return gonio_i_fail(s->context, status, "%s by %s from %zu readings: %s",
-                        s->trial->subject->name, name, n, gonio_status_text(status));
+                        s->trial->subject->name, name, n, reason(s, status));
 }
 
 /* ---- all methods from one n ---- */
@@ -228,8 +247,9 @@ static gonio_status try_sizes(state *s)
 gonio_status benchmark_trial_run(gonio_context *context, const benchmark_trial *trial,
                                  json_t **rows)
 {
-    const gonio_context_options quiet = {.size = sizeof quiet, .threads = 1};
     state s = {.trial = trial, .context = context, .rows = json_array()};
+    const gonio_context_options quiet = {
+        .size = sizeof quiet, .message = keep_fault, .user = &s, .threads = 1};
     gonio_status status = gonio_context_create(&s.silent, &quiet);
     if (status == GONIO_OK) {
         status = benchmark_sample_open(s.silent, trial->setting, trial->subject, trial->candidates,
@@ -242,8 +262,9 @@ gonio_status benchmark_trial_run(gonio_context *context, const benchmark_trial *
         *rows = json_incref(s.rows);
     } else if (status != GONIO_ERROR_CANCELLED) {
         gonio_i_fail(context, status, "%s, %s: %s", trial->subject->path, trial->ways->name,
-                     gonio_status_text(status));
+                     reason(&s, status));
     }
+    free(s.fault);
     json_decref(s.rows);
     gonio_reference_free(&s.reference);
     benchmark_sample_free(&s.sample);

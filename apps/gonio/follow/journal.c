@@ -50,6 +50,30 @@ static bool is_whole(const char *line, size_t length)
     return memcmp(check, line, CHECK_DIGITS) == 0;
 }
 
+static bool is_check_digit(char c)
+{
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f');
+}
+
+/* Whether a line that was not written whole can be the beginning of one. */
+static bool is_begun(const char *line, size_t length)
+{
+    bool begun = true;
+    for (size_t k = 0; k < length && begun; k++) {
+        begun = k < CHECK_DIGITS    ? is_check_digit(line[k])
+                : k == CHECK_DIGITS ? line[k] == ' '
+                                    : (unsigned char)line[k] >= ' ';
+    }
+    return begun;
+}
+
+/* Whether what was read of a file is no journal, nor one that was ended in its first line. */
+static bool is_foreign(const char *text, size_t size, const journal_found *found)
+{
+    const char *cut = text + size - found->cut;
+    return found->records == 0 && (size > found->cut || !is_begun(cut, found->cut));
+}
+
 /* Hands out one line, which it changes. */
 static gonio_status take_line(char *line, journal_reader reader, void *user)
 {
@@ -108,8 +132,9 @@ static gonio_status take_all(const char *path, int descriptor, journal_reader re
         return failed(path, "cannot read", problem);
     }
     gonio_status status = take_lines(text, size, reader, user, found);
+    const bool foreign = is_foreign(text, size, found);
     free(text);
-    if (status == GONIO_OK && found->records == 0 && size > found->cut) {
+    if (status == GONIO_OK && foreign) {
         if (asprintf(problem, "%s: this is not the journal of a run; give another --journal",
                      path) < 0) {
             *problem = NULL;
