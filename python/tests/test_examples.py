@@ -40,6 +40,14 @@ def test_drive_instrument(run, tmp_path):
     assert readings.pairs[:, 0].max() < math.radians(76)
 
 
+def test_laboratory(run, tmp_path):
+    out = run("laboratory.py")
+    assert "gantry: 8" in out and "16 readings of the gantry in" in out and "blind: " in out
+    assert "dark row subtracted" in out and "theta_o = 85: " in out and "out of reach" in out
+    assert float(re.search(r"Errors\(e6=([\d.]+)", out)[1]) < 10.0
+    assert "axis_receive_deg" in (tmp_path / "more.csv").read_text()
+
+
 def test_the_readme(source, basis_path, tmp_path):
     page = (source / "README.md").read_text()
     [code] = re.findall(r"^    import gonio\n(?:    .*\n)+", page, flags=re.M)

@@ -18,10 +18,9 @@ UNBOUND = {
         gonio_mapped_from_brdf gonio_basis_singular_value gonio_basis_cumulative_variance gonio_readings_value
         gonio_readings_scale gonio_readings_are_colours gonio_slab_scale gonio_slab_mask gonio_slab_to_log
         gonio_slab_to_mapped gonio_slab_reduce gonio_grid_cells gonio_cell_bin gonio_cell_of_bin
-        gonio_delta_e_itp""",
+        gonio_delta_e_itp gonio_instrument_deviation""",
     "objects never change": """gonio_readings_set_value gonio_readings_set_values gonio_readings_set_deviations
-        gonio_readings_average_repeats gonio_readings_subtract_blank gonio_readings_times_reference
-        gonio_readings_drop_empty_channels gonio_context_resume""",
+        gonio_readings_average_repeats gonio_readings_drop_empty_channels gonio_context_resume""",
     "files are written one by one": "gonio_outputs_hold gonio_outputs_release",
     "another function does the same": """gonio_atlas_find gonio_atlas_class gonio_atlas_value gonio_atlas_slab
         gonio_atlas_anisotropic_find gonio_atlas_anisotropic_class gonio_atlas_anisotropic_value
@@ -37,6 +36,8 @@ UNBOUND = {
         gonio_reconstruct_rows gonio_reconstruct_rows_with gonio_reconstruct_material gonio_material_rows
         gonio_bivariate_material gonio_basis_position gonio_basis_row_at gonio_basis_convert gonio_database_describe
         gonio_database_read_rows gonio_plan_write_history""",
+    "plans and rehearsals call them": """gonio_instrument_candidates gonio_instrument_value_factor
+        gonio_instrument_aperture_samples gonio_instrument_aperture""",
     "anisotropic reconstructions are for C and the command line so far": """gonio_reconstruct_anisotropic
         gonio_anisotropic_reconstruction_free gonio_anisotropic_reconstruction_describe
         gonio_anisotropic_reconstruction_predict gonio_anisotropic_reconstruction_predict_readings
@@ -47,24 +48,19 @@ UNBOUND = {
         gonio_material_writer_summary gonio_plan_method_summary gonio_plan_method_reconstruction
         gonio_plan_method_basis gonio_plan_start_name gonio_plan_start_summary gonio_reconstruct_method_summary
         gonio_reconstruct_method_suits_mixtures gonio_readings_format_word gonio_reference_read gonio_reflectance_directions
-        gonio_material_reflectance gonio_reconstruction_reflectance gonio_environment_summary
-        gonio_instrument_read gonio_instrument_parse gonio_instrument_free gonio_instrument_describe
-        gonio_instrument_word gonio_instrument_summary gonio_kinematics_name gonio_kinematics_summary
-        gonio_value_kind_name gonio_instrument_pair gonio_instrument_obstacle gonio_instrument_settings
-        gonio_instrument_survey gonio_instrument_candidates gonio_instrument_deviation gonio_instrument_value_factor
-        gonio_instrument_aperture_samples gonio_instrument_aperture gonio_instrument_travel gonio_instrument_home
-        gonio_instrument_schedule gonio_instrument_order gonio_rehearse
+        gonio_material_reflectance gonio_environment_summary gonio_instrument_summary gonio_kinematics_name
+        gonio_kinematics_summary gonio_value_kind_name
         gonio_comparison_picture_write_png gonio_tone_apply gonio_srgb_encode""",
 }
-KINDS = ("basis context database environment image material mesh plan readings reconstruction survey table").split()
+KINDS = ("basis context database environment image instrument material mesh plan readings reconstruction survey table").split()
 
 # Fields of options and the parameters that they are; None: the package sets them itself.
 OPTIONS = {
     "plan": (gonio.Basis.plan, dict(method="method", start="start", components="components", count="n",
                                     restarts="restarts", seed="seed", keep_history=None, phi_d="phi_d", metric="metric",
                                     candidates="candidates", candidate_count="candidates", target="target_error",
-                                    budget=None, nested=None, anisotropic=None,
-                                    instrument=None)),
+                                    budget="budget", nested="nested", anisotropic=None,
+                                    instrument="instrument")),
     "reconstruct": (gonio.reconstruct, dict(components="components", all_channels="all_channels",
                                             other_basis="other_basis", method="method", eta="eta", noise="noise",
                                             floor="floor", saturation="saturation", deviation=None,

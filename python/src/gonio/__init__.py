@@ -27,7 +27,8 @@ Plan            where to measure: columns as arrays, to_csv, to_pandas
 Readings        values at directions, from arrays or an instrument's file
 Regressor       fit, predict, score, as scikit-learn has them
 reconstruct, Reconstruction   the same without its manners: expected_error, suspicion, predict, interval, next
-Instrument, SimulatedInstrument   what reads a sample, for plans within its reach
+Goniometer      an instrument's file: reach, noise, times; plans and rehearsals of its runs
+Instrument, SimulatedInstrument   what reads a sample, behind a callback
 errors          how far one BRDF is from another
 render, tone_map, save_image, report, plot   to look at
 settings        threads, progress
@@ -47,9 +48,10 @@ from ._evaluation import Errors, errors, file_kind
 from ._exceptions import (ArgumentError, CancelledError, DataError, DirectionWarning, FileError, FormatError,
                          GonioError, GonioWarning, MismatchError, NotFittedError, NumericalError, OutOfMemoryError,
                          UndeterminedError)
+from ._goniometers import Goniometer, goniometers
 from ._instruments import Instrument, SimulatedInstrument
 from ._materials import Material, atlas, formats, grid
-from ._plans import Plan, metrics, planning_methods
+from ._plans import Plan, Run, metrics, planning_methods
 from ._readings import Readings
 from ._reconstruction import Reconstruction, reconstruct, reconstruction_methods
 from ._regressor import Regressor
@@ -61,10 +63,12 @@ __version__ = _calls.text(_lib.gonio_version())
 
 __all__ = [
     "ArgumentError", "Basis", "CancelledError", "DataError", "DirectionWarning", "Errors", "FileError", "FormatError",
-    "GonioError", "GonioWarning", "Instrument", "Material", "MismatchError", "NotFittedError", "NumericalError",
-    "OutOfMemoryError", "Plan", "Readings", "Reconstruction", "Regressor", "Report", "SimulatedInstrument",
+    "GonioError", "GonioWarning", "Goniometer", "Instrument", "Material", "MismatchError", "NotFittedError",
+    "NumericalError",
+    "OutOfMemoryError", "Plan", "Readings", "Reconstruction", "Regressor", "Report", "Run", "SimulatedInstrument",
     "UndeterminedError", "angles", "atlas", "builtin_basis", "directions", "environments", "errors", "file_kind",
-    "formats", "grid", "image_errors", "learn", "metrics", "plot", "planning_methods", "read_image", "reconstruct",
+    "formats", "goniometers", "grid", "image_errors", "learn", "metrics", "plot", "planning_methods", "read_image",
+    "reconstruct",
     "reconstruction_methods", "render", "report", "save_image", "settings", "tone_map",
 ]
 

@@ -218,7 +218,7 @@ class Basis:
     def plan(self, n: Optional[int] = None, *, instrument: Any = None, metric: str = "e6",
              target_error: Optional[float] = None, candidates: Any = None, method: Optional[str] = None,
              components: int = 0, seed: int = 0, restarts: int = 5, start: Optional[str] = None,
-             phi_d: float = np.pi / 2) -> Plan:
+             phi_d: float = np.pi / 2, budget: Optional[float] = None, nested: bool = False) -> Plan:
         """Plans where to measure a new material.
 
         Parameters
@@ -226,7 +226,9 @@ class Basis:
         n : int, optional
             Readings: 80 by default; with `target_error` at most so many, 300 by default.
         instrument : object, optional
-            Something with `directions`, a pair (wi, wo) that it can reach or None for any: they become `candidates`.
+            A `Goniometer`: what it reaches is chosen from, with its noise and apertures, in the order of least time
+            (`Plan.run`). Or something with `directions`, a pair (wi, wo) that it can reach or None for any: they become
+            `candidates`.
         metric : {"e6", "cube-root", "log-relative"}
             Whose expected value is least.
         target_error : float, optional
@@ -242,6 +244,10 @@ class Basis:
             Of the swaps of the method "condition": its random starts, how many of them, and how they begin.
         phi_d : float
             Where on the free angle a bivariate cell is measured, radians.
+        budget : float, optional
+            Seconds: the best run of the goniometer in this time, of at most `n` readings if that is given.
+        nested : bool
+            The first 5, 10, 20, 40 ... readings of the goniometer stay good plans; only these blocks are ordered.
 
         Returns
         -------
@@ -256,7 +262,8 @@ class Basis:
         Source: ``gonio/plan.h`` (gonio_plan_create).
         """
         how, _keep = plan_options(n, instrument, metric, target_error, candidates, method=method,
-                                  components=components, seed=seed, restarts=restarts, start=start, phi_d=phi_d)
+                                  components=components, seed=seed, restarts=restarts, start=start, phi_d=phi_d,
+                                  budget=budget, nested=nested)
         return Plan._of(_calls.made("plan", lib.gonio_plan_create, self._handle, how))
 
     # -- copies --

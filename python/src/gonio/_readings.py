@@ -180,6 +180,12 @@ class Readings:
         return seen
 
     @property
+    def times(self) -> Optional[Array]:
+        """When each was read, seconds from any beginning, (n,), a view; None if it is not known."""
+        seen: Optional[Array] = _calls.view(self, self._view.time, (len(self),))
+        return seen
+
+    @property
     def notes(self) -> list[str]:
         """What the reader of the file said: what it was taken for, what was left out."""
         return [_calls.text(self._view.note[k]) for k in range(self._view.notes)]
@@ -244,6 +250,43 @@ class Readings:
         """The same directions, with the values that other readings of the same material have there."""
         handle = self._copy()
         _calls.run(lib.gonio_readings_look_up, handle, known._handle)
+        return Readings._of(handle)
+
+    def less_blank(self, blank: "Readings", *, noise: float = 0.01, floor: float = 1e-5) -> "Readings":
+        """The same less a blank run: readings of a dark sample or a light trap, or with the lamp covered.
+
+        A reading gets the blank of its own directions, otherwise the blank's median. The standard deviations hold that
+        of the blank. Notes go to the logger; they say if the blank is brighter than the sample.
+
+        Parameters
+        ----------
+        blank : Readings
+            In the same channels.
+        noise, floor : float
+            Of readings without standard deviations of their own: relative, and 1/sr.
+        """
+        handle = self._copy()
+        _calls.run(lib.gonio_readings_subtract_blank, handle, blank._handle,
+                   _calls.number(noise, "noise", 0.0, "a finite number of 0 or more"),
+                   _calls.number(floor, "floor", 0.0, "a finite number of 0 or more"))
+        return Readings._of(handle)
+
+    def times_reference(self, theta: npt.ArrayLike, factor: npt.ArrayLike) -> "Readings":
+        """The same times the reflectance factor of the reference that they are relative to.
+
+        Parameters
+        ----------
+        theta : array_like, (rows,)
+            Polar angles of the viewer, radians.
+        factor : array_like, (rows,)
+            The reference's reflectance factors there: linear between rows, constant outside.
+        """
+        angle, value = numbers(theta, "theta").ravel(), numbers(factor, "factor").ravel()
+        if len(angle) != len(value) or len(angle) == 0:
+            raise ArgumentError(f"theta has {len(angle)} numbers and factor {len(value)}: give a factor for each angle")
+        rows = ffi.new("gonio_reference_row[]", [{"theta": t, "factor": f} for t, f in sorted(zip(angle, value))])
+        handle = self._copy()
+        _calls.run(lib.gonio_readings_times_reference, handle, rows, len(rows))
         return Readings._of(handle)
 
     def __reduce__(self) -> Any:

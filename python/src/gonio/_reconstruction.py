@@ -11,7 +11,7 @@ import numpy.typing as npt
 from . import _calls
 from ._backend import ffi, lib
 from ._bases import Basis, as_basis
-from ._directions import Array, pairs
+from ._directions import Array, numbers, pairs
 from ._exceptions import ArgumentError
 from ._materials import Material
 from ._plans import Plan, plan_options
@@ -296,10 +296,38 @@ class Reconstruction:
         return scale
 
     def predicted_readings(self, readings: Readings) -> Readings:
-        """What the instrument would read at the directions of `readings`: the dark level is subtracted again."""
+        """What the instrument would read at the directions of `readings`: the dark level is subtracted again. They have
+        no deviations; see `predict`."""
         handle = readings._copy()
         _calls.run(lib.gonio_reconstruction_predict_readings, self.basis._handle, self._handle, handle)
         return Readings._of(handle)
+
+    def reflectance(self, theta_i: npt.ArrayLike) -> Tuple[Array, Array]:
+        """What share of the light from polar angles is reflected (directional-hemispherical reflectance, albedo).
+
+        Parameters
+        ----------
+        theta_i : array_like, (...)
+            Radians, from 0 to below pi/2.
+
+        Returns
+        -------
+        reflectance, std : ndarray, (..., channels)
+            The errors of all directions are taken as fully correlated, so that std is rather too large.
+
+        Source: ``gonio/evaluate.h`` (gonio_reconstruction_reflectance).
+        """
+        theta = numbers(theta_i, "theta_i")
+        made = self._with_deviation()
+        value = np.empty((theta.size, self.channels))
+        spread = np.empty_like(value)
+        for k, angle in enumerate(theta.ravel()):
+            one, deviation = np.empty(self.channels), np.empty(self.channels)
+            _calls.run(lib.gonio_reconstruction_reflectance, self.basis._handle, made, float(angle),
+                       _calls.buffer(one), _calls.buffer(deviation))
+            value[k], spread[k] = one, deviation
+        shape = (*theta.shape, self.channels)
+        return value.reshape(shape), spread.reshape(shape)
 
     def material(self, name: str = "reconstruction") -> Material:
         """The reconstructed BRDF as a material: at its wavelengths if it has any, a table of R, G, B otherwise."""
@@ -324,7 +352,8 @@ class Reconstruction:
     # -- what to read next --
 
     def next(self, n: Optional[int] = None, *, target_error: Optional[float] = None, candidates: Any = None,
-             instrument: Any = None, metric: str = "e6") -> Optional[Plan]:
+             instrument: Any = None, metric: str = "e6", budget: Optional[float] = None, nested: bool = False
+             ) -> Optional[Plan]:
         """Plans the next readings of this material: those that leave the least expected error.
 
         Parameters
@@ -333,7 +362,7 @@ class Reconstruction:
             How many; 5 by default.
         target_error : float, optional
             The fewest with at most this expected error (E6), per cent.
-        candidates, instrument, metric
+        candidates, instrument, metric, budget, nested
             As of `Basis.plan`.
 
         Returns
@@ -343,7 +372,7 @@ class Reconstruction:
 
         Source: ``gonio/reconstruct.h`` (gonio_plan_next).
         """
-        what, _keep = plan_options(n, instrument, metric, target_error, candidates)
+        what, _keep = plan_options(n, instrument, metric, target_error, candidates, budget, nested)
         how, _word = self._options()
         made = _calls.made("plan", lib.gonio_plan_next, self.basis._handle, self.readings._handle, how, what, ffi.NULL,
                            ffi.NULL)
