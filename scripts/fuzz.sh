@@ -22,7 +22,7 @@ for target in "$@"; do
         -malloc_limit_mb=1024 -max_len=65536 -artifact_prefix="$build/found/$target-" \
         "$corpus" "$build/seeds/$target" "${more[@]}" \
         >"$build/found/$target.log" 2>&1; then
-        echo "$target: nothing found; $(grep -o '^#[0-9]*.*DONE' "$build/found/$target.log" | grep -o '^#[0-9]*' | tr -d '#') runs"
+        echo "$target: nothing found; $(grep -ao '^#[0-9]*.*DONE' "$build/found/$target.log" | grep -ao '^#[0-9]*' | tr -d '#') runs"
     else
         code=1
         echo "$target: see $build/found/$target.log"

@@ -103,6 +103,9 @@ expect_true() {
 # Whether everything is to be run, not the smaller sizes that do for the sanitizers.
 full() { [ "${GONIO_TESTS:-}" != small ]; }
 
+# Whether the program writes HDF5: not if it was built without its library.
+writes_hdf5() { [ "${WITH_HDF5:-ON}" = ON ]; }
+
 skip() { printf 'not tested: %s\n' "$1"; }
 
 # Runs the program as a user who is not root, to whom permissions apply.

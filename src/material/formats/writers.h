@@ -25,14 +25,9 @@ typedef struct gonio_i_format_writer {
 
 /* The writers. The first of an extension is the one that it stands for; the first of all is what a
  * file of an unknown extension becomes. */
-#ifdef GONIO_WITHOUT_HDF5
-#define GONIO_I_HDF5_WRITERS(WRITER)
-#else
-#define GONIO_I_HDF5_WRITERS(WRITER) WRITER(table)
-#endif
 #define GONIO_I_MATERIAL_WRITERS(WRITER)                                                           \
     WRITER(merl)                                                                                   \
-    WRITER(rgl) GONIO_I_HDF5_WRITERS(WRITER) WRITER(klems) WRITER(zemax) WRITER(grid)
+    WRITER(rgl) WRITER(table) WRITER(klems) WRITER(zemax) WRITER(grid)
 
 #define GONIO_I_DECLARE_WRITER(name) extern const gonio_i_format_writer gonio_i_##name##_writer;
 GONIO_I_MATERIAL_WRITERS(GONIO_I_DECLARE_WRITER)
