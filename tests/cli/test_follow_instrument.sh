@@ -77,7 +77,7 @@ expect_output 'all read: 12 readings' measure --exec ./robot.sh plan.csv --instr
 expect_same <(lines plan.csv | tail -n +2 | awk -F, '{ printf "%.3f %.3f %.3f %.3f\n", $7, $8, $9, $10 }') \
     <(awk '{ printf "%.3f %.3f %.3f %.3f\n", $1, $2, $3, $4 }' visits)
 rm -f out.csv*
-lines run.csv | head -8 >robot.csv
+{ grep '^# values' run.csv; lines run.csv | head -8; } >robot.csv
 expect_ok measure --follow robot.csv plan.csv --instrument two-arms --basis b.gonio --adapt --idle 0.2s --remaining rest.csv \
     -o out.csv
 expect_true 'it is adapted' grep -q ' adapt ' out.csv.journal
@@ -107,6 +107,18 @@ said '1 dark row subtracted'
 edited 2 '7 8 9' | lines /dev/stdin | sed -n 5p >>robot.csv
 follows
 said 'again, with another value: both count'
+awk -F, -v OFS=, '/^[0-9]/ { t = 86390 + 2 * n++; $5 = sprintf("%02d:%02d:%02d", t / 3600 % 24, t / 60 % 60, t % 60) }
+    { print }' run.csv >robot.csv
+follows
+not_said 'the time is before'
+grep -v '^# values' run.csv >robot.csv
+follows
+said "taken as 'brdf', but the instrument states 'factor'"
+iconv -t UTF-16 run.csv >robot.csv
+rm -f out.csv*
+expect_true 'UTF-16 is refused' eval '! gonio measure --follow robot.csv plan.csv --no-basis -o out.csv >"$root/work/stdout" \
+    2>"$root/work/stderr"'
+said 'this is UTF-16'
 lines run.csv | sed 's/\./,/g' | head -4 >robot.csv
 follows
 said 'are these decimal commas?'

@@ -3,7 +3,9 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
+#include "measurement/readings.h"
 #include "progress.h"
 #include "requests.h"
 
@@ -36,6 +38,26 @@ void follow_set_limits(follower *f, posterior_options *judged)
     }
     f->limits.dark = view->dark - IMPOSSIBLE * view->floor;
     f->limits.lit = view->dark + view->stray + NO_LIGHT * view->floor;
+}
+
+void follow_check_values(follower *f, const gonio_readings *readings)
+{
+    const bool says_its_unit = f->run.names != NULL && strcasestr(f->run.names, "_per_sr") != NULL;
+    if (f->inputs.instrument == NULL || f->said_values || says_its_unit) {
+        return;
+    }
+    const gonio_value_kind stated = gonio_instrument_describe(f->inputs.instrument)->values;
+    const gonio_value_kind taken =
+        readings->values != 0 ? (gonio_value_kind)readings->values : GONIO_VALUE_BRDF;
+    /* Relative values and counts are followed as what a program makes of them. */
+    if (stated != taken && stated < GONIO_VALUE_RELATIVE) {
+        follow_say(f, GONIO_MESSAGE_WARNING,
+                   "%s: values were taken as '%s', but the instrument states '%s': if it is right, "
+                   "begin again with --as values=%s",
+                   f->run.path, gonio_value_kind_name(taken), gonio_value_kind_name(stated),
+                   gonio_value_kind_name(stated));
+    }
+    f->said_values = true;
 }
 
 /* The largest and the smallest value of a row; NaN without any. */

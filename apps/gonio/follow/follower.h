@@ -60,6 +60,7 @@ typedef struct follower {
     size_t said_count;
     bool said_pending;
     bool said_repeats;
+    bool said_values;
     gonio_status status; /* of the run: what fails sets it, and the run ends */
 } follower;
 

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "flags.h"
 #include "progress.h"
 #include "settings.h"
 
@@ -24,6 +25,7 @@ void follow_save(follower *f)
                                                         &how, &readings);
     if (f->status == GONIO_OK) {
         follow_say_notes(f, gonio_readings_describe(readings));
+        follow_check_values(f, readings);
         f->status = gonio_readings_write(f->t->context, readings, f->t->command_line, f->o->output);
     }
     gonio_readings_free(&readings);

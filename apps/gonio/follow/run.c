@@ -13,6 +13,8 @@ enum { FIRST_ROOM = 64 };
 /* Degrees that an instrument may be off. */
 static const double REACHED = 1.0;
 
+static const double DAY = 86400.0; /* s */
+
 /* A repeated reading that differs by more than this part from the first takes its place. */
 static const double AGREES = 0.1;
 
@@ -138,6 +140,15 @@ static run_fate add_to_head(run *r, const char *text, gonio_status *status)
 
 static run_fate take_names(run *r, const char *text, gonio_status *status)
 {
+    if (strncmp(text, "\xff\xfe", 2) == 0 || strncmp(text, "\xfe\xff", 2) == 0) {
+        free(r->problem);
+        if (asprintf(&r->problem,
+                     "%s: this is UTF-16, which is not followed; have it written as UTF-8",
+                     r->path) < 0) {
+            r->problem = NULL;
+        }
+        return RUN_USELESS;
+    }
     add_to_head(r, text, status);
     if (*status != GONIO_OK || strncasecmp(text, "sep=", 4) == 0) {
         return RUN_KNOWN;
@@ -242,13 +253,19 @@ static void give_to_wanted(run *r, size_t number)
     w->row = number;
 }
 
+/* Whether a clock without a date passed midnight between two times. */
+static bool passes_midnight(double before, double after)
+{
+    return before < DAY && after >= 0.0 && before - after > DAY / 2.0;
+}
+
 static void note_time(run *r, const run_row *row)
 {
     double latest = NAN;
     for (size_t k = r->rows; k > 0 && isnan(latest); k--) {
         latest = r->row[k - 1].time;
     }
-    r->backwards += row->time < latest;
+    r->backwards += row->time < latest && !passes_midnight(latest, row->time);
 }
 
 static run_fate take_row(run *r, size_t line, double seconds, const char *text,
