@@ -40,7 +40,8 @@ readings = readings.less_blank(blank, noise=rig.noise, floor=rig.floor)
 made = gonio.reconstruct(basis, readings, noise=rig.noise, floor=rig.floor)
 print(made)
 energy, std = made.reflectance(np.radians([0.0, 30.0, 60.0]))
-print("reflectance of green at 0, 30 and 60 degrees:", *(f"{e:.3f} +- {s:.3f}" for e, s in zip(energy[:, 1], std[:, 1])))
+print("reflectance of green at 0, 30 and 60 degrees:",
+      ", ".join(f"{e:.3f} +- {s:.3f}" for e, s in zip(energy[:, 1], std[:, 1])))
 wi, wo = gonio.directions(np.radians(45.0)), gonio.directions(np.radians([45.0, 85.0]), np.pi)
 low, high = made.interval(wi, wo)
 for angle, can, a, b in zip((45, 85), rig.reaches(wi, wo), low[:, 1], high[:, 1]):
