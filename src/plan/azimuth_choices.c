@@ -217,53 +217,6 @@ static gonio_status factorise(maker *m)
     return status;
 }
 
-/* ---- after readings ---- */
-
-/* b = f_R' L'^-1 [components][n], L L' = f_R f_R' + sigma^2 I. */
-static gonio_status explain(const gonio_i_choices *p, double *f, double *s, double *b)
-{
-    const size_t k = p->components;
-    const size_t n = p->known->count;
-    for (size_t i = 0; i < n * k; i++) {
-        f[i] = (double)p->f[(p->rows - n) * k + i];
-        b[i % k * n + i / k] = f[i];
-    }
-    gonio_status status = gonio_i_product_transposed(p->context, f, n, k, f, n, s, n);
-    for (size_t i = 0; i < n; i++) {
-        s[i * n + i] += p->noise * p->noise;
-    }
-    if (status == GONIO_OK) {
-        status = gonio_i_cholesky(p->context, s, n);
-    }
-    if (status == GONIO_OK) {
-        gonio_i_divide_triangle(b, k, n, s);
-    }
-    return status;
-}
-
-static gonio_status find_covariance(gonio_i_choices *p)
-{
-    const size_t k = p->components;
-    const size_t n = p->known->count;
-    double *f = gonio_i_allocate(p->context, n * k, sizeof *f);
-    double *s = gonio_i_allocate(p->context, n * n, sizeof *s);
-    double *b = gonio_i_allocate(p->context, k * n, sizeof *b);
-    p->own_covariance = gonio_i_allocate(p->context, k * k, sizeof *p->own_covariance);
-    const bool done = f != NULL && s != NULL && b != NULL && p->own_covariance != NULL;
-    gonio_status status = done ? explain(p, f, s, b) : GONIO_ERROR_MEMORY;
-    if (status == GONIO_OK) {
-        status = gonio_i_product_transposed(p->context, b, k, n, b, k, p->own_covariance, k);
-    }
-    for (size_t i = 0; i < k * k && status == GONIO_OK; i++) {
-        p->own_covariance[i] = (i % (k + 1) == 0 ? 1.0 : 0.0) - p->own_covariance[i];
-    }
-    p->covariance = p->own_covariance;
-    free(f);
-    free(s);
-    free(b);
-    return status;
-}
-
 /* ---- all of it ---- */
 
 static gonio_status allocate(maker *m)
@@ -315,7 +268,7 @@ gonio_status gonio_i_choices_of_azimuths(gonio_i_choices *p, const gonio_plan_op
         status = factorise(&m);
     }
     if (status == GONIO_OK && p->known != NULL) {
-        status = find_covariance(p);
+        status = gonio_i_choices_after_readings(p);
     }
     release(&m);
     return status;

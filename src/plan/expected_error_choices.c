@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../linalg/linalg.h"
 #include "../metric/metric.h"
+#include "../prior/after_readings.h"
 
 /* Standard deviation of a reading, log units: noise and the error of the model near the reading.
  * Chosen by errors of left-out materials: with 0.03 or 0.05 plans trust single readings too much.
@@ -213,51 +213,91 @@ static int compare_named(const void *a, const void *b)
  * normal. */
 static gonio_status allow_once(gonio_i_choices *p, const gonio_plan_options *options)
 {
-    named_pair *named = gonio_i_allocate(p->context, p->rows, sizeof *named);
+    named_pair *named = gonio_i_allocate(p->context, options->candidate_count, sizeof *named);
     if (named == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    for (size_t k = 0; k < p->rows; k++) {
+    for (size_t k = 0; k < options->candidate_count; k++) {
         const gonio_pair *pair = &options->candidates[k];
         named[k] = (named_pair){{pair->incident.theta, azimuth_of(pair->incident),
                                  pair->outgoing.theta, azimuth_of(pair->outgoing)},
                                 k};
     }
-    qsort(named, p->rows, sizeof *named, compare_named);
-    for (size_t k = 0; k < p->rows; k++) {
+    qsort(named, options->candidate_count, sizeof *named, compare_named);
+    for (size_t k = 0; k < options->candidate_count; k++) {
         p->allowed[named[k].candidate] = k == 0 || compare_angles(&named[k], &named[k - 1]) != 0;
     }
     free(named);
     return GONIO_OK;
 }
 
-gonio_status gonio_i_choices_of_candidates(gonio_i_choices *p, const gonio_plan_options *options)
+/* Row `row`, a candidate or, after them, a direction that was read. f: scratch, [K]. */
+static void list_candidate(gonio_i_choices *p, const gonio_plan_options *options, size_t row,
+                           double *f, float *to)
 {
-    const size_t most = p->known != NULL ? p->prior->components : MOST_RANK;
-    p->rows = options->candidate_count;
-    p->noise = p->known != NULL ? gonio_i_noise_of_readings : NOISE_BESIDE_REMAINDER;
-    p->components = p->known != NULL || p->rows > most ? most : p->rows;
-    const size_t components = p->prior->components;
-    float *f = gonio_i_allocate(p->context, p->rows * components, sizeof *f);
-    double *exact = gonio_i_allocate(p->context, components, sizeof *exact);
+    const size_t candidates = options->candidate_count;
+    const bool candidate = row < candidates;
+    p->at[row] = candidate ? gonio_half_difference_from_pair(options->candidates[row])
+                           : p->known->read[row - candidates];
+    gonio_i_prior_at(p->prior, p->at[row], 0, &p->mean[row], f);
+    to_float(f, p->prior->components, to);
+    p->loss[row] = candidate ? metric_weight(options->metric, p->at[row], p->mean[row], 0) : 0.0;
+}
+
+static gonio_status list_candidates(gonio_i_choices *p, const gonio_plan_options *options,
+                                    bool remainder)
+{
+    const size_t k = p->prior->components;
+    float *f = gonio_i_allocate(p->context, p->rows * k, sizeof *f);
+    double *exact = gonio_i_allocate(p->context, k, sizeof *exact);
     gonio_status status =
         f == NULL || exact == NULL ? GONIO_ERROR_MEMORY : gonio_i_choices_allocate(p);
-    for (size_t k = 0; k < p->rows && status == GONIO_OK; k++) {
-        p->at[k] = gonio_half_difference_from_pair(options->candidates[k]);
-        gonio_i_prior_at(p->prior, p->at[k], 0, &p->mean[k], exact);
-        to_float(exact, components, f + k * components);
-        p->loss[k] = metric_weight(options->metric, p->at[k], p->mean[k], 0);
+    for (size_t row = 0; row < p->rows && status == GONIO_OK; row++) {
+        list_candidate(p, options, row, exact, f + row * k);
     }
-    if (status == GONIO_OK) {
-        status = allow_once(p, options);
-    }
-    if (status == GONIO_OK && p->known != NULL) {
-        memcpy(p->f, f, p->rows * p->components * sizeof *f);
+    if (status == GONIO_OK && !remainder) {
+        memcpy(p->f, f, p->rows * k * sizeof *f);
     } else if (status == GONIO_OK) {
         status = factorise_candidates(p, f);
     }
     free(f);
     free(exact);
+    return status;
+}
+
+gonio_status gonio_i_choices_of_candidates(gonio_i_choices *p, const gonio_plan_options *options)
+{
+    const bool unlike = p->known != NULL && p->known->unlike;
+    const bool remainder = p->known == NULL || unlike;
+    p->rows = options->candidate_count + (unlike ? p->known->count : 0);
+    p->noise = remainder ? NOISE_BESIDE_REMAINDER : gonio_i_noise_of_readings;
+    p->components = !remainder ? p->prior->components : p->rows > MOST_RANK ? MOST_RANK : p->rows;
+    gonio_status status = list_candidates(p, options, remainder);
+    if (status == GONIO_OK) {
+        status = allow_once(p, options);
+    }
+    if (status == GONIO_OK && unlike) {
+        status = gonio_i_choices_after_readings(p);
+    }
+    return status;
+}
+
+gonio_status gonio_i_choices_after_readings(gonio_i_choices *p)
+{
+    const size_t k = p->components;
+    const size_t n = p->known->count;
+    const float *read = p->f + (p->rows - n) * k;
+    double *f = gonio_i_allocate(p->context, n * k, sizeof *f);
+    p->own_covariance = gonio_i_allocate(p->context, k * k, sizeof *p->own_covariance);
+    const bool done = f != NULL && p->own_covariance != NULL;
+    for (size_t i = 0; done && i < n * k; i++) {
+        f[i] = (double)read[i];
+    }
+    const gonio_status status =
+        done ? gonio_i_covariance_after(p->context, f, n, k, p->noise * p->noise, p->own_covariance)
+             : GONIO_ERROR_MEMORY;
+    p->covariance = p->own_covariance;
+    free(f);
     return status;
 }
 

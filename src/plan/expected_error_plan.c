@@ -37,7 +37,7 @@ static gonio_status choose_count(gonio_context *context, const gonio_i_choices *
     const size_t allowed = gonio_i_choices_count(p);
     const bool usual = options->count == GONIO_USUAL_COUNT;
     const size_t asked = usual ? GONIO_I_USUAL_NEXT : options->count;
-    const bool all_of_file = options->candidates != NULL && asked == p->rows;
+    const bool all_of_file = options->candidates != NULL && asked == options->candidate_count;
     *count = asked < allowed ? asked : allowed;
     if (*count == 0 || (asked > allowed && options->target == 0.0 && !all_of_file && !usual)) {
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,

@@ -11,10 +11,10 @@
 #include <stdlib.h>
 
 #include "../core/options.h"
-#include "../linalg/linalg.h"
 #include "../measurement/readings.h"
 #include "../plan/expected_error_plan.h"
 #include "../posterior/interpret.h"
+#include "../prior/after_readings.h"
 #include "anisotropic.h"
 #include "method.h"
 #include "posterior_method.h"
@@ -98,52 +98,22 @@ static gonio_status find_posterior(next *n, const gonio_reconstruct_options *opt
     return status;
 }
 
-/* b = f' L'^-1 [K][n] for f[n][K] of what was read, L L' = f f' + the variance of readings. */
-static gonio_status explain_readings(const next *n, double *f, double *s, double *b)
+/* The covariance of z after what was read, whatever its values are. */
+static gonio_status forget_values(next *n)
 {
     const size_t k = n->view->components;
     const size_t count = n->readings->count;
-    for (size_t i = 0; i < count; i++) {
+    double *f = gonio_i_allocate(n->context, count * k, sizeof *f);
+    for (size_t i = 0; i < count && f != NULL; i++) {
         double mean = 0.0;
         gonio_i_prior_at(n->prior, n->read[i], 0, &mean, f + i * k);
     }
-    gonio_status status = gonio_i_product_transposed(n->context, f, count, k, f, count, s, count);
-    for (size_t i = 0; i < count; i++) {
-        s[i * count + i] += PLANNED_DEVIATION * PLANNED_DEVIATION;
-        for (size_t j = 0; j < k; j++) {
-            b[j * count + i] = f[i * k + j];
-        }
-    }
-    if (status == GONIO_OK) {
-        status = gonio_i_cholesky(n->context, s, count);
-    }
-    if (status == GONIO_OK) {
-        gonio_i_divide_triangle(b, k, count, s);
-    }
-    return status;
-}
-
-/* The covariance of z after what was read, whatever its values are: I - b b'. */
-static gonio_status forget_values(next *n)
-{
-    gonio_context *c = n->context;
-    const size_t k = n->view->components;
-    const size_t count = n->readings->count;
-    double *covariance = n->posterior.covariance;
-    double *f = gonio_i_allocate(c, count * k, sizeof *f);
-    double *s = gonio_i_allocate(c, count * count, sizeof *s);
-    double *b = gonio_i_allocate(c, k * count, sizeof *b);
-    gonio_status status =
-        f == NULL || s == NULL || b == NULL ? GONIO_ERROR_MEMORY : explain_readings(n, f, s, b);
-    if (status == GONIO_OK) {
-        status = gonio_i_product_transposed(c, b, k, count, b, k, covariance, k);
-    }
-    for (size_t i = 0; i < k * k && status == GONIO_OK; i++) {
-        covariance[i] = (i % (k + 1) == 0 ? 1.0 : 0.0) - covariance[i];
-    }
+    const gonio_status status =
+        f == NULL ? GONIO_ERROR_MEMORY
+                  : gonio_i_covariance_after(n->context, f, count, k,
+                                             PLANNED_DEVIATION * PLANNED_DEVIATION,
+                                             n->posterior.covariance);
     free(f);
-    free(s);
-    free(b);
     return status;
 }
 
@@ -157,6 +127,7 @@ static gonio_status plan_more(const next *n, const gonio_plan_options *options, 
     const gonio_i_known known = {.covariance = n->posterior.covariance,
                                  .read = n->read,
                                  .count = n->readings->count,
+                                 .unlike = is_unlike(n),
                                  .expected = n->posterior.predicted,
                                  .variance = n->posterior.predicted_by_variance,
                                  .norm = n->posterior.norm};

@@ -8,7 +8,9 @@
 
 #include "../unit/made_basis.h"
 #include "core/random.h"
+#include "plan/expected_error_choices.h"
 #include "plan/expected_error_search.h"
+#include "prior/after_readings.h"
 
 /* Where threads are not the question: on so small problems they would only wait for each other. */
 static gonio_context *one_thread;
@@ -467,6 +469,81 @@ static void test_methods(void **state)
     assert_string_equal(gonio_plan_method_reconstruction("condition"), "least-squares");
 }
 
+/* I - f' (f f' + v I)^-1 f is (I + f' f / v)^-1. */
+static void test_covariance_after_readings(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 0; seed < 20; seed++) {
+        const problem p = make_problem(2 + seed, MOST_K, seed);
+        double f[MOST_ROWS * MOST_K];
+        double covariance[MOST_K * MOST_K];
+        long double direct[MOST_K * MOST_K];
+        for (size_t i = 0; i < p.rows * p.k; i++) {
+            f[i] = (double)p.f[i];
+        }
+        for (size_t a = 0; a < p.k * p.k; a++) {
+            direct[a] = a % (p.k + 1) == 0 ? 1.0L : 0.0L;
+            for (size_t i = 0; i < p.rows; i++) {
+                direct[a] += (long double)f[i * p.k + a / p.k] * f[i * p.k + a % p.k] / p.variance;
+            }
+        }
+        invert(direct, p.k);
+        assert_int_equal(
+            gonio_i_covariance_after(one_thread, f, p.rows, p.k, p.variance, covariance), GONIO_OK);
+        for (size_t a = 0; a < p.k * p.k; a++) {
+            assert_true(fabs(covariance[a] - (double)direct[a]) < 1e-10);
+        }
+    }
+}
+
+static double variance_at(const gonio_i_choices *p, size_t row)
+{
+    const size_t k = p->components;
+    const float *f = p->f + row * k;
+    double sum = 0.0;
+    for (size_t a = 0; a < k; a++) {
+        for (size_t b = 0; b < k && p->covariance != NULL; b++) {
+            sum += (double)f[a] * p->covariance[a * k + b] * (double)f[b];
+        }
+        sum += p->covariance == NULL ? (double)f[a] * (double)f[a] : 0.0;
+    }
+    return sum;
+}
+
+/* After readings of a material that is unlike the database, the choices are those of a plan, with
+ * the remainder, of which less is left near what was read. */
+static void test_after_readings_of_an_unlike_material(void **state)
+{
+    (void)state;
+    gonio_pair pairs[CANDIDATES];
+    make_candidates(pairs);
+    const gonio_half_difference read[2] = {gonio_half_difference_from_pair(pairs[0]),
+                                           gonio_half_difference_from_pair(pairs[7])};
+    const gonio_i_known known = {.read = read, .count = 2, .unlike = true};
+    gonio_plan_options options = options_for(4);
+    options.candidates = pairs;
+    options.candidate_count = CANDIDATES;
+    gonio_i_choices before = {.context = one_thread};
+    gonio_i_choices after = {.context = one_thread, .known = &known};
+    assert_int_equal(gonio_i_prior_create(one_thread, basis, &before.prior), GONIO_OK);
+    assert_int_equal(gonio_i_prior_create(one_thread, basis, &after.prior), GONIO_OK);
+    assert_int_equal(gonio_i_choices_of_candidates(&before, &options), GONIO_OK);
+    assert_int_equal(gonio_i_choices_of_candidates(&after, &options), GONIO_OK);
+    assert_int_equal(gonio_i_choices_leave_out_read(&after), GONIO_OK);
+    assert_int_equal(after.rows, CANDIDATES + 2);
+    assert_false(after.allowed[0] || after.allowed[7] || after.allowed[CANDIDATES] ||
+                 after.allowed[CANDIDATES + 1]);
+    const double noise = before.noise * before.noise;
+    for (size_t row = 0; row < CANDIDATES; row++) {
+        const double prior = variance_at(&before, row);
+        const double left = variance_at(&after, row);
+        assert_true(left <= prior * (1.0 + 1e-3) && left > 0.0);
+        assert_true((row != 0 && row != 7) || left <= noise);
+    }
+    gonio_i_choices_free(&before);
+    gonio_i_choices_free(&after);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -479,6 +556,8 @@ int main(void)
         cmocka_unit_test(test_metrics_differ),
         cmocka_unit_test(test_the_fewest_readings_for_a_target),
         cmocka_unit_test(test_candidates),
+        cmocka_unit_test(test_covariance_after_readings),
+        cmocka_unit_test(test_after_readings_of_an_unlike_material),
         cmocka_unit_test(test_methods),
     };
     return cmocka_run_group_tests_name("expected error", tests, set_up, tear_down);
