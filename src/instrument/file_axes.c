@@ -240,13 +240,23 @@ static gonio_status read_table_file(const gonio_i_place *place, const char *path
     return status;
 }
 
+/* Whether a name stays in the folder of the file that names it, or below. */
+static bool stays_beside(const char *name)
+{
+    bool stays = *name != '/' && *name != '\0';
+    for (const char *part = name; part != NULL && stays; part = strchr(part, '/')) {
+        part += *part == '/' ? 1 : 0;
+        stays = strncmp(part, "..", 2) != 0 || (part[2] != '/' && part[2] != '\0');
+    }
+    return stays;
+}
+
 /* The path of a file that an instrument file names: beside it. */
 static char *path_beside(const char *file, const char *name)
 {
     const char *slash = strrchr(file, '/');
-    return *name == '/' || slash == NULL
-               ? gonio_i_format("%s", name)
-               : gonio_i_format("%.*s/%s", (int)(slash - file), file, name);
+    return slash == NULL ? gonio_i_format("%s", name)
+                         : gonio_i_format("%.*s/%s", (int)(slash - file), file, name);
 }
 
 static gonio_status read_rows(const gonio_i_place *file, const json_t *root, size_t columns,
@@ -255,6 +265,10 @@ static gonio_status read_rows(const gonio_i_place *file, const json_t *root, siz
     const json_t *directions = json_object_get(root, "directions");
     if (!json_is_string(directions)) {
         return gonio_i_read_numbers(file, root, "directions", columns, numbers, rows);
+    }
+    if (!stays_beside(json_string_value(directions))) {
+        return gonio_i_fail_at(file, "directions", "'%s' is not a name of a file beside this one",
+                               json_string_value(directions));
     }
     char *path = path_beside(file->file, json_string_value(directions));
     const gonio_status status =

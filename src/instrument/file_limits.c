@@ -8,7 +8,7 @@
 
 #define DEGREE (M_PI / 180.0)
 
-enum { ROOM = 96 };
+enum { ROOM = 96, MOST_ZONES = 256 };
 
 /* The name of a range's quantity: of the list, or of an axis; NULL if there is none. */
 static const char *quantity_of(const gonio_instrument *instrument, const char *key)
@@ -169,6 +169,9 @@ gonio_status gonio_i_read_limits(const gonio_i_place *place, const json_t *root,
     gonio_instrument_view *view = &instrument->view;
     if (zones != NULL && !json_is_array(zones)) {
         return gonio_i_fail_at(place, "forbidden", "this is no array [...]");
+    }
+    if (json_array_size(zones) > MOST_ZONES) {
+        return gonio_i_fail_at(place, "forbidden", "more than %d zones", MOST_ZONES);
     }
     gonio_status status = allocate(place->context, limits, zones, instrument);
     if (status == GONIO_OK && limits != NULL) {

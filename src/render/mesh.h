@@ -46,8 +46,9 @@ gonio_status gonio_i_read_ply(gonio_i_mesh_making *making, const gonio_i_bytes *
 gonio_status gonio_i_mesh_flat(gonio_context *context, gonio_mesh **mesh);
 
 /* Makes normals for a mesh without. The normal at a corner of a triangle is the mean, weighted by
- * area, of the faces around the corner that are within 50 degrees of the triangle. Corners are no
- * longer shared afterwards. Errors: _MEMORY. */
+ * area, of the faces around the corner that are within 50 degrees of the triangle; that of the
+ * triangle alone where tens of thousands of triangles meet at a corner, which would take too long.
+ * Corners are no longer shared afterwards. Errors: _MEMORY. */
 gonio_status gonio_i_mesh_make_normals(gonio_context *context, gonio_mesh *mesh);
 
 #endif

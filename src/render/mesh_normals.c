@@ -9,11 +9,18 @@
 /* Faces that meet at more than 50 degrees do not share a normal. */
 static const double crease = 0.6427876096865393; /* its cosine */
 
+/* A corner of more triangles than this is crowded; comparisons at all crowded ones: a second or
+ * two.
+ */
+enum { CROWDED = 64 };
+static const size_t patience = 200000000;
+
 /* The triangles around each corner c: triangle[first[c]] .. triangle[first[c + 1] - 1]. */
 typedef struct neighbours {
     size_t *first;      /* [corners + 1] */
     uint32_t *triangle; /* [3 triangles] */
     double *face;       /* [triangles][3]: normals as long as twice the area */
+    size_t comparisons; /* so far, at crowded corners */
 } neighbours;
 
 static void free_neighbours(neighbours *n)
@@ -63,11 +70,20 @@ static gonio_status find_neighbours(gonio_context *context, const gonio_mesh *me
     return GONIO_OK;
 }
 
-static void mean_normal(const neighbours *n, size_t triangle, uint32_t corner, float normal[3])
+/* Whether faces around the corner can still be compared with each other. */
+static bool is_patient(neighbours *n, uint32_t corner)
+{
+    const size_t around = n->first[corner + 1] - n->first[corner];
+    n->comparisons += around > CROWDED ? around : 0;
+    return around <= CROWDED || n->comparisons <= patience;
+}
+
+static void mean_normal(neighbours *n, size_t triangle, uint32_t corner, float normal[3])
 {
     const double *own = n->face + 3 * triangle;
-    double sum[3] = {0.0, 0.0, 0.0};
-    for (size_t k = n->first[corner]; k < n->first[corner + 1]; k++) {
+    const bool alone = !is_patient(n, corner);
+    double sum[3] = {alone ? own[0] : 0.0, alone ? own[1] : 0.0, alone ? own[2] : 0.0};
+    for (size_t k = n->first[corner]; k < n->first[corner + 1] && !alone; k++) {
         const double *other = n->face + 3 * (size_t)n->triangle[k];
         const double lengths = gonio_i_length(own) * gonio_i_length(other);
         if (gonio_i_dot3(own, other) >= crease * lengths) {

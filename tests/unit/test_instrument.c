@@ -66,6 +66,9 @@ static void test_builtin_instruments(void **state)
     "\"axes\": {\"incidence\": {\"from_deg\": 0, \"to_deg\": 80}, "                                \
     "\"detector\": {\"from_deg\": -80, \"to_deg\": 80}}"
 
+#define SIXTEEN "0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,"
+#define SIXTY_FOUR SIXTEEN SIXTEEN SIXTEEN SIXTEEN
+
 static const struct {
     const char *text; /* without the braces and the version */
     gonio_status status;
@@ -127,6 +130,12 @@ static const struct {
     {"\"kinematics\": \"table\", \"directions\": [[1, 2, 95, 4]]", GONIO_ERROR_FORMAT,
      "directions: entry 1 is at or below the horizon"},
     {"\"kinematics\": \"table\", \"directions\": \"none.csv\"", GONIO_ERROR_IO, "none.csv"},
+    {"\"kinematics\": \"table\", \"directions\": \"/dev/zero\"", GONIO_ERROR_FORMAT,
+     "directions: '/dev/zero' is not a name of a file beside this one"},
+    {"\"kinematics\": \"table\", \"directions\": \"a/../../b.csv\"", GONIO_ERROR_FORMAT,
+     "directions: 'a/../../b.csv' is not a name"},
+    {IN_PLANE AXES ", \"forbidden\": [" SIXTY_FOUR SIXTY_FOUR SIXTY_FOUR SIXTY_FOUR "0]",
+     GONIO_ERROR_FORMAT, "forbidden: more than 256 zones"},
 };
 
 static void test_mistakes_name_the_key(void **state)

@@ -4,6 +4,7 @@
 #include <gonio/gonio.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "render/mesh.h"
@@ -53,6 +54,31 @@ static void small_objs_are_read(void **state)
     assert_true(gonio_mesh_corners(mesh) >= 4);
     gonio_mesh_free(&mesh);
     assert_int_equal(read_mesh("v 0 0 0\nmtllib 0\nmap_Pr", 23, &mesh), GONIO_ERROR_DATA);
+}
+
+/* Where a great many triangles share corners, each keeps its own normal: comparing all of them with
+ * each other would take minutes. */
+static void crowded_corners_are_read(void **state)
+{
+    (void)state;
+    enum { FACES = 20000, LINE = 8 };
+    static const char head[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 1 0.5\n";
+    const size_t size = sizeof head - 1 + (size_t)(FACES + 1) * LINE;
+    char *obj = malloc(size + 1);
+    gonio_mesh *mesh = NULL;
+    assert_non_null(obj);
+    strcpy(obj, head);
+    for (size_t k = 0; k < FACES; k++) {
+        strcpy(obj + sizeof head - 1 + k * LINE, "f 1 2 3\n");
+    }
+    strcpy(obj + size - LINE, "f 1 2 4\n");
+    assert_int_equal(read_mesh(obj, size, &mesh), GONIO_OK);
+    free(obj);
+    const float *last = mesh->normal + 9 * (size_t)FACES;
+    assert_true(fabsf(mesh->normal[2] - 1.0F) < 1e-3F);
+    assert_true(fabsf(last[1] + 0.447214F) < 1e-5F);
+    assert_true(fabsf(last[2] - 0.894427F) < 1e-5F);
+    gonio_mesh_free(&mesh);
 }
 
 static double area_of(const gonio_mesh *mesh)
@@ -173,11 +199,9 @@ static void damaged_meshes_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(meshes_are_read),
-        cmocka_unit_test(small_objs_are_read),
-        cmocka_unit_test(objs_of_all_kinds_are_read),
-        cmocka_unit_test(concave_faces_are_covered),
-        cmocka_unit_test(damaged_meshes_are_refused),
+        cmocka_unit_test(meshes_are_read),           cmocka_unit_test(small_objs_are_read),
+        cmocka_unit_test(crowded_corners_are_read),  cmocka_unit_test(objs_of_all_kinds_are_read),
+        cmocka_unit_test(concave_faces_are_covered), cmocka_unit_test(damaged_meshes_are_refused),
     };
     return cmocka_run_group_tests(tests, begin, end);
 }
