@@ -281,6 +281,8 @@ GONIO_API gonio_status gonio_readings_share_channels(gonio_context *context, gon
 typedef struct gonio_alternative {
     const char *mistake; /* "the values are in per cent; divide them by 100"; static */
     double albedo;       /* that the readings have then, in the brightest channel */
+    double margin;       /* ln of how many times as well it explains the readings, extremes limited;
+                          * 0 for units, which are judged by the albedo */
 } gonio_alternative;
 
 enum { GONIO_MOST_ALTERNATIVES = 4, GONIO_MOST_UNMEASURED_LINES = 8 };
@@ -300,7 +302,9 @@ typedef struct gonio_interpretation {
     bool anisotropic;    /* they differ by far more than readings of an isotropic material do, or
                           * anisotropy_evidence says so */
     double anisotropy_evidence; /* ln of the odds that the material is anisotropic, if the readings
-                                 * are at several turns of the sample; 0 where it was not weighed */
+                                 * are at several turns of the sample; 0 where it was not weighed.
+                                 * If a mistake in directions explains far more, `anisotropic` is
+                                 * false all the same; otherwise no such mistake is told */
 } gonio_interpretation;
 
 /* ---- the simulated instrument ---- */

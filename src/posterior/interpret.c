@@ -16,6 +16,10 @@ static const double ANISOTROPIC = 0.25;
 /* ln of the odds from which a material is said to be anisotropic: isotropic ones stay below. */
 static const double EVIDENT = 5.0;
 
+/* A mistake in directions explains what anisotropy explains if its margin is larger by this. Of 40
+ * readings with wrong azimuths it was 4.6 times the evidence and more, of right ones 1.4 times. */
+static const double FAR_BETTER = 2.5;
+
 enum { ENOUGH_TURNED = 5, ENOUGH_READINGS = 10 };
 
 static gonio_status look_at_turned(gonio_context *context, const gonio_readings *readings,
@@ -76,6 +80,49 @@ static gonio_status weigh_anisotropy(gonio_context *context, const gonio_i_prior
     return status;
 }
 
+/* The evidence that is left if directions are changed as a mistake does. */
+static gonio_status weigh_changed(gonio_context *context, const gonio_i_prior *prior,
+                                  const gonio_readings *readings, const gonio_i_columns *columns,
+                                  gonio_i_change change, double *evidence)
+{
+    gonio_pair *pair = gonio_i_allocate(context, readings->count, sizeof *pair);
+    if (pair == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    for (size_t k = 0; k < readings->count; k++) {
+        pair[k] = change(readings->pair[k]);
+    }
+    const gonio_i_oriented_columns oriented = {prior, pair, columns->column, columns->count, 0};
+    const gonio_status status = gonio_i_stretches_notice(context, &oriented, evidence);
+    free(pair);
+    return status;
+}
+
+/* Both wrong azimuths and anisotropy explain readings at several turns that do not fit. A mistake
+ * in directions is one if it explains far more, and leaves the material isotropic; then it is all.
+ */
+static gonio_status decide(gonio_context *context, const gonio_i_prior *prior,
+                           const gonio_readings *readings, const gonio_i_columns *columns,
+                           gonio_interpretation *i)
+{
+    gonio_status status = GONIO_OK;
+    size_t kept = 0;
+    for (size_t k = 0; k < i->alternatives && status == GONIO_OK; k++) {
+        const gonio_i_change change = gonio_i_mistake_change(i->alternative[k].mistake);
+        double evidence = 0.0;
+        if (change != NULL) {
+            status = weigh_changed(context, prior, readings, columns, change, &evidence);
+        }
+        if (change == NULL || (evidence <= EVIDENT &&
+                               i->alternative[k].margin > FAR_BETTER * i->anisotropy_evidence)) {
+            i->anisotropic = i->anisotropic && change == NULL;
+            i->alternative[kept++] = i->alternative[k];
+        }
+    }
+    i->alternatives = kept;
+    return status;
+}
+
 gonio_status gonio_i_interpret(gonio_context *context, const gonio_i_prior *prior,
                                const gonio_readings *readings, const gonio_i_noise *noise,
                                gonio_i_columns *columns, gonio_interpretation *interpretation,
@@ -95,6 +142,11 @@ gonio_status gonio_i_interpret(gonio_context *context, const gonio_i_prior *prio
         *dark = NULL;
         correct(readings, noise, NULL, columns);
     }
-    return status == GONIO_OK ? weigh_anisotropy(context, prior, readings, columns, interpretation)
-                              : status;
+    if (status == GONIO_OK) {
+        status = weigh_anisotropy(context, prior, readings, columns, interpretation);
+    }
+    return status == GONIO_OK && interpretation->anisotropic &&
+                   interpretation->anisotropy_evidence > EVIDENT
+               ? decide(context, prior, readings, columns, interpretation)
+               : status;
 }

@@ -118,6 +118,16 @@ enum {
     ANGLES_COUNT = sizeof ANGLES / sizeof *ANGLES,
 };
 
+gonio_i_change gonio_i_mistake_change(const char *mistake)
+{
+    for (int k = 0; k < ANGLES_COUNT; k++) {
+        if (ANGLES[k].name == mistake) {
+            return ANGLES[k].transform.change;
+        }
+    }
+    return NULL;
+}
+
 /* A hypothesis that has been tried. */
 typedef struct tried {
     const hypothesis *hypothesis;
@@ -184,7 +194,8 @@ static void offer(search *s, tried *all, size_t count, double similar)
     for (size_t k = 0; k < count && found->alternatives < GONIO_MOST_ALTERNATIVES; k++) {
         if (all[k].worth > -INFINITY && all[k].worth >= all[0].worth - similar) {
             found->alternative[found->alternatives++] =
-                (gonio_alternative){all[k].hypothesis->name, all[k].largest};
+                (gonio_alternative){all[k].hypothesis->name, all[k].largest,
+                                    all[k].hypothesis->convincing > 0.0 ? all[k].worth : 0.0};
         }
     }
 }

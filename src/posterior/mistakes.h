@@ -12,4 +12,8 @@ gonio_status gonio_i_mistakes_find(gonio_context *context, const gonio_i_prior *
                                    const gonio_i_columns *columns, const double *dark,
                                    gonio_interpretation *interpretation);
 
+/* How a mistake, as an alternative names it, changes directions; NULL: it does not. */
+typedef gonio_pair (*gonio_i_change)(gonio_pair pair);
+gonio_i_change gonio_i_mistake_change(const char *mistake);
+
 #endif
