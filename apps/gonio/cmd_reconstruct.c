@@ -24,6 +24,8 @@ typedef struct options {
     posterior_options posterior;
     correction_options corrections;
     const char *albedo_at;
+    const char *aperture;
+    double half_angle[2];           /* of detector and light, degrees; of aperture */
     tool_reflectances reflectances; /* of albedo_at */
     const char *predict_at;
     int bands;
@@ -328,7 +330,11 @@ static gonio_status reconstruct_one(tool *t, const options *o, const gonio_basis
     const gonio_reconstruct_options how = settings(o);
     gonio_reconstruction *made = NULL;
     gonio_material *material = NULL;
-    gonio_status status = gonio_reconstruct(t->context, basis, readings, &how, &made);
+    gonio_status status = o->aperture != NULL
+                              ? gonio_reconstruct_aperture(t->context, basis, readings, &how,
+                                                           o->half_angle[1] * M_PI / 180.0,
+                                                           o->half_angle[0] * M_PI / 180.0, &made)
+                              : gonio_reconstruct(t->context, basis, readings, &how, &made);
     if (status == GONIO_OK && o->predict_at == NULL) {
         status = open_made(t, o, basis, made, output, &material);
     }
@@ -363,7 +369,7 @@ static gonio_status reconstruct(tool *t, const options *o, const gonio_basis *ba
     if (o->anisotropic) {
         return reconstruct_anisotropic(t, o, basis, readings, outputs, count, results);
     }
-    bool merl = o->predict_at == NULL && o->deviation == NULL;
+    bool merl = o->predict_at == NULL && o->deviation == NULL && o->aperture == NULL;
     for (size_t k = 0; k < count; k++) {
         merl = merl && is_merl(o, outputs[k]);
     }
@@ -528,6 +534,30 @@ static bool check(const tool *t, const options *o, const char *const *inputs, si
            posterior_options_check(t, &o->posterior) && check_more(t, o, inputs, count);
 }
 
+/* Reads "2" or "2,0.2": the half angles of detector and light. */
+static bool check_aperture(const tool *t, options *o)
+{
+    char *end = NULL;
+    if (o->aperture == NULL) {
+        return true;
+    }
+    o->half_angle[0] = strtod(o->aperture, &end);
+    bool valid = end > o->aperture;
+    if (*end == ',') {
+        const char *second = end + 1;
+        o->half_angle[1] = strtod(second, &end);
+        valid = valid && end > second;
+    }
+    for (int k = 0; k < 2; k++) {
+        valid = valid && o->half_angle[k] >= 0.0 && o->half_angle[k] < 45.0;
+    }
+    return (valid && *end == '\0') ||
+           tool_refuse(t,
+                       "--aperture: '%s' is not a half angle of the detector, or of detector and "
+                       "light (2,0.2), from 0 to below 45 degrees",
+                       o->aperture);
+}
+
 static bool check_outputs(const tool *t, const char *const *inputs, size_t count,
                           const char *const *paths, char *const *outputs, size_t outputs_count)
 {
@@ -552,7 +582,7 @@ static int run(tool *t, void *given)
     options *o = given;
     size_t count = 0;
     const char **arguments = tool_arguments(t, &count);
-    if (!check(t, o, arguments, count) ||
+    if (!check(t, o, arguments, count) || !check_aperture(t, o) ||
         !tool_check_albedo_at(t, o->albedo_at, &o->reflectances) ||
         !write_options_check(t, &o->write, &o->how)) {
         return EXIT_USAGE;
@@ -602,6 +632,10 @@ int cmd_reconstruct(int argc, const char **argv)
          "Use every channel that was read, not only the planned one", NULL},
         POSTERIOR_OPTIONS(&o.posterior),
         CORRECTION_OPTIONS(&o.corrections),
+        {"aperture", '\0', POPT_ARG_STRING, &o.aperture, 0,
+         "Half angle of the detector's aperture in degrees, or of detector and light: each reading "
+         "is the mean over them (posterior)",
+         "DEGREES"},
         TOOL_ALBEDO_AT(&o.albedo_at),
         {"deviation", '\0', POPT_ARG_STRING, &o.deviation, 0,
          "Also write the standard deviation of ln(1 + rho/s), as a table (posterior)", "FILE"},

@@ -124,6 +124,18 @@ GONIO_API gonio_status gonio_reconstruct(gonio_context *context, const gonio_bas
                                          const gonio_reconstruct_options *options,
                                          gonio_reconstruction **reconstruction);
 
+/* The same by posterior of readings through apertures: each is the mean of the BRDF over the
+ * apertures of light and detector, half angles in radians, 0 for a point. Where a lobe is narrower
+ * than an aperture, its peak is read too low, and what is beside it too high. Readings are
+ * corrected by what reconstructions from them say of this, until nothing changes. Takes up to seven
+ * times as long. Errors: the same, and _ARGUMENT for half angles outside [0, pi/4) and other
+ * methods. */
+GONIO_API gonio_status gonio_reconstruct_aperture(gonio_context *context, const gonio_basis *basis,
+                                                  const gonio_readings *readings,
+                                                  const gonio_reconstruct_options *options,
+                                                  double source, double detector,
+                                                  gonio_reconstruction **reconstruction);
+
 /* The same by least squares for rows of the basis given by number, with b in the basis's log space:
  * c for columns x count values b[column][count]. Errors: _ARGUMENT (no rows, a row or components
  * that the basis does not have); _UNDETERMINED; _MEMORY. */

@@ -52,16 +52,14 @@ static size_t cover(gonio_angles centre, double half_angle, int rings, gonio_ang
     return count;
 }
 
-size_t gonio_instrument_aperture(const gonio_instrument *instrument, gonio_pair pair, int rings,
-                                 gonio_pair *sample)
+size_t gonio_i_aperture(double source, double of_detector, gonio_pair pair, int rings,
+                        gonio_pair *sample)
 {
     enum { MOST = 1 + 3 * GONIO_MOST_APERTURE_RINGS * (GONIO_MOST_APERTURE_RINGS + 1) };
     gonio_angles light[MOST];
     gonio_angles detector[MOST];
-    const gonio_instrument_view *view = &instrument->view;
-    const size_t lights = cover(pair.incident, view->source_aperture, valid_rings(rings), light);
-    const size_t detectors =
-        cover(pair.outgoing, view->detector_aperture, valid_rings(rings), detector);
+    const size_t lights = cover(pair.incident, source, valid_rings(rings), light);
+    const size_t detectors = cover(pair.outgoing, of_detector, valid_rings(rings), detector);
     size_t count = 0;
     for (size_t i = 0; i < lights; i++) {
         for (size_t o = 0; o < detectors; o++) {
@@ -76,4 +74,11 @@ size_t gonio_instrument_aperture(const gonio_instrument *instrument, gonio_pair 
         sample[count++] = pair;
     }
     return count;
+}
+
+size_t gonio_instrument_aperture(const gonio_instrument *instrument, gonio_pair pair, int rings,
+                                 gonio_pair *sample)
+{
+    return gonio_i_aperture(instrument->view.source_aperture, instrument->view.detector_aperture,
+                            pair, rings, sample);
 }

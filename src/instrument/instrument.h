@@ -43,6 +43,10 @@ GONIO_I_KINEMATICS(GONIO_I_DECLARE_KINEMATICS)
 const gonio_i_kinematics *gonio_i_kinematics_named(const char *name);
 const gonio_i_kinematics *gonio_i_kinematics_at(int index);
 
+/* As gonio_instrument_aperture, of half angles in radians; 0 is a point. */
+size_t gonio_i_aperture(double source, double detector, gonio_pair pair, int rings,
+                        gonio_pair *sample);
+
 struct gonio_instrument {
     gonio_instrument_view view; /* its names belong to `source` */
     const gonio_i_kinematics *kinematics;

@@ -30,6 +30,13 @@
  * materials still falls. */
 #define GONIO_I_MODEL_DEVIATION 0.03
 
+/* Directions of which a reading is the mean in log space, with weights whose sum is 1. */
+typedef struct gonio_i_spread {
+    size_t count;
+    const gonio_half_difference *at; /* [count] */
+    const double *weight;            /* [count] */
+} gonio_i_spread;
+
 /* A reading of one column. */
 typedef struct gonio_i_observation {
     gonio_half_difference at;
@@ -38,7 +45,8 @@ typedef struct gonio_i_observation {
     int channel;     /* of the row, if the basis is joint */
     int bound;       /* 0; -1: g is at most this (a reading of zero); 1: at least (saturated) */
     size_t reading;  /* its number among the readings */
-    bool wrong;      /* its direction is set aside (wrong_directions.h) */
+    const gonio_i_spread *spread; /* what it is the mean of; NULL: it is at `at` */
+    bool wrong;                   /* its direction is set aside (wrong_directions.h) */
 } gonio_i_observation;
 
 typedef struct gonio_i_column {

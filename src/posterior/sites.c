@@ -60,6 +60,24 @@ static gonio_status see_samples(gonio_context *context, gonio_i_sites *s)
                : status;
 }
 
+/* m and f of an observation: of a spread one, the mean. scratch[K]. */
+static void see(gonio_i_sites *s, size_t i, const gonio_i_observation *o, double *scratch)
+{
+    double *f = s->f + i * s->components;
+    if (o->spread == NULL) {
+        gonio_i_prior_at(s->prior, o->at, o->channel, &s->mean[i], f);
+        return;
+    }
+    for (size_t j = 0; j < o->spread->count; j++) {
+        double mean = 0.0;
+        gonio_i_prior_at(s->prior, o->spread->at[j], o->channel, &mean, scratch);
+        s->mean[i] += o->spread->weight[j] * mean;
+        for (size_t k = 0; k < s->components; k++) {
+            f[k] += o->spread->weight[j] * scratch[k];
+        }
+    }
+}
+
 gonio_status gonio_i_sites_create(gonio_context *context, const gonio_i_prior *prior,
                                   const gonio_i_column *column, gonio_i_sites **sites)
 {
@@ -70,12 +88,15 @@ gonio_status gonio_i_sites_create(gonio_context *context, const gonio_i_prior *p
     }
     *s = (gonio_i_sites){.prior = prior, .n = column->count, .components = prior->components};
     gonio_status status = allocate(context, s);
+    double *scratch = gonio_i_allocate(context, s->components, sizeof *scratch);
+    status = scratch == NULL ? GONIO_ERROR_MEMORY : status;
     for (size_t i = 0; i < s->n && status == GONIO_OK; i++) {
         const gonio_i_observation *o = &column->observation[i];
-        gonio_i_prior_at(prior, o->at, o->channel, &s->mean[i], s->f + i * s->components);
+        see(s, i, o, scratch);
         s->place[i] = gonio_i_place_of(o->at);
         relate(s, i);
     }
+    free(scratch);
     if (status == GONIO_OK) {
         status = see_samples(context, s);
     }
@@ -91,7 +112,8 @@ gonio_status gonio_i_sites_create(gonio_context *context, const gonio_i_prior *p
 static bool is_same(const gonio_i_observation *a, const gonio_i_observation *b, bool joint)
 {
     return a->at.theta_h == b->at.theta_h && a->at.theta_d == b->at.theta_d &&
-           a->at.phi_d == b->at.phi_d && (!joint || a->channel == b->channel);
+           a->at.phi_d == b->at.phi_d && a->spread == b->spread &&
+           (!joint || a->channel == b->channel);
 }
 
 bool gonio_i_sites_are_same(const gonio_i_prior *prior, const gonio_i_column *a,

@@ -9,8 +9,17 @@
 #include <gonio/reconstruct.h>
 
 #include "../core/core.h"
+#include "../posterior/posterior.h"
 
 typedef struct gonio_i_reconstruct_method gonio_i_reconstruct_method;
+
+/* Readings through apertures, linear about a reconstruction: what each is the mean of in log space,
+ * and what is to be subtracted from its logarithm, as that of a mean is not the mean of logarithms.
+ */
+typedef struct gonio_i_apertures {
+    const gonio_i_spread *spread; /* [count of the readings] */
+    const double *offset;         /* [count][channels] */
+} gonio_i_apertures;
 
 /* A task. The options are never NULL. The basis meets the method's requirements. */
 typedef struct gonio_i_reconstruct_task {
@@ -18,7 +27,8 @@ typedef struct gonio_i_reconstruct_task {
     const gonio_i_reconstruct_method *method;
     const gonio_basis *basis;
     const gonio_reconstruct_options *options;
-    double eta; /* of the options, or the default */
+    double eta;                         /* of the options, or the default */
+    const gonio_i_apertures *apertures; /* NULL: points */
 } gonio_i_reconstruct_task;
 
 /* Coefficients c of one column from X c = b. */
@@ -73,6 +83,14 @@ GONIO_I_RECONSTRUCT_METHODS(GONIO_I_DECLARE_METHOD)
 /* Whether the basis has all of rows[count]. Errors: _ARGUMENT. */
 gonio_status gonio_i_reconstruct_check_rows(gonio_context *context, const gonio_basis *basis,
                                             const size_t *rows, size_t count);
+
+/* gonio_reconstruct, of readings through apertures; NULL: points. Usual mistakes are not looked for
+ * with apertures. */
+gonio_status gonio_i_reconstruct(gonio_context *context, const gonio_basis *basis,
+                                 const gonio_readings *readings,
+                                 const gonio_reconstruct_options *options,
+                                 const gonio_i_apertures *apertures,
+                                 gonio_reconstruction **reconstruction);
 
 /* Checks that basis and options meet the requirements of the method, and the readings unless NULL.
  * Errors: _ARGUMENT; _MISMATCH (spectra and a joint basis). */

@@ -199,13 +199,14 @@ static gonio_status check_fingerprint(gonio_context *context, const gonio_basis 
     return GONIO_OK;
 }
 
-gonio_status gonio_reconstruct(gonio_context *context, const gonio_basis *basis,
-                               const gonio_readings *readings,
-                               const gonio_reconstruct_options *options,
-                               gonio_reconstruction **reconstruction)
+gonio_status gonio_i_reconstruct(gonio_context *context, const gonio_basis *basis,
+                                 const gonio_readings *readings,
+                                 const gonio_reconstruct_options *options,
+                                 const gonio_i_apertures *apertures,
+                                 gonio_reconstruction **reconstruction)
 {
     gonio_reconstruct_options how;
-    gonio_i_reconstruct_task task;
+    gonio_i_reconstruct_task task = {0};
     const gonio_readings_view *view = gonio_readings_describe(readings);
     gonio_status status = GONIO_I_TAKE(context, gonio_reconstruct_options, options, &how);
     if (status == GONIO_OK) {
@@ -217,8 +218,18 @@ gonio_status gonio_reconstruct(gonio_context *context, const gonio_basis *basis,
     if (status == GONIO_OK) {
         status = gonio_i_reconstruct_check(context, task.method, basis, readings, &how);
     }
+    task.apertures = apertures;
+    how.no_checks = how.no_checks || apertures != NULL;
     return status == GONIO_OK ? task.method->from_readings(&task, readings, reconstruction)
                               : status;
+}
+
+gonio_status gonio_reconstruct(gonio_context *context, const gonio_basis *basis,
+                               const gonio_readings *readings,
+                               const gonio_reconstruct_options *options,
+                               gonio_reconstruction **reconstruction)
+{
+    return gonio_i_reconstruct(context, basis, readings, options, NULL, reconstruction);
 }
 
 gonio_status gonio_reconstruct_rows(gonio_context *context, const gonio_basis *basis,
@@ -227,8 +238,8 @@ gonio_status gonio_reconstruct_rows(gonio_context *context, const gonio_basis *b
 {
     gonio_reconstruct_options options;
     gonio_reconstruct_options_default(&options);
-    const gonio_i_reconstruct_task task = {context, &gonio_i_least_squares_method, basis, &options,
-                                           default_eta};
+    const gonio_i_reconstruct_task task = {
+        context, &gonio_i_least_squares_method, basis, &options, default_eta, NULL};
     const gonio_status status = gonio_i_reconstruct_check_rows(context, basis, rows, count);
     return status == GONIO_OK
                ? gonio_i_equations_of_rows(&task, components, rows, count, b, reconstruction)
