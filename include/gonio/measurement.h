@@ -303,8 +303,8 @@ typedef struct gonio_interpretation {
                           * anisotropy_evidence says so */
     double anisotropy_evidence; /* ln of the odds that the material is anisotropic, if the readings
                                  * are at several turns of the sample; 0 where it was not weighed.
-                                 * If a mistake in directions explains far more, `anisotropic` is
-                                 * false all the same; otherwise no such mistake is told */
+                                 * If wrong azimuths explain far more, `anisotropic` is false all
+                                 * the same; otherwise they are not told */
 } gonio_interpretation;
 
 /* ---- the simulated instrument ---- */
