@@ -1,6 +1,7 @@
 /* gonio reconstruct: BRDFs from a few readings. */
 #include "albedos.h"
 #include "anisotropic_result.h"
+#include "aperture_options.h"
 #include "builtin_basis.h"
 #include "command_line.h"
 #include "correction_options.h"
@@ -23,9 +24,8 @@ typedef struct options {
     double eta;
     posterior_options posterior;
     correction_options corrections;
+    aperture_options aperture;
     const char *albedo_at;
-    const char *aperture;
-    double half_angle[2];           /* of detector and light, degrees; of aperture */
     tool_reflectances reflectances; /* of albedo_at */
     const char *predict_at;
     int bands;
@@ -247,7 +247,9 @@ static gonio_reconstruct_options settings(const options *o)
                                      .eta = o->eta,
                                      .deviation =
                                          o->deviation != NULL || o->albedo_at != NULL || o->bands,
-                                     .symmetry = o->symmetry};
+                                     .symmetry = o->symmetry,
+                                     .source_aperture = o->aperture.source * M_PI / 180.0,
+                                     .detector_aperture = o->aperture.detector * M_PI / 180.0};
     posterior_options_apply(&o->posterior, &how);
     return how;
 }
@@ -330,11 +332,7 @@ static gonio_status reconstruct_one(tool *t, const options *o, const gonio_basis
     const gonio_reconstruct_options how = settings(o);
     gonio_reconstruction *made = NULL;
     gonio_material *material = NULL;
-    gonio_status status = o->aperture != NULL
-                              ? gonio_reconstruct_aperture(t->context, basis, readings, &how,
-                                                           o->half_angle[1] * M_PI / 180.0,
-                                                           o->half_angle[0] * M_PI / 180.0, &made)
-                              : gonio_reconstruct(t->context, basis, readings, &how, &made);
+    gonio_status status = gonio_reconstruct(t->context, basis, readings, &how, &made);
     if (status == GONIO_OK && o->predict_at == NULL) {
         status = open_made(t, o, basis, made, output, &material);
     }
@@ -356,6 +354,12 @@ static gonio_status reconstruct_anisotropic(tool *t, const options *o, const gon
     const gonio_reconstruct_options how = settings(o);
     const anisotropic_task task = {basis, &how, &o->write, &o->how, o->predict_at};
     gonio_status status = GONIO_OK;
+    if ((how.source_aperture > 0.0 || how.detector_aperture > 0.0) && !tool_quiet) {
+        fprintf(stderr,
+                "gonio reconstruct: note: %s: its apertures do not count with "
+                "--anisotropic\n",
+                o->aperture.instrument);
+    }
     for (size_t k = 0; k < count && status == GONIO_OK; k++) {
         status = anisotropic_result_write(t, &task, readings[k], outputs[k], results);
     }
@@ -369,7 +373,7 @@ static gonio_status reconstruct(tool *t, const options *o, const gonio_basis *ba
     if (o->anisotropic) {
         return reconstruct_anisotropic(t, o, basis, readings, outputs, count, results);
     }
-    bool merl = o->predict_at == NULL && o->deviation == NULL && o->aperture == NULL;
+    bool merl = o->predict_at == NULL && o->deviation == NULL;
     for (size_t k = 0; k < count; k++) {
         merl = merl && is_merl(o, outputs[k]);
     }
@@ -509,6 +513,9 @@ static bool check_anisotropic(const tool *t, const options *o)
         return tool_refuse(t, "--albedo-at is of isotropic materials; 'gonio info' of what "
                               "--anisotropic writes has its albedo");
     }
+    if (o->aperture.aperture != NULL) {
+        return tool_refuse(t, "--aperture does not go with --anisotropic");
+    }
     return anisotropic_check_symmetry(t, o->symmetry);
 }
 
@@ -532,30 +539,6 @@ static bool check(const tool *t, const options *o, const char *const *inputs, si
     return tool_check_output(t, o->output, inputs, count) &&
            tool_check_count(t, "--components", o->components, 0) &&
            posterior_options_check(t, &o->posterior) && check_more(t, o, inputs, count);
-}
-
-/* Reads "2" or "2,0.2": the half angles of detector and light. */
-static bool check_aperture(const tool *t, options *o)
-{
-    char *end = NULL;
-    if (o->aperture == NULL) {
-        return true;
-    }
-    o->half_angle[0] = strtod(o->aperture, &end);
-    bool valid = end > o->aperture;
-    if (*end == ',') {
-        const char *second = end + 1;
-        o->half_angle[1] = strtod(second, &end);
-        valid = valid && end > second;
-    }
-    for (int k = 0; k < 2; k++) {
-        valid = valid && o->half_angle[k] >= 0.0 && o->half_angle[k] < 45.0;
-    }
-    return (valid && *end == '\0') ||
-           tool_refuse(t,
-                       "--aperture: '%s' is not a half angle of the detector, or of detector and "
-                       "light (2,0.2), from 0 to below 45 degrees",
-                       o->aperture);
 }
 
 static bool check_outputs(const tool *t, const char *const *inputs, size_t count,
@@ -582,7 +565,14 @@ static int run(tool *t, void *given)
     options *o = given;
     size_t count = 0;
     const char **arguments = tool_arguments(t, &count);
-    if (!check(t, o, arguments, count) || !check_aperture(t, o) ||
+    if (!aperture_options_check(t, &o->aperture, o->output)) {
+        return EXIT_USAGE;
+    }
+    const gonio_status status = aperture_options_apply(t, &o->aperture, &o->posterior);
+    if (status != GONIO_OK) {
+        return tool_exit_code(status);
+    }
+    if (!check(t, o, arguments, count) ||
         !tool_check_albedo_at(t, o->albedo_at, &o->reflectances) ||
         !write_options_check(t, &o->write, &o->how)) {
         return EXIT_USAGE;
@@ -614,7 +604,7 @@ int cmd_reconstruct(int argc, const char **argv)
 {
     gonio_reconstruct_options usual;
     gonio_reconstruct_options_default(&usual);
-    options o = {.eta = usual.eta, .posterior = posterior_options_default()};
+    options o = {.eta = usual.eta, .posterior = posterior_options_open()};
     const struct poptOption table[] = {
         {"output", 'o', POPT_ARG_STRING, &o.output, 0,
          "The MERL .binary table or file of another format to write, or a folder for NAME.binary",
@@ -632,10 +622,7 @@ int cmd_reconstruct(int argc, const char **argv)
          "Use every channel that was read, not only the planned one", NULL},
         POSTERIOR_OPTIONS(&o.posterior),
         CORRECTION_OPTIONS(&o.corrections),
-        {"aperture", '\0', POPT_ARG_STRING, &o.aperture, 0,
-         "Half angle of the detector's aperture in degrees, or of detector and light: each reading "
-         "is the mean over them (posterior)",
-         "DEGREES"},
+        APERTURE_OPTIONS(&o.aperture),
         TOOL_ALBEDO_AT(&o.albedo_at),
         {"deviation", '\0', POPT_ARG_STRING, &o.deviation, 0,
          "Also write the standard deviation of ln(1 + rho/s), as a table (posterior)", "FILE"},

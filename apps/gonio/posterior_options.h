@@ -2,7 +2,12 @@
 #ifndef GONIO_POSTERIOR_OPTIONS_H
 #define GONIO_POSTERIOR_OPTIONS_H
 
+#include <math.h>
+
 #include "command_line.h"
+
+/* Noise, floor or saturation that no option has set. */
+#define POSTERIOR_NOT_GIVEN (-HUGE_VAL)
 
 typedef struct posterior_options {
     double noise; /* per cent */
@@ -13,6 +18,12 @@ typedef struct posterior_options {
 
 /* The library's defaults. */
 posterior_options posterior_options_default(void);
+
+/* Nothing is given yet. */
+posterior_options posterior_options_open(void);
+
+/* Sets what is not given: to what an instrument has, or without one to the library's defaults. */
+void posterior_options_settle(posterior_options *o, const gonio_instrument_view *instrument);
 
 /* Rows of an option table. */
 #define POSTERIOR_OPTIONS(o)                                                                       \

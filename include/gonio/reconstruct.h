@@ -39,6 +39,12 @@ typedef struct gonio_reconstruct_options {
     /* Of gonio_reconstruct_anisotropic and gonio_check_isotropy only: */
     int symmetry; /* turns of the sample, in a full one, that change nothing: 1, 2 (brushed metal,
                    * satin) or 4 (weaves); 0: found */
+    /* Of gonio_reconstruct by posterior, and of many at once: half angles of the apertures over
+     * which a reading is the mean, rad, from 0 (a point) to below pi/4. Where a lobe is narrower
+     * than an aperture, its peak is read too low, and what is beside it too high; this is undone.
+     * It takes several times as long, and usual mistakes and dark levels are not looked for. */
+    double source_aperture;
+    double detector_aperture;
 } gonio_reconstruct_options;
 
 GONIO_API void gonio_reconstruct_options_default_of(gonio_reconstruct_options *options,
@@ -99,8 +105,8 @@ GONIO_API bool gonio_reconstruction_predict(const gonio_basis *basis,
 /* Predicts what the instrument would read at the directions of `readings`, whose values are
  * replaced: the BRDF less gonio_reconstruction.dark / cos theta_i, at least 0. `readings` then has
  * as many channels as the reconstruction, and the standard deviations of the BRDF, 1/sr, if the
- * reconstruction has gonio_reconstruction.deviation. Errors: _MEMORY; _ARGUMENT for another method than
- * posterior. */
+ * reconstruction has gonio_reconstruction.deviation. Errors: _MEMORY; _ARGUMENT for another method
+ * than posterior. */
 GONIO_API gonio_status gonio_reconstruction_predict_readings(
     gonio_context *context, const gonio_basis *basis, const gonio_reconstruction *reconstruction,
     gonio_readings *readings);
@@ -123,18 +129,6 @@ GONIO_API gonio_status gonio_reconstruct(gonio_context *context, const gonio_bas
                                          const gonio_readings *readings,
                                          const gonio_reconstruct_options *options,
                                          gonio_reconstruction **reconstruction);
-
-/* The same by posterior of readings through apertures: each is the mean of the BRDF over the
- * apertures of light and detector, half angles in radians, 0 for a point. Where a lobe is narrower
- * than an aperture, its peak is read too low, and what is beside it too high. Readings are
- * corrected by what reconstructions from them say of this, until nothing changes. Takes up to seven
- * times as long. Errors: the same, and _ARGUMENT for half angles outside [0, pi/4) and other
- * methods. */
-GONIO_API gonio_status gonio_reconstruct_aperture(gonio_context *context, const gonio_basis *basis,
-                                                  const gonio_readings *readings,
-                                                  const gonio_reconstruct_options *options,
-                                                  double source, double detector,
-                                                  gonio_reconstruction **reconstruction);
 
 /* The same by least squares for rows of the basis given by number, with b in the basis's log space:
  * c for columns x count values b[column][count]. Errors: _ARGUMENT (no rows, a row or components

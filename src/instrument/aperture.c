@@ -14,6 +14,11 @@ static int valid_rings(int rings)
     return rings < 0 ? 0 : rings > GONIO_MOST_APERTURE_RINGS ? GONIO_MOST_APERTURE_RINGS : rings;
 }
 
+size_t gonio_i_aperture_directions(gonio_i_aperture aperture)
+{
+    return directions_of(aperture.half_angle, valid_rings(aperture.rings));
+}
+
 size_t gonio_instrument_aperture_samples(const gonio_instrument *instrument, int rings)
 {
     return directions_of(instrument->view.source_aperture, valid_rings(rings)) *
@@ -52,21 +57,21 @@ static size_t cover(gonio_angles centre, double half_angle, int rings, gonio_ang
     return count;
 }
 
-size_t gonio_i_aperture(double source, double of_detector, gonio_pair pair, int rings,
-                        gonio_pair *sample)
+size_t gonio_i_through_apertures(gonio_i_aperture source, gonio_i_aperture detector,
+                                 gonio_pair pair, gonio_pair *sample)
 {
-    enum { MOST = 1 + 3 * GONIO_MOST_APERTURE_RINGS * (GONIO_MOST_APERTURE_RINGS + 1) };
-    gonio_angles light[MOST];
-    gonio_angles detector[MOST];
-    const size_t lights = cover(pair.incident, source, valid_rings(rings), light);
-    const size_t detectors = cover(pair.outgoing, of_detector, valid_rings(rings), detector);
+    gonio_angles light[GONIO_I_MOST_APERTURE_DIRECTIONS];
+    gonio_angles seen[GONIO_I_MOST_APERTURE_DIRECTIONS];
+    const size_t lights = cover(pair.incident, source.half_angle, valid_rings(source.rings), light);
+    const size_t detectors =
+        cover(pair.outgoing, detector.half_angle, valid_rings(detector.rings), seen);
     size_t count = 0;
     for (size_t i = 0; i < lights; i++) {
         for (size_t o = 0; o < detectors; o++) {
             const bool above =
-                light[i].theta < 0.5 * M_PI - 1e-9 && detector[o].theta < 0.5 * M_PI - 1e-9;
+                light[i].theta < 0.5 * M_PI - 1e-9 && seen[o].theta < 0.5 * M_PI - 1e-9;
             if (above) {
-                sample[count++] = (gonio_pair){light[i], detector[o]};
+                sample[count++] = (gonio_pair){light[i], seen[o]};
             }
         }
     }
@@ -79,6 +84,7 @@ size_t gonio_i_aperture(double source, double of_detector, gonio_pair pair, int 
 size_t gonio_instrument_aperture(const gonio_instrument *instrument, gonio_pair pair, int rings,
                                  gonio_pair *sample)
 {
-    return gonio_i_aperture(instrument->view.source_aperture, instrument->view.detector_aperture,
-                            pair, rings, sample);
+    const gonio_i_aperture source = {instrument->view.source_aperture, rings};
+    const gonio_i_aperture detector = {instrument->view.detector_aperture, rings};
+    return gonio_i_through_apertures(source, detector, pair, sample);
 }

@@ -43,9 +43,24 @@ GONIO_I_KINEMATICS(GONIO_I_DECLARE_KINEMATICS)
 const gonio_i_kinematics *gonio_i_kinematics_named(const char *name);
 const gonio_i_kinematics *gonio_i_kinematics_at(int index);
 
-/* As gonio_instrument_aperture, of half angles in radians; 0 is a point. */
-size_t gonio_i_aperture(double source, double detector, gonio_pair pair, int rings,
-                        gonio_pair *sample);
+/* An aperture, and how finely it is covered: as gonio_instrument_aperture. */
+typedef struct gonio_i_aperture {
+    double half_angle; /* rad; 0: a point */
+    int rings;
+} gonio_i_aperture;
+
+enum {
+    GONIO_I_MOST_APERTURE_DIRECTIONS =
+        1 + 3 * GONIO_MOST_APERTURE_RINGS * (GONIO_MOST_APERTURE_RINGS + 1)
+};
+
+/* Directions that cover an aperture: 1 of a point. */
+size_t gonio_i_aperture_directions(gonio_i_aperture aperture);
+
+/* Pairs of equal weight over both apertures, at most the product of their directions. Returns how
+ * many are above the horizon; the pair itself if none is. */
+size_t gonio_i_through_apertures(gonio_i_aperture source, gonio_i_aperture detector,
+                                 gonio_pair pair, gonio_pair *sample);
 
 struct gonio_instrument {
     gonio_instrument_view view; /* its names belong to `source` */

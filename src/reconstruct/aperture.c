@@ -1,17 +1,15 @@
-/* Readings through apertures: see gonio_reconstruct_aperture.
+/* Readings through apertures.
  *
  * A reading is the mean of the BRDF over both apertures, and what is looked for is g = ln(1 + f/s).
  * About a reconstruction g0 with f0 at directions k of the apertures, the logarithm of a mean is
  *
- *     ln(1 + mean f/s) = ln(1 + mean f0/s) + sum w_k (g_k - g0_k),   w_k ~ f0_k,
+ *     ln(1 + mean f/s) = ln(1 + mean f0/s) + sum w_k (g_k - g0_k),   w_k ~ f0_k + s,
  *
  * so that a reading less an offset is a weighted mean of g: its row of the basis is that of rows. A
  * few rounds (Gauss-Newton) find the reconstruction about which this holds. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "../core/options.h"
 #include "../instrument/instrument.h"
 #include "../measurement/readings.h"
 #include "method.h"
@@ -21,14 +19,18 @@ enum { ROUNDS = 8 };
 /* Offsets that change by less, in log units, are final. */
 static const double FINAL = 0.01;
 
+/* More readings get fewer directions each, so that memory and time stay within bounds. */
+enum { MANY = 3000 };
+
+/* An aperture that is smaller than this share of the other only widens it. */
+static const double SMALL = 0.25;
+
 /* What is known of the apertures, and of the readings through them. */
 typedef struct deconvolution {
     gonio_context *context;
     const gonio_basis *basis;
     const gonio_readings *readings;
-    gonio_reconstruct_options options;
-    double source, detector;   /* half angles, radians */
-    int rings;                 /* of directions in each aperture */
+    gonio_i_aperture source, detector;
     size_t samples;            /* directions in both apertures, at most */
     gonio_pair *pair;          /* [samples]: scratch */
     double *value;             /* [samples][channels]: scratch */
@@ -39,7 +41,10 @@ typedef struct deconvolution {
     double change;             /* largest, of an offset in a round */
 } deconvolution;
 
-/* Fills in the BRDF over the apertures of a reading, and the weights: value and weight. */
+/* ---- about a reconstruction ---- */
+
+/* Fills in the BRDF over the apertures of a reading, and the weights, of all channels together:
+ * value and weight. */
 static size_t look(deconvolution *d, const gonio_reconstruction *made, size_t reading)
 {
     const size_t channels = d->readings->channels;
@@ -47,14 +52,14 @@ static size_t look(deconvolution *d, const gonio_reconstruction *made, size_t re
     double *weight = d->weight + reading * d->samples;
     double sum = 0.0;
     const size_t count =
-        gonio_i_aperture(d->source, d->detector, d->readings->pair[reading], d->rings, d->pair);
+        gonio_i_through_apertures(d->source, d->detector, d->readings->pair[reading], d->pair);
     for (size_t k = 0; k < count; k++) {
         double *value = d->value + k * channels;
         at[k] = gonio_half_difference_from_pair(d->pair[k]);
         gonio_reconstruction_predict(d->basis, made, at[k], value, NULL);
-        weight[k] = 1e-12;
+        weight[k] = 0.0;
         for (size_t c = 0; c < channels; c++) {
-            weight[k] += value[c];
+            weight[k] += value[c] + gonio_readings_scale(d->readings, c);
         }
         sum += weight[k];
     }
@@ -95,20 +100,13 @@ static void look_at_all(deconvolution *d, const gonio_reconstruction *made)
     }
 }
 
+/* ---- rounds ---- */
+
 /* One round: a reconstruction without deviations, about which apertures are linear next. */
-static gonio_status improve(deconvolution *d, bool first)
+static gonio_status improve(deconvolution *d, const gonio_i_reconstruct_task *rough)
 {
-    const gonio_i_apertures apertures = {d->spread, d->offset};
-    gonio_reconstruct_options how = d->options;
     gonio_reconstruction *made = NULL;
-    how.deviation = false;
-    how.no_checks = true;
-    gonio_status status = gonio_i_reconstruct(d->context, d->basis, d->readings, &how,
-                                              first ? NULL : &apertures, &made);
-    if (status == GONIO_OK && made->field == NULL) {
-        status = gonio_i_fail(d->context, GONIO_ERROR_ARGUMENT,
-                              "apertures need a reconstruction by posterior");
-    }
+    const gonio_status status = rough->method->from_readings(rough, d->readings, &made);
     if (status == GONIO_OK) {
         look_at_all(d, made);
     }
@@ -116,15 +114,55 @@ static gonio_status improve(deconvolution *d, bool first)
     return status;
 }
 
+static gonio_status solve(deconvolution *d, const gonio_i_reconstruct_task *task,
+                          gonio_reconstruction **reconstruction)
+{
+    const gonio_i_apertures apertures = {d->spread, d->offset};
+    gonio_reconstruct_options unchecked = *task->options;
+    unchecked.no_checks = true;
+    gonio_reconstruct_options plain = unchecked;
+    plain.deviation = false;
+    gonio_i_reconstruct_task final = *task;
+    final.options = &unchecked;
+    final.apertures = &apertures;
+    gonio_i_reconstruct_task rough = *task;
+    rough.options = &plain;
+    gonio_status status = GONIO_OK;
+    d->change = INFINITY;
+    for (int round = 0; round < ROUNDS && d->change > FINAL && status == GONIO_OK; round++) {
+        status = improve(d, &rough);
+        rough.apertures = &apertures;
+    }
+    return status == GONIO_OK ? task->method->from_readings(&final, d->readings, reconstruction)
+                              : status;
+}
+
+/* ---- the apertures ---- */
+
+/* Two apertures of about the same size are both covered; of others, the larger one that is wider by
+ * the smaller. */
+static void cover(deconvolution *d, double source, double detector)
+{
+    const bool many = d->readings->count > MANY;
+    const bool by_source = source > detector;
+    gonio_i_aperture large = {by_source ? source : detector, many ? 2 : 4};
+    gonio_i_aperture small = {by_source ? detector : source, many ? 1 : 2};
+    if (small.half_angle > SMALL * large.half_angle) {
+        large.rings = many ? 1 : 2;
+    } else {
+        large.half_angle = hypot(large.half_angle, small.half_angle);
+        small.half_angle = 0.0;
+    }
+    d->source = by_source ? large : small;
+    d->detector = by_source ? small : large;
+    d->samples = gonio_i_aperture_directions(large) * gonio_i_aperture_directions(small);
+}
+
 static gonio_status begin(deconvolution *d)
 {
     const size_t count = d->readings->count;
     const size_t channels = d->readings->channels;
-    const size_t each =
-        1 + (size_t)(3 * GONIO_MOST_APERTURE_RINGS * (GONIO_MOST_APERTURE_RINGS + 1));
-    d->rings = d->source > 0.0 && d->detector > 0.0 ? 2 : GONIO_MOST_APERTURE_RINGS;
-    d->samples = d->rings == 2 ? (size_t)19 * 19 : each;
-    d->pair = gonio_i_allocate(d->context, each * each, sizeof *d->pair);
+    d->pair = gonio_i_allocate(d->context, d->samples, sizeof *d->pair);
     d->value = gonio_i_allocate(d->context, d->samples * channels, sizeof *d->value);
     d->at = gonio_i_allocate(d->context, count * d->samples, sizeof *d->at);
     d->weight = gonio_i_allocate(d->context, count * d->samples, sizeof *d->weight);
@@ -144,37 +182,15 @@ static void end(deconvolution *d)
     free(d->offset);
 }
 
-static gonio_status solve(deconvolution *d, gonio_reconstruction **reconstruction)
+gonio_status gonio_i_reconstruct_apertures(const gonio_i_reconstruct_task *task,
+                                           const gonio_readings *readings,
+                                           gonio_reconstruction **reconstruction)
 {
-    gonio_status status = begin(d);
-    d->change = INFINITY;
-    for (int round = 0; round < ROUNDS && d->change > FINAL && status == GONIO_OK; round++) {
-        status = improve(d, round == 0);
-    }
-    const gonio_i_apertures last = {d->spread, d->offset};
-    return status == GONIO_OK ? gonio_i_reconstruct(d->context, d->basis, d->readings, &d->options,
-                                                    &last, reconstruction)
-                              : status;
-}
-
-gonio_status gonio_reconstruct_aperture(gonio_context *context, const gonio_basis *basis,
-                                        const gonio_readings *readings,
-                                        const gonio_reconstruct_options *options, double source,
-                                        double detector, gonio_reconstruction **reconstruction)
-{
-    deconvolution d = {.context = context,
-                       .basis = basis,
-                       .readings = readings,
-                       .source = source,
-                       .detector = detector};
-    gonio_status status = GONIO_I_TAKE(context, gonio_reconstruct_options, options, &d.options);
-    if (status == GONIO_OK &&
-        !(source >= 0.0 && source < M_PI / 4.0 && detector >= 0.0 && detector < M_PI / 4.0)) {
-        status = gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
-                              "half angles of apertures must be 0 to 45 degrees");
-    }
+    deconvolution d = {.context = task->context, .basis = task->basis, .readings = readings};
+    cover(&d, task->options->source_aperture, task->options->detector_aperture);
+    gonio_status status = begin(&d);
     if (status == GONIO_OK) {
-        status = solve(&d, reconstruction);
+        status = solve(&d, task, reconstruction);
     }
     end(&d);
     return status;

@@ -84,13 +84,10 @@ GONIO_I_RECONSTRUCT_METHODS(GONIO_I_DECLARE_METHOD)
 gonio_status gonio_i_reconstruct_check_rows(gonio_context *context, const gonio_basis *basis,
                                             const size_t *rows, size_t count);
 
-/* gonio_reconstruct, of readings through apertures; NULL: points. Usual mistakes are not looked for
- * with apertures. */
-gonio_status gonio_i_reconstruct(gonio_context *context, const gonio_basis *basis,
-                                 const gonio_readings *readings,
-                                 const gonio_reconstruct_options *options,
-                                 const gonio_i_apertures *apertures,
-                                 gonio_reconstruction **reconstruction);
+/* Carries out a task of readings through the apertures that its options state. */
+gonio_status gonio_i_reconstruct_apertures(const gonio_i_reconstruct_task *task,
+                                           const gonio_readings *readings,
+                                           gonio_reconstruction **reconstruction);
 
 /* Checks that basis and options meet the requirements of the method, and the readings unless NULL.
  * Errors: _ARGUMENT; _MISMATCH (spectra and a joint basis). */

@@ -199,14 +199,30 @@ static gonio_status check_fingerprint(gonio_context *context, const gonio_basis 
     return GONIO_OK;
 }
 
-gonio_status gonio_i_reconstruct(gonio_context *context, const gonio_basis *basis,
-                                 const gonio_readings *readings,
-                                 const gonio_reconstruct_options *options,
-                                 const gonio_i_apertures *apertures,
-                                 gonio_reconstruction **reconstruction)
+static gonio_status check_apertures(const gonio_i_reconstruct_task *task)
+{
+    const double half_angle[2] = {task->options->source_aperture, task->options->detector_aperture};
+    for (int k = 0; k < 2; k++) {
+        if (!(half_angle[k] >= 0.0 && half_angle[k] < 0.25 * M_PI)) {
+            return gonio_i_fail(task->context, GONIO_ERROR_ARGUMENT,
+                                "half angles of apertures must be from 0 to below 45 degrees");
+        }
+    }
+    if ((half_angle[0] > 0.0 || half_angle[1] > 0.0) && task->method != &gonio_i_posterior_method) {
+        return gonio_i_fail(task->context, GONIO_ERROR_ARGUMENT,
+                            "apertures need a reconstruction by posterior, not by %s",
+                            task->method->name);
+    }
+    return GONIO_OK;
+}
+
+gonio_status gonio_reconstruct(gonio_context *context, const gonio_basis *basis,
+                               const gonio_readings *readings,
+                               const gonio_reconstruct_options *options,
+                               gonio_reconstruction **reconstruction)
 {
     gonio_reconstruct_options how;
-    gonio_i_reconstruct_task task = {0};
+    gonio_i_reconstruct_task task;
     const gonio_readings_view *view = gonio_readings_describe(readings);
     gonio_status status = GONIO_I_TAKE(context, gonio_reconstruct_options, options, &how);
     if (status == GONIO_OK) {
@@ -218,18 +234,15 @@ gonio_status gonio_i_reconstruct(gonio_context *context, const gonio_basis *basi
     if (status == GONIO_OK) {
         status = gonio_i_reconstruct_check(context, task.method, basis, readings, &how);
     }
-    task.apertures = apertures;
-    how.no_checks = how.no_checks || apertures != NULL;
-    return status == GONIO_OK ? task.method->from_readings(&task, readings, reconstruction)
-                              : status;
-}
-
-gonio_status gonio_reconstruct(gonio_context *context, const gonio_basis *basis,
-                               const gonio_readings *readings,
-                               const gonio_reconstruct_options *options,
-                               gonio_reconstruction **reconstruction)
-{
-    return gonio_i_reconstruct(context, basis, readings, options, NULL, reconstruction);
+    if (status == GONIO_OK) {
+        status = check_apertures(&task);
+    }
+    if (status != GONIO_OK) {
+        return status;
+    }
+    return how.source_aperture > 0.0 || how.detector_aperture > 0.0
+               ? gonio_i_reconstruct_apertures(&task, readings, reconstruction)
+               : task.method->from_readings(&task, readings, reconstruction);
 }
 
 gonio_status gonio_reconstruct_rows(gonio_context *context, const gonio_basis *basis,

@@ -3,6 +3,8 @@
 source=$(cd "$(dirname "$0")/../.." && pwd)
 . "$(dirname "$0")/lib.sh"
 
+differ() { ! cmp -s "$1" "$2"; }
+
 for word in in-plane two-arms four-axis; do
     expect_output "$word: " check "$word"
     expect_also 'kinematics: ' 'axes move together' 'theta_i ' 'the mirror direction'
@@ -118,6 +120,18 @@ if command -v jq >"$root/work/jq"; then
     expect_true 'the parts of the time' holds \
         '.run | (.exposures_s + .moves_s + .incidence_changes_s + .references_s - .duration_s | fabs) < 1e-6'
 fi
+
+# ---- apertures ----
+
+expect_ok reconstruct b.gonio run.csv --method posterior --predict-at run.csv -o points.csv
+expect_ok reconstruct b.gonio run.csv --method posterior --instrument four-axis --predict-at run.csv -o instrument.csv
+expect_ok reconstruct b.gonio run.csv --method posterior --aperture 1.2,0.2 --predict-at run.csv -o apertures.csv
+expect_true 'apertures count' differ <(grep -v '^#' points.csv) <(grep -v '^#' apertures.csv)
+expect_fail 2 "--aperture: 'wide' is not a half angle" reconstruct b.gonio run.csv --aperture wide -o no.binary
+expect_fail 2 "--aperture: '50' is not a half angle" reconstruct b.gonio run.csv --aperture 50 -o no.binary
+expect_fail 2 'apertures need a reconstruction by posterior' \
+    reconstruct b.gonio read.csv --method ridge --aperture 2 -o no.binary
+expect_fail 1 'six-axis' reconstruct b.gonio run.csv --instrument six-axis -o no.binary
 
 # ---- the schema ----
 

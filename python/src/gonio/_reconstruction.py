@@ -25,7 +25,8 @@ def reconstruction_methods() -> list[str]:
 
 def reconstruct(basis: Any, readings: Readings, *, noise: float = 0.01, floor: float = 1e-5, saturation: float = 0.0,
                 method: Optional[str] = None, components: int = 0, eta: float = 40.0, all_channels: bool = False,
-                other_basis: bool = False, checks: bool = True) -> "Reconstruction":
+                other_basis: bool = False, checks: bool = True, source_aperture: float = 0.0,
+                detector_aperture: float = 0.0) -> "Reconstruction":
     """Reconstructs a BRDF from readings.
 
     Parameters
@@ -51,6 +52,9 @@ def reconstruct(basis: Any, readings: Readings, *, noise: float = 0.01, floor: f
         Accept readings that were planned with another basis.
     checks : bool
         Whether to look for usual mistakes (`Reconstruction.suspicion`) and for a dark level.
+    source_aperture, detector_aperture : float
+        Half angles in radians, below pi/4: each reading is the mean over these apertures, which is undone. Then mistakes
+        and dark levels are not looked for.
 
     Returns
     -------
@@ -70,7 +74,8 @@ def reconstruct(basis: Any, readings: Readings, *, noise: float = 0.01, floor: f
     if not isinstance(readings, Readings):
         raise ArgumentError(f"readings is {type(readings).__name__}: make gonio.Readings(wi, wo, values), or load them")
     settings = dict(noise=noise, floor=floor, saturation=saturation, method=method, components=components, eta=eta,
-                    all_channels=all_channels, other_basis=other_basis, checks=checks)
+                    all_channels=all_channels, other_basis=other_basis, checks=checks, source_aperture=source_aperture,
+                    detector_aperture=detector_aperture)
     return Reconstruction._solve(as_basis(basis), readings, settings)
 
 
