@@ -86,20 +86,13 @@ static void put_drawing(gonio_i_figure_output *output, const gonio_i_directions 
 {
     FILE *s = output->script;
     gonio_i_figure_output_begin_drawing(output, PANEL_WIDTH * (int)figure->count, PANEL_HEIGHT);
-    fprintf(s,
-            "  set key at screen 0.5,0.05 center center horizontal Left reverse samplen 1 width 3\n"
-            "  set multiplot layout 1,%zu margins 0.01,0.99,0.1,%s spacing 0.02,0",
-            figure->count, figure->title != NULL ? "0.86" : "0.9");
-    if (figure->title != NULL) {
-        fputs(" title ", s);
-        gonio_i_put_quoted(s, figure->title);
-        fputs(" noenhanced", s);
-    }
-    fputc('\n', s);
+    fputs("  set key at screen 0.5,0.05 center center horizontal Left reverse samplen 1 width 3\n",
+          s);
+    gonio_i_begin_panels(s, figure->count, 0.1, figure->title);
     for (size_t p = 0; p < figure->count; p++) {
         put_panel(s, figure, p);
     }
-    fputs("  unset multiplot\n", s);
+    gonio_i_end_panels(s);
     gonio_i_figure_output_end_drawing(output);
 }
 

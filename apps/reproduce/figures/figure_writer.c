@@ -53,6 +53,23 @@ static void put_literal(FILE *script, const char *text, bool is_format)
     fputc('\'', script);
 }
 
+void gonio_i_begin_panels(FILE *script, size_t count, double bottom, const char *title)
+{
+    fprintf(script, "  set multiplot layout 1,%zu margins 0.01,0.99,%.4g,%s spacing 0.02,0", count,
+            bottom, title != NULL ? "0.86" : "0.9");
+    if (title != NULL) {
+        fputs(" title ", script);
+        gonio_i_put_quoted(script, title);
+        fputs(" noenhanced", script);
+    }
+    fputc('\n', script);
+}
+
+void gonio_i_end_panels(FILE *script)
+{
+    fputs("  unset multiplot\n", script);
+}
+
 void gonio_i_put_quoted(FILE *script, const char *text)
 {
     char *line = tidy(text);

@@ -32,6 +32,11 @@ void gonio_i_figure_output_end_drawing(gonio_i_figure_output *output);
 gonio_status gonio_i_figure_output_end(gonio_i_figure_output *output, gonio_i_figures *figures,
                                        gonio_status status);
 
+/* Panels side by side, above a share `bottom` of the drawing, below a title unless it is NULL. Each
+ * is one plot of the script; gonio_i_end_panels follows. */
+void gonio_i_begin_panels(FILE *script, size_t count, double bottom, const char *title);
+void gonio_i_end_panels(FILE *script);
+
 /* Text in quotes, as gnuplot takes it literally. */
 void gonio_i_put_quoted(FILE *script, const char *text);
 

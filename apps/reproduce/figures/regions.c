@@ -219,22 +219,16 @@ static void put_drawing(gonio_i_figure_output *output, const gonio_i_regions *fi
     k = (key){.script = s, .width = k.width, .height = PANEL_HEIGHT + KEY_ROW * (k.row + 1)};
     gonio_i_figure_output_begin_drawing(output, k.width, k.height);
     put_key(&k, figure);
-    fprintf(s, "  unset key\n  set multiplot layout 1,%zu margins 0.01,0.99,%.4f,%s spacing 0.02,0",
-            figure->count, (double)(KEY_ROW * (k.row + 2)) / k.height,
-            figure->title != NULL ? "0.86" : "0.9");
-    if (figure->title != NULL) {
-        fputs(" title ", s);
-        gonio_i_put_quoted(s, figure->title);
-        fputs(" noenhanced", s);
-    }
-    fputc('\n', s);
+    fputs("  unset key\n", s);
+    gonio_i_begin_panels(s, figure->count, (double)(KEY_ROW * (k.row + 2)) / k.height,
+                         figure->title);
     for (size_t p = 0; p < figure->count; p++) {
         put_panel(s, figure, p);
         for (int e = 0; p == 0 && e < 2 * k.entries; e++) {
             fprintf(s, "  unset label %d\n", KEY_LABELS + e);
         }
     }
-    fputs("  unset multiplot\n", s);
+    gonio_i_end_panels(s);
     gonio_i_figure_output_end_drawing(output);
 }
 
