@@ -115,13 +115,8 @@ static gonio_status state_loss(tool *t, gonio_material *material)
 static bool is_averaged(const gonio_material *material, const gonio_write_options *how,
                         const char *output)
 {
-    static const char *const formats[] = {"merl", "rgl", "table", "zemax"};
-    const char *name = gonio_material_writer_name(gonio_material_writer_find(output, how->format));
-    bool takes = false;
-    for (size_t k = 0; k < sizeof formats / sizeof *formats; k++) {
-        takes = takes || strcmp(name, formats[k]) == 0;
-    }
-    return how->average_azimuths && takes && gonio_material_describe(material)->anisotropic;
+    return how->average_azimuths && gonio_material_describe(material)->anisotropic &&
+           gonio_material_writer_averages(gonio_material_writer_find(output, how->format));
 }
 
 gonio_status write_options_state_loss(tool *t, const gonio_write_options *how,

@@ -185,6 +185,10 @@ GONIO_API const char *gonio_material_writer_name(int index);
 GONIO_API const char *gonio_material_writer_extension(int index);
 GONIO_API const char *gonio_material_writer_summary(int index);
 
+/* Whether a format is written as the mean over azimuths if gonio_write_options.average_azimuths
+ * asks for it; the others keep azimuths. */
+GONIO_API bool gonio_material_writer_averages(int index);
+
 /* The index of the format that a file is written in, as of gonio_write_options.format; -1 for an
  * unknown name. */
 GONIO_API int gonio_material_writer_find(const char *path, const char *format);

@@ -34,6 +34,11 @@ const char *gonio_material_writer_summary(int index)
     return index >= 0 && index < WRITERS ? writers[index]->summary : NULL;
 }
 
+bool gonio_material_writer_averages(int index)
+{
+    return index >= 0 && index < WRITERS && writers[index]->averages;
+}
+
 static int find_by_name(const char *name)
 {
     for (int k = 0; k < WRITERS; k++) {

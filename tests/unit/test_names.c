@@ -70,9 +70,27 @@ static void test_whether_the_page_is_built(void **state)
     gonio_context_free(&context);
 }
 
+static void test_writers_of_means(void **state)
+{
+    (void)state;
+    static const char *const means[] = {"merl", "rgl", "table", "zemax"};
+    size_t found = 0;
+    for (int k = 0; gonio_material_writer_name(k) != NULL; k++) {
+        bool listed = false;
+        for (size_t m = 0; m < sizeof means / sizeof *means; m++) {
+            listed = listed || strcmp(gonio_material_writer_name(k), means[m]) == 0;
+        }
+        assert_int_equal(gonio_material_writer_averages(k), listed);
+        found += listed;
+    }
+    assert_int_equal(found, sizeof means / sizeof *means);
+    assert_false(gonio_material_writer_averages(-1));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_writers_of_means),
         cmocka_unit_test(test_lists),
         cmocka_unit_test(test_whether_the_page_is_built),
     };

@@ -19,5 +19,6 @@ const gonio_i_format_writer gonio_i_merl_writer = {
     .extension = ".binary",
     .summary = "MERL table 90 x 90 x 180 of R, G, B; isotropic, reciprocal",
     .isotropic = true,
+    .averages = true,
     .write = write_merl,
 };

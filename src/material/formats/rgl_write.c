@@ -176,5 +176,6 @@ const gonio_i_format_writer gonio_i_rgl_writer = {
     .name = "rgl",
     .extension = ".bsdf",
     .summary = "RGL BSDF of RGB or spectra, for Mitsuba 3 and pbrt-v4 (measured); isotropic or not",
+    .averages = true,
     .write = write_rgl,
 };

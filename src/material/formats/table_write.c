@@ -216,5 +216,6 @@ const gonio_i_format_writer gonio_i_table_writer = {
     .extension = ".h5",
     .summary =
         "table of any channels, HDF5; 90 x 90 x 180, or series of phi_h if anisotropic; reciprocal",
+    .averages = true,
     .write = write_table,
 };

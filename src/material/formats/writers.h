@@ -20,6 +20,7 @@ typedef struct gonio_i_format_writer {
     const char *extension; /* of files, with its dot */
     const char *summary;
     bool isotropic; /* cannot hold anisotropic materials, but for their mean over azimuths */
+    bool averages;  /* writes that mean where it is asked for */
     gonio_i_write write;
 } gonio_i_format_writer;
 

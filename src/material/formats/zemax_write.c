@@ -225,5 +225,6 @@ const gonio_i_format_writer gonio_i_zemax_writer = {
     .extension = ".bsdf",
     .summary = "Zemax BSDF text about the mirror direction; isotropic",
     .isotropic = true,
+    .averages = true,
     .write = write_zemax,
 };
