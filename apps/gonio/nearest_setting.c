@@ -3,8 +3,6 @@
 
 #include <math.h>
 
-#include "instrument/settings.h"
-
 /* The freedom that is used, the least first. */
 static const gonio_freedom freedoms[] = {
     {false, false, false}, {true, false, false}, {true, true, false}};
@@ -38,8 +36,5 @@ bool nearest_setting(const gonio_instrument *instrument, gonio_pair pair, const 
 
 const char *nearest_obstacle(const gonio_instrument *instrument, gonio_pair pair)
 {
-    gonio_setting one;
-    gonio_i_settings s = {.setting = &one, .most = 1};
-    gonio_i_find_settings(instrument, pair, freedoms[FREEDOMS - 1], &s);
-    return s.count > 0 ? NULL : s.obstacle != NULL ? s.obstacle : "kinematics";
+    return gonio_instrument_pair_obstacle(instrument, pair, freedoms[FREEDOMS - 1]);
 }

@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "figures/figure.h"
-#include "instrument/settings.h"
 
 enum {
     PANELS = 4,
@@ -69,6 +68,16 @@ static double nearest_level(const double *level, size_t count, double wish)
     return best;
 }
 
+static bool is_axis(const gonio_instrument *instrument, const char *obstacle)
+{
+    const gonio_instrument_view *view = gonio_instrument_describe(instrument);
+    bool found = false;
+    for (size_t k = 0; k < view->axes; k++) {
+        found = found || strcmp(view->axis[k].name, obstacle) == 0;
+    }
+    return found;
+}
+
 static bool is_limit(const gonio_instrument *instrument, const char *obstacle)
 {
     const gonio_instrument_view *view = gonio_instrument_describe(instrument);
@@ -82,9 +91,9 @@ static bool is_limit(const gonio_instrument *instrument, const char *obstacle)
 static void name_region(const gonio_instrument *instrument, const char *obstacle, char *name,
                         size_t size)
 {
-    const char *before = gonio_i_is_axis(instrument, obstacle) ? "range of "
-                         : is_limit(instrument, obstacle)      ? "limit of "
-                                                               : "";
+    const char *before = is_axis(instrument, obstacle)    ? "range of "
+                         : is_limit(instrument, obstacle) ? "limit of "
+                                                          : "";
     snprintf(name, size, "%s%s", before, *obstacle == '\0' ? "can be read" : obstacle);
 }
 
@@ -104,19 +113,10 @@ static int region_of(picture *p, const char *obstacle)
     return (int)(k < MOST_REGIONS ? k : MOST_REGIONS - 1);
 }
 
-/* What keeps a pair from being read; "": nothing. */
-static const char *obstacle_at(const gonio_instrument *instrument, gonio_pair pair)
-{
-    const gonio_freedom freedom = GONIO_ALL_FREEDOM;
-    gonio_setting one;
-    gonio_i_settings s = {.setting = &one, .most = 1};
-    gonio_i_find_settings(instrument, pair, freedom, &s);
-    return s.count > 0 ? "" : s.obstacle != NULL ? s.obstacle : "kinematics";
-}
-
 /* Cells around directions of the detector. The sample is isotropic. */
 static void fill_panel(picture *p, double theta, panel *made)
 {
+    const gonio_freedom freedom = GONIO_ALL_FREEDOM;
     made->theta = theta;
     made->count = 0;
     snprintf(made->name, sizeof made->name, "theta_i = %.3g degrees", theta / DEGREE);
@@ -125,7 +125,8 @@ static void fill_panel(picture *p, double theta, panel *made)
         const gonio_pair pair = {
             {theta, 0.0},
             {(ring + 0.5) * 90.0 / RINGS * DEGREE, k % SPOKES * 360.0 / SPOKES * DEGREE}};
-        made->region[k] = region_of(p, obstacle_at(p->instrument, pair));
+        const char *obstacle = gonio_instrument_pair_obstacle(p->instrument, pair, freedom);
+        made->region[k] = region_of(p, obstacle != NULL ? obstacle : "");
     }
 }
 

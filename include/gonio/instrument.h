@@ -171,6 +171,12 @@ GONIO_API size_t gonio_instrument_settings(const gonio_instrument *instrument, g
                                            gonio_freedom freedom, gonio_setting *setting,
                                            size_t most);
 
+/* What keeps an instrument from reading a pair, or what tells the same: NULL if it can be read,
+ * otherwise as gonio_instrument_obstacle, an axis only if nothing else does; "kinematics" where the
+ * axes cannot take it at all. */
+GONIO_API const char *gonio_instrument_pair_obstacle(const gonio_instrument *instrument,
+                                                     gonio_pair pair, gonio_freedom freedom);
+
 /* The readings to choose a plan from: pairs that can be read, on levels of theta_i and with half
  * vectors that crowd around the mirror direction, no two the same; with full freedom at most a few
  * ten thousand. At most `most`: the levels then are further apart. The arrays are the caller's and

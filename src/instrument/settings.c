@@ -80,3 +80,12 @@ size_t gonio_instrument_settings(const gonio_instrument *instrument, gonio_pair 
     gonio_i_find_settings(instrument, pair, freedom, &s);
     return s.count;
 }
+
+const char *gonio_instrument_pair_obstacle(const gonio_instrument *instrument, gonio_pair pair,
+                                           gonio_freedom freedom)
+{
+    gonio_setting one;
+    gonio_i_settings s = {.setting = &one, .most = 1};
+    gonio_i_find_settings(instrument, pair, freedom, &s);
+    return s.count > 0 ? NULL : s.obstacle != NULL ? s.obstacle : "kinematics";
+}

@@ -44,19 +44,17 @@ static double ring(int k)
 static void survey_pairs(const gonio_instrument *instrument, gonio_freedom freedom,
                          gonio_reach *reach)
 {
-    static const char kinematics[] = "kinematics";
     const double share = 1.0 / ((double)POLAR * POLAR * AZIMUTHS);
-    gonio_setting one;
-    gonio_i_settings s = {.setting = &one, .most = 1};
     for (int i = 0; i < POLAR; i++) {
         for (int o = 0; o < POLAR; o++) {
             for (int k = 0; k < AZIMUTHS; k++) {
                 const gonio_pair pair = {{ring(i), 0.0},
                                          {ring(o), 2.0 * M_PI * (k + 0.5) / AZIMUTHS}};
-                gonio_i_find_settings(instrument, pair, freedom, &s);
-                reach->share += s.count > 0 ? share : 0.0;
-                if (s.count == 0) {
-                    count_obstacle(reach, s.obstacle != NULL ? s.obstacle : kinematics, share);
+                const char *obstacle = gonio_instrument_pair_obstacle(instrument, pair, freedom);
+                if (obstacle == NULL) {
+                    reach->share += share;
+                } else {
+                    count_obstacle(reach, obstacle, share);
                 }
             }
         }

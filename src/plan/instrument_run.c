@@ -191,14 +191,6 @@ static double variance_at(const gonio_i_prior *prior, const double *covariance, 
     return fmax(gonio_i_dot(f, f + k, k), 0.0) + LEFT_OPEN * LEFT_OPEN;
 }
 
-static const char *obstacle_at(const gonio_instrument *instrument, gonio_pair pair)
-{
-    gonio_setting one;
-    gonio_i_settings s = {.setting = &one, .most = 1};
-    gonio_i_find_settings(instrument, pair, gonio_i_planned_freedom, &s);
-    return s.count > 0 ? "" : s.obstacle != NULL ? s.obstacle : "kinematics";
-}
-
 gonio_status gonio_i_find_parts(gonio_context *context, const gonio_instrument *instrument,
                                 const gonio_i_prior *prior, const double *covariance,
                                 gonio_plan_run *run)
@@ -213,7 +205,9 @@ gonio_status gonio_i_find_parts(gonio_context *context, const gonio_instrument *
         const int azimuth = k / (POLAR * POLAR);
         const gonio_pair pair = {{ring(k % POLAR), 0.0},
                                  {ring(k / POLAR % POLAR), M_PI * (azimuth + 0.5) / AZIMUTHS}};
-        gonio_plan_part *part = part_of(run, obstacle_at(instrument, pair));
+        const char *obstacle =
+            gonio_instrument_pair_obstacle(instrument, pair, gonio_i_planned_freedom);
+        gonio_plan_part *part = part_of(run, obstacle != NULL ? obstacle : "");
         part->share += share;
         part->deviation += share * variance_at(prior, covariance, pair, f);
     }

@@ -310,6 +310,10 @@ static void test_footprint_and_limits(void **state)
         const gonio_pair pair = pair_of(theta_i, 0, 20, 180);
         const bool reached = gonio_instrument_settings(rig, pair, all, &setting, 1) == 1;
         assert_int_equal(reached, fits && theta_i >= 5 && theta_i <= 70);
+        const char *obstacle = gonio_instrument_pair_obstacle(rig, pair, all);
+        assert_int_equal(obstacle == NULL, reached);
+        assert_true(reached || strcmp(obstacle, fits ? "theta_i" : "footprint") == 0 ||
+                    theta_i > 70);
     }
     gonio_instrument_free(&rig);
     rig = builtin(context, "four-axis");
