@@ -194,6 +194,40 @@ static gonio_status read_all(gonio_i_rgl_writing *w, workplace *p)
     return status;
 }
 
+/* The largest value of a channel around a node, in the cells of the interpolation that it is a
+ * corner of. */
+static float largest_around(const gonio_i_rgl_writing *w, size_t t, size_t channel, size_t node)
+{
+    const size_t x = node % w->side;
+    const size_t y = node / w->side;
+    float largest = 0.0F;
+    for (size_t l = t > 0 ? t - 1 : t; l <= t + 1 && l < GONIO_I_RGL_THETAS; l++) {
+        const float *value = w->value + (l * w->channels + channel) * w->side * w->side;
+        for (size_t j = y > 0 ? y - 1 : y; j <= y + 1 && j < w->side; j++) {
+            for (size_t i = x > 0 ? x - 1 : x; i <= x + 1 && i < w->side; i++) {
+                largest = fmaxf(largest, value[j * w->side + i]);
+            }
+        }
+    }
+    return largest;
+}
+
+/* Values below the horizon are negative, so that the interpolation is 0 at the horizon. Their size
+ * means nothing: it is at most that of the values around them, 0 where no direction above the
+ * horizon is near. */
+static void limit_below_horizon(gonio_i_rgl_writing *w)
+{
+    const size_t nodes = w->side * w->side;
+    for (size_t t = 0; t < GONIO_I_RGL_THETAS; t++) {
+        for (size_t k = 0; k < w->channels * nodes; k++) {
+            float *value = &w->value[t * w->channels * nodes + k];
+            if (*value < 0.0F) {
+                *value = fmaxf(*value, -largest_around(w, t, k / nodes, k % nodes));
+            }
+        }
+    }
+}
+
 static gonio_status fit_values(gonio_i_rgl_writing *w)
 {
     const gonio_i_rgl_values values = {.thetas = GONIO_I_RGL_THETAS,
@@ -213,6 +247,7 @@ gonio_status gonio_i_rgl_find_values(gonio_i_rgl_writing *w)
     workplace p = {0};
     gonio_status status = allocate(w, &p) == GONIO_OK ? read_all(w, &p) : GONIO_ERROR_MEMORY;
     if (status == GONIO_OK) {
+        limit_below_horizon(w);
         status = fit_values(w);
     }
     for (size_t t = 0; t < GONIO_I_RGL_THETAS && status == GONIO_OK; t++) {
