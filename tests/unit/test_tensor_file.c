@@ -231,6 +231,57 @@ static void test_the_density_of_a_warp(void **state)
 
 /* ---- materials as RGL files ---- */
 
+static float *read_floats(const gonio_i_tensor_file *file, const char *name)
+{
+    float *values = NULL;
+    const gonio_i_tensor *field = gonio_i_tensor_find(file, name);
+    assert_non_null(field);
+    assert_int_equal(gonio_i_tensor_floats(NULL, file, field, &values), GONIO_OK);
+    return values;
+}
+
+/* The largest value among the corners of the cells that a node is a corner of. */
+static float find_largest_around(const float *values, const uint64_t *shape, size_t t, size_t c,
+                                 size_t node)
+{
+    const size_t side = (size_t)shape[4];
+    const size_t from[3] = {t - (t > 0), node / side - (node / side > 0),
+                            node % side - (node % side > 0)};
+    float largest = 0.0F;
+    for (size_t l = from[0]; l <= t + 1 && l < shape[1]; l++) {
+        for (size_t y = from[1]; y <= node / side + 1 && y < side; y++) {
+            for (size_t x = from[2]; x <= node % side + 1 && x < side; x++) {
+                const size_t slice = l * (size_t)shape[2] + c;
+                largest = fmaxf(largest, values[(slice * side + y) * side + x]);
+            }
+        }
+    }
+    return largest;
+}
+
+/* The least value below the horizon, in units of the largest value around it: about -1 at the
+ * horizon. The fit that follows changes it a little. */
+static double find_least_below_horizon(const char *path)
+{
+    gonio_i_tensor_file file;
+    double least = 0.0;
+    assert_int_equal(gonio_i_tensor_open(NULL, path, &file), GONIO_OK);
+    const uint64_t *shape = gonio_i_tensor_find(&file, "rgb")->shape;
+    const size_t nodes = (size_t)(shape[3] * shape[4]);
+    float *values = read_floats(&file, "rgb");
+    for (size_t k = 0; k < shape[1] * shape[2] * nodes; k++) {
+        if (values[k] < 0.0F) {
+            const size_t slice = k / nodes;
+            const float largest =
+                find_largest_around(values, shape, slice / shape[2], slice % shape[2], k % nodes);
+            least = fmin(least, largest > 0.0F ? (double)(values[k] / largest) : -INFINITY);
+        }
+    }
+    free(values);
+    gonio_i_tensor_close(&file);
+    return least;
+}
+
 /* Little is lost of smooth and of sharp materials: E6 of at most 1 % where the file has data. */
 static void check_written(const char *name, const char *path)
 {
@@ -246,6 +297,7 @@ static void check_written(const char *name, const char *path)
     assert_int_equal(gonio_compare(NULL, original, written, &comparison), GONIO_OK);
     print_message("%s: E6 %.2f %%\n", name, comparison.all.value[GONIO_E6]);
     assert_true(comparison.all.value[GONIO_E6] < 1.0);
+    assert_true(find_least_below_horizon(path) > -1.25);
     const gonio_write_options unknown = {.size = sizeof unknown, .format = "exr"};
     assert_int_equal(gonio_material_write(NULL, original, path, &unknown), GONIO_ERROR_ARGUMENT);
     gonio_material_free(&original);
@@ -305,15 +357,6 @@ static void test_an_anisotropic_material_written_and_read(void **state)
     check_written_azimuths("atlas:steel-hairline", 13, path);
     check_written_azimuths("atlas:maple-curly-varnished", 25, path);
     support_remove(folder);
-}
-
-static float *read_floats(const gonio_i_tensor_file *file, const char *name)
-{
-    float *values = NULL;
-    const gonio_i_tensor *field = gonio_i_tensor_find(file, name);
-    assert_non_null(field);
-    assert_int_equal(gonio_i_tensor_floats(NULL, file, field, &values), GONIO_OK);
-    return values;
 }
 
 /* The relative variance of what samples of light from incidence t count for, in the grey of all
