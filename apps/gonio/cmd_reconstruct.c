@@ -56,20 +56,23 @@ static gonio_reconstruct_options settings(const options *o)
     return how;
 }
 
-/* Writes the deviations as a table, or the values at the directions of a file. */
-static gonio_status write_more(tool *t, const options *o, const gonio_basis *basis,
-                               const gonio_reconstruction *made)
+/* Reads where the BRDF is to be predicted. */
+static gonio_status read_directions(tool *t, const options *o, gonio_readings **at)
 {
     const gonio_readings_options any = {
         .size = sizeof any, .average_repeats = true, .negative_to_zero = true};
+    return tool_read_readings(t, o->predict_at, &any, at);
+}
+
+/* Writes the deviations as a table, or the values at the directions of a file, which `at` then has.
+ */
+static gonio_status write_more(tool *t, const options *o, const gonio_basis *basis,
+                               const gonio_reconstruction *made, gonio_readings *at)
+{
     gonio_material *deviation = NULL;
-    gonio_readings *at = NULL;
     gonio_status status = GONIO_OK;
     if (o->deviation != NULL) {
         status = gonio_reconstruction_deviation_material(t->context, basis, made, &deviation);
-    }
-    if (status == GONIO_OK && o->predict_at != NULL) {
-        status = tool_read_readings(t, o->predict_at, &any, &at);
     }
     if (status == GONIO_OK && at != NULL) {
         status = gonio_reconstruction_predict_readings(t->context, basis, made, at);
@@ -84,7 +87,6 @@ static gonio_status write_more(tool *t, const options *o, const gonio_basis *bas
         status = gonio_readings_write(t->context, at, t->command_line, o->output);
     }
     gonio_material_free(&deviation);
-    gonio_readings_free(&at);
     return status;
 }
 
@@ -115,11 +117,11 @@ static gonio_status open_made(tool *t, const options *o, const gonio_basis *basi
  * writes the output. */
 static gonio_status write_both(tool *t, const options *o, const gonio_basis *basis,
                                const gonio_reconstruction *made, const gonio_material *material,
-                               const char *output)
+                               gonio_readings *at, const char *output)
 {
     gonio_status status = gonio_outputs_hold(t->context);
     if (status == GONIO_OK) {
-        status = write_more(t, o, basis, made);
+        status = write_more(t, o, basis, made, at);
     }
     if (status == GONIO_OK && material != NULL) {
         status = gonio_material_write(t->context, material, output, &o->how);
@@ -131,19 +133,28 @@ static gonio_status write_both(tool *t, const options *o, const gonio_basis *bas
 static gonio_status reconstruct_one(tool *t, const options *o, const gonio_basis *basis,
                                     const gonio_readings *readings, char *output, json_t *results)
 {
-    const gonio_reconstruct_options how = settings(o);
+    gonio_reconstruct_options how = settings(o);
     gonio_reconstruction *made = NULL;
     gonio_material *material = NULL;
-    gonio_status status = gonio_reconstruct(t->context, basis, readings, &how, &made);
+    gonio_readings *at = NULL;
+    gonio_status status = o->predict_at != NULL ? read_directions(t, o, &at) : GONIO_OK;
+    if (at != NULL) {
+        how.expected_at = gonio_readings_describe(at)->pair;
+        how.expected_count = gonio_readings_describe(at)->count;
+    }
+    if (status == GONIO_OK) {
+        status = gonio_reconstruct(t->context, basis, readings, &how, &made);
+    }
     if (status == GONIO_OK && o->predict_at == NULL) {
         status = open_made(t, o, basis, made, output, &material);
     }
     if (status == GONIO_OK) {
-        status = write_both(t, o, basis, made, material, output);
+        status = write_both(t, o, basis, made, material, at, output);
     }
     if (status == GONIO_OK) {
         status = reconstruction_report(t, &o->reflectances, basis, &made, &output, 1, results);
     }
+    gonio_readings_free(&at);
     gonio_material_free(&material);
     gonio_reconstruction_free(&made);
     return status;

@@ -45,6 +45,10 @@ typedef struct gonio_reconstruct_options {
      * It takes several times as long, and usual mistakes and dark levels are not looked for. */
     double source_aperture;
     double detector_aperture;
+    /* Of posterior only: the directions over which gonio_reconstruction.predicted_e6 is expected,
+     * but for those that were read; NULL or 0: the grid's bins, all over the hemispheres. */
+    const gonio_pair *expected_at; /* [expected_count] */
+    size_t expected_count;
 } gonio_reconstruct_options;
 
 GONIO_API void gonio_reconstruct_options_default_of(gonio_reconstruct_options *options,
@@ -72,7 +76,7 @@ typedef struct gonio_reconstruction {
     /* By posterior only, otherwise 0 and NULL: */
     double *field;       /* g in every row of the basis, [columns][rows] */
     double *deviation;   /* its standard deviation, [columns][rows], if asked for */
-    double predicted_e6; /* the expected E6, per cent */
+    double predicted_e6; /* the expected E6, per cent, over options->expected_at */
     double smoothness;   /* alpha: standard deviation of the remainder, log units */
     double surprise;     /* root mean square error of leave-one-out predictions of the readings, in
                           * standard deviations: 1 if the material is as the database expects */

@@ -65,6 +65,7 @@ OPTIONS = {
     "reconstruct": (gonio.reconstruct, dict(components="components", all_channels="all_channels",
                                             other_basis="other_basis", method="method", eta="eta", noise="noise",
                                             floor="floor", saturation="saturation", deviation=None,
+                                            expected_at=None, expected_count=None,
                                             no_checks="checks", symmetry=None,
                                             source_aperture="source_aperture",
                                             detector_aperture="detector_aperture")),

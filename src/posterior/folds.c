@@ -18,11 +18,10 @@ static bool can_tell(const gonio_i_prior *prior)
 }
 
 /* Mean of f' f over the bins, from a sample of rows. */
-static gonio_status find_metric(gonio_context *context, gonio_i_learned_error *x)
+static gonio_status find_metric(gonio_context *context, const gonio_i_targets *targets,
+                                gonio_i_learned_error *x)
 {
-    const gonio_basis_view *view = x->prior->view;
-    const size_t step = gonio_i_sample_step(view->rows);
-    const size_t count = (view->rows + step - 1) / step;
+    const size_t count = targets->count;
     double *rows = gonio_i_allocate(context, count * x->components, sizeof *rows);
     if (rows == NULL) {
         return GONIO_ERROR_MEMORY;
@@ -30,12 +29,11 @@ static gonio_status find_metric(gonio_context *context, gonio_i_learned_error *x
     double all = 0.0;
     for (size_t i = 0; i < count; i++) {
         double *row = rows + i * x->components;
-        const double bins = gonio_i_row_bins(view, i * step);
-        gonio_i_prior_row(x->prior, i * step, row);
+        gonio_i_prior_row(x->prior, targets->row[i], row);
         for (size_t k = 0; k < x->components; k++) {
-            row[k] *= sqrt(bins);
+            row[k] *= sqrt(targets->weight[i]);
         }
-        all += bins;
+        all += targets->weight[i];
     }
     const gonio_status status =
         gonio_i_gram_rows(context, rows, count, x->components, x->components, x->metric);
@@ -47,6 +45,7 @@ static gonio_status find_metric(gonio_context *context, gonio_i_learned_error *x
 }
 
 gonio_status gonio_i_learned_error_create(gonio_context *context, const gonio_i_prior *prior,
+                                          const gonio_i_targets *targets,
                                           gonio_i_learned_error **learned)
 {
     *learned = NULL;
@@ -62,7 +61,8 @@ gonio_status gonio_i_learned_error_create(gonio_context *context, const gonio_i_
     x->measured = gonio_i_measured_columns(prior->view);
     x->each = x->measured / prior->view->materials;
     x->metric = gonio_i_allocate(context, x->components * x->components, sizeof *x->metric);
-    const gonio_status status = x->metric == NULL ? GONIO_ERROR_MEMORY : find_metric(context, x);
+    const gonio_status status =
+        x->metric == NULL ? GONIO_ERROR_MEMORY : find_metric(context, targets, x);
     if (status != GONIO_OK) {
         gonio_i_learned_error_free(&x);
     }

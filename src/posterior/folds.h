@@ -26,7 +26,7 @@ struct gonio_i_learned_error {
     size_t components;
     size_t measured; /* columns of materials */
     size_t each;     /* columns of a material */
-    double *metric;  /* [K][K]: mean over the bins of f' f */
+    double *metric;  /* [K][K]: mean over the targets of f' f */
 };
 
 struct gonio_i_folds {

@@ -12,12 +12,15 @@
 #define GONIO_LEARNED_ERROR_H
 
 #include "fit.h"
+#include "targets.h"
 
 typedef struct gonio_i_learned_error gonio_i_learned_error;
 
-/* *learned is NULL if the basis does not allow it: without loadings, of too few materials, or with
- * mixtures whose parents are unknown. The prior must outlive it. Errors: _MEMORY. */
+/* Of the error over the targets. *learned is NULL if the basis does not allow it: without loadings,
+ * of too few materials, or with mixtures whose parents are unknown. The prior must outlive it, the
+ * targets need not. Errors: _MEMORY. */
 gonio_status gonio_i_learned_error_create(gonio_context *context, const gonio_i_prior *prior,
+                                          const gonio_i_targets *targets,
                                           gonio_i_learned_error **learned);
 void gonio_i_learned_error_free(gonio_i_learned_error **learned);
 
@@ -33,7 +36,7 @@ gonio_status gonio_i_folds_create(gonio_context *context, const gonio_i_learned_
                                   const gonio_i_sites *sites, gonio_i_folds **folds);
 void gonio_i_folds_free(gonio_i_folds **folds);
 
-/* The square of the root mean square over the bins of the grid of the error of g that is expected
+/* The square of the root mean square over the targets of the error of g that is expected
  * on average, for a fit over the same sites (settled: its variances are what is believed of them).
  * Errors: _MEMORY, _NUMERICAL. */
 gonio_status gonio_i_learned_error_find(const gonio_i_folds *folds, const gonio_i_fit *fit,

@@ -92,7 +92,12 @@ static gonio_status find_columns(gonio_i_finding *all, const gonio_i_column *col
 {
     gonio_status status = choose_observations(all, columns);
     if (status == GONIO_OK) {
-        status = gonio_i_learned_error_create(all->context, all->prior, &all->learned);
+        status = gonio_i_targets_create(all->context, all->prior, all->options->expected_at,
+                                        all->options->expected_count, &all->targets);
+    }
+    if (status == GONIO_OK) {
+        status =
+            gonio_i_learned_error_create(all->context, all->prior, &all->targets, &all->learned);
     }
     if (status == GONIO_OK) {
         status = gonio_i_solve_columns(all);
@@ -123,6 +128,7 @@ static gonio_status find(gonio_i_finding *all, const gonio_i_column *columns)
     free(all->neighbours);
     free(all->column);
     gonio_i_learned_error_free(&all->learned);
+    gonio_i_targets_free(&all->targets);
     return status;
 }
 

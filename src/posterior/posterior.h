@@ -59,6 +59,8 @@ typedef struct gonio_i_posterior_options {
     bool deviation;           /* of every row wanted */
     size_t most;              /* readings of a column that are not merged (merge.h); 0: 3,000 */
     const double *wavelength; /* of the columns, nm: not all are fitted (neighbours.h); or NULL */
+    const gonio_half_difference *expected_at; /* [expected_count]: where an error is expected */
+    size_t expected_count;                    /* 0: all over the grid */
 } gonio_i_posterior_options;
 
 /* What is found; arrays belong to the caller and are filled in. */

@@ -352,7 +352,7 @@ static gonio_status begin_group(group *g)
     gonio_status status =
         gonio_i_sites_create(context, all->prior, &all->column[g->member[0]], &g->sites);
     if (status == GONIO_OK) {
-        status = gonio_i_rows_create(context, g->sites, &all->models.best,
+        status = gonio_i_rows_create(context, g->sites, &all->models.best, &all->targets,
                                      all->p->deviation != NULL, &g->rows);
     }
     if (status == GONIO_OK && all->learned != NULL && g->sites->n <= GONIO_I_LEARNED_ERROR_MOST) {

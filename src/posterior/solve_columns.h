@@ -26,6 +26,7 @@ typedef struct gonio_i_finding {
     const gonio_i_prior *prior;
     const gonio_i_posterior_options *options;
     gonio_i_models models;
+    gonio_i_targets targets;
     gonio_i_learned_error *learned; /* NULL: the Gaussian's own */
     gonio_i_posterior *p;
     size_t count;

@@ -41,20 +41,25 @@ static double calibrated(double variance, const calibration *c)
 struct gonio_i_rows {
     const gonio_i_sites *sites;
     double peak;
-    size_t n;       /* readings whose smoothness counts: none if alpha is 0 */
-    size_t size;    /* of t */
-    size_t step;    /* from a row to the next one that is looked at */
-    size_t count;   /* rows looked at */
-    double *t;      /* [count][size], or NULL: made where it is needed */
-    double *itself; /* [count]: k(x, x), 0 if alpha is 0 */
-    double *bins;   /* [count]: of the row's cell */
-    double *gram;   /* [size][size]: sum of bins t' t, if t is there: see find_sums; or NULL */
+    size_t n;           /* readings whose smoothness counts: none if alpha is 0 */
+    size_t size;        /* of t */
+    size_t count;       /* rows looked at: */
+    const size_t *row;  /* [count]: their numbers; NULL: all of the basis, in order */
+    double *t;          /* [count][size], or NULL: made where it is needed */
+    double *itself;     /* [count]: k(x, x), 0 if alpha is 0 */
+    const double *bins; /* [count]: how much each counts, on the grid the bins of its cell */
+    double *gram;       /* [size][size]: sum of bins t' t, if t is there: see find_sums; or NULL */
 };
+
+static size_t row_of(const gonio_i_rows *r, size_t number)
+{
+    return r->row != NULL ? r->row[number] : number;
+}
 
 static void fill_t(const gonio_i_rows *r, size_t number, double *t)
 {
     const gonio_i_prior *prior = r->sites->prior;
-    const size_t row = number * r->step;
+    const size_t row = row_of(r, number);
     int channel = 0;
     gonio_i_prior_row(prior, row, t);
     if (r->n > 0) {
@@ -69,9 +74,8 @@ static void fill_t(const gonio_i_rows *r, size_t number, double *t)
 static void fill_row(gonio_i_rows *r, size_t number)
 {
     const gonio_basis_view *view = r->sites->prior->view;
-    const size_t row = number * r->step;
+    const size_t row = row_of(r, number);
     int channel = 0;
-    r->bins[number] = gonio_i_row_bins(view, row);
     if (r->n > 0) {
         const gonio_i_place here = gonio_i_place_of(gonio_i_row_coordinates(view, row, &channel));
         r->itself[number] = gonio_i_remainder(&here, &here, r->peak);
@@ -98,9 +102,9 @@ static gonio_status find_gram(gonio_context *context, gonio_i_rows *r)
 }
 
 gonio_status gonio_i_rows_create(gonio_context *context, const gonio_i_sites *sites,
-                                 const gonio_i_model *model, bool all, gonio_i_rows **rows)
+                                 const gonio_i_model *model, const gonio_i_targets *targets,
+                                 bool all, gonio_i_rows **rows)
 {
-    const size_t every = sites->prior->view->rows;
     *rows = NULL;
     gonio_i_rows *r = gonio_i_allocate(context, 1, sizeof *r);
     if (r == NULL) {
@@ -109,13 +113,13 @@ gonio_status gonio_i_rows_create(gonio_context *context, const gonio_i_sites *si
     *r = (gonio_i_rows){.sites = sites, .peak = model->peak};
     r->n = model->alpha > 0.0 ? sites->n : 0;
     r->size = sites->components + r->n;
-    r->step = all ? 1 : gonio_i_sample_step(every);
-    r->count = (every + r->step - 1) / r->step;
+    r->count = all ? sites->prior->view->rows : targets->count;
+    r->row = all ? NULL : targets->row;
+    r->bins = all ? targets->all : targets->weight;
     r->itself = gonio_i_allocate(context, r->count, sizeof *r->itself);
-    r->bins = gonio_i_allocate(context, r->count, sizeof *r->bins);
     r->t = all ? NULL : gonio_i_allocate(context, r->count * r->size, sizeof *r->t);
     r->gram = all ? NULL : gonio_i_allocate(context, r->size * r->size, sizeof *r->gram);
-    if (r->itself == NULL || r->bins == NULL || (!all && (r->t == NULL || r->gram == NULL))) {
+    if (r->itself == NULL || (!all && (r->t == NULL || r->gram == NULL))) {
         gonio_i_rows_free(&r);
         return GONIO_ERROR_MEMORY;
     }
@@ -138,7 +142,6 @@ void gonio_i_rows_free(gonio_i_rows **rows)
     }
     free((*rows)->t);
     free((*rows)->itself);
-    free((*rows)->bins);
     free((*rows)->gram);
     free(*rows);
     *rows = NULL;
@@ -293,7 +296,7 @@ static void find_row(const variance *s, size_t number, const double *t, const do
                      gonio_i_variance_sums *sums)
 {
     const double alpha = s->e->model.alpha;
-    const size_t row = number * s->rows->step;
+    const size_t row = row_of(s->rows, number);
     const double prior = s->n > 0 ? alpha * alpha * s->rows->itself[number] : 0.0;
     const double g = fmax(value_of(s, row, t), 0.0);
     const double model = s->e->misfit * fmax(prior + dot(t, product, s->size), 0.0);
@@ -314,7 +317,7 @@ static void find_sums(const variance *s, gonio_i_variance_sums *sums)
     double model = 0.0;
     for (size_t k = 0; k < rows->count; k++) {
         const double *t = rows->t + k * s->size;
-        const double g = fmax(value_of(s, k * rows->step, t), 0.0);
+        const double g = fmax(value_of(s, row_of(rows, k), t), 0.0);
         model += s->n > 0 ? rows->bins[k] * alpha * alpha * rows->itself[k] : 0.0;
         sums->bins += rows->bins[k];
         sums->square += rows->bins[k] * g * g;
@@ -389,7 +392,6 @@ gonio_status gonio_i_variance_find(const gonio_i_fit *fit, const gonio_i_rows *r
     variance s = {
         .e = fit, .rows = rows, .c = c, .deviation = deviation, .n = rows->n, .size = rows->size};
     const size_t components = fit->components;
-    const double step = (double)rows->step;
     gonio_i_variance_sums found = {0};
     gonio_status status = find_q(&s);
     if (status == GONIO_OK && deviation != NULL) {
@@ -402,9 +404,9 @@ gonio_status gonio_i_variance_find(const gonio_i_fit *fit, const gonio_i_rows *r
         covariance[k] = s.q[k / components * s.size + k % components];
     }
     if (status == GONIO_OK) {
-        sums->bins += step * found.bins;
-        sums->error += step * found.error;
-        sums->square += step * found.square;
+        sums->bins += found.bins;
+        sums->error += found.error;
+        sums->square += found.square;
     }
     free(s.q);
     return status;

@@ -40,18 +40,65 @@ static gonio_status allocate(gonio_context *context, const gonio_basis_view *vie
     return GONIO_OK;
 }
 
+/* Directions this near are the same, rad. */
+static const double SAME = 1e-7;
+
+static bool was_read(const gonio_i_columns *columns, gonio_half_difference at)
+{
+    bool same = false;
+    for (size_t k = 0; k < columns->count && !same; k++) {
+        const gonio_i_column *column = &columns->column[k];
+        for (size_t i = 0; i < column->count && !same; i++) {
+            const gonio_half_difference there = column->observation[i].at;
+            same = fabs(there.theta_h - at.theta_h) < SAME &&
+                   fabs(there.theta_d - at.theta_d) < SAME && fabs(there.phi_d - at.phi_d) < SAME;
+        }
+    }
+    return same;
+}
+
+/* Where the error is expected: of the directions of the options those that were not read, or all if
+ * all were. */
+static gonio_status list_expected(gonio_context *context, const gonio_i_columns *columns,
+                                  const gonio_reconstruct_options *options,
+                                  gonio_half_difference **at, size_t *count)
+{
+    const size_t all = options->expected_at != NULL ? options->expected_count : 0;
+    *at = gonio_i_allocate(context, all + 1, sizeof **at);
+    if (*at == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    for (size_t k = 0; k < all; k++) {
+        (*at)[*count] = gonio_half_difference_from_pair(options->expected_at[k]);
+        *count += !was_read(columns, (*at)[*count]);
+    }
+    for (size_t k = 0; k < all && *count == 0; k++) {
+        (*at)[k] = gonio_half_difference_from_pair(options->expected_at[k]);
+    }
+    *count = *count == 0 ? all : *count;
+    return GONIO_OK;
+}
+
 static gonio_status find(gonio_context *context, const gonio_i_prior *prior,
                          const gonio_i_columns *columns, const gonio_reconstruct_options *options,
                          gonio_reconstruction *r)
 {
-    const gonio_i_posterior_options how = {
-        .smoothness = -1.0, .deviation = options->deviation, .wavelength = r->wavelength};
+    gonio_half_difference *expected_at = NULL;
+    size_t expected = 0;
+    gonio_status status = list_expected(context, columns, options, &expected_at, &expected);
+    const gonio_i_posterior_options how = {.smoothness = -1.0,
+                                           .deviation = options->deviation,
+                                           .wavelength = r->wavelength,
+                                           .expected_at = expected_at,
+                                           .expected_count = expected};
     gonio_i_posterior p = {.coefficients = r->coefficients,
                            .field = r->field,
                            .deviation = r->deviation,
                            .contradicted = r->contradicted};
-    const gonio_status status =
-        gonio_i_posterior_find(context, prior, columns->column, columns->count, &how, &p);
+    if (status == GONIO_OK) {
+        status = gonio_i_posterior_find(context, prior, columns->column, columns->count, &how, &p);
+    }
+    free(expected_at);
     r->smoothness = p.smoothness;
     r->predicted_e6 = p.predicted;
     r->outlying = p.outlying;

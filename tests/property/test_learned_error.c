@@ -114,8 +114,11 @@ static double expected_of(const gonio_i_prior *with, gonio_i_observation *o, siz
     gonio_i_sites *sites = NULL;
     gonio_i_folds *folds = NULL;
     gonio_i_fit gaussian;
+    gonio_i_targets grid;
     double square = 0.0;
-    assert_int_equal(gonio_i_learned_error_create(context, with, &learned), GONIO_OK);
+    assert_int_equal(gonio_i_targets_create(context, with, NULL, 0, &grid), GONIO_OK);
+    assert_int_equal(gonio_i_learned_error_create(context, with, &grid, &learned), GONIO_OK);
+    gonio_i_targets_free(&grid);
     assert_non_null(learned);
     assert_int_equal(gonio_i_sites_create(context, with, &column, &sites), GONIO_OK);
     assert_int_equal(gonio_i_folds_create(context, learned, sites, &folds), GONIO_OK);
@@ -526,10 +529,12 @@ static void test_who_cannot_tell(void **state)
 {
     (void)state;
     gonio_i_learned_error *learned = NULL;
+    gonio_i_targets grid;
     gonio_basis *few = learn(9, 0);
     gonio_i_prior *other = NULL;
     assert_int_equal(gonio_i_prior_create(context, few, &other), GONIO_OK);
-    assert_int_equal(gonio_i_learned_error_create(context, other, &learned), GONIO_OK);
+    assert_int_equal(gonio_i_targets_create(context, other, NULL, 0, &grid), GONIO_OK);
+    assert_int_equal(gonio_i_learned_error_create(context, other, &grid, &learned), GONIO_OK);
     assert_null(learned);
     gonio_i_prior_free(&other);
     gonio_basis_free(&few);
@@ -550,8 +555,9 @@ static void test_who_cannot_tell(void **state)
     gonio_basis_view view = *prior->view;
     view.parents = NULL;
     orphans.view = &view;
-    assert_int_equal(gonio_i_learned_error_create(context, &orphans, &learned), GONIO_OK);
+    assert_int_equal(gonio_i_learned_error_create(context, &orphans, &grid, &learned), GONIO_OK);
     assert_null(learned);
+    gonio_i_targets_free(&grid);
 }
 
 int main(void)

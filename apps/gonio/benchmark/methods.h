@@ -9,6 +9,8 @@ typedef struct benchmark_task {
     const benchmark_setting *setting;
     const gonio_basis *basis; /* what was learned from; not every method needs it */
     const gonio_readings *readings;
+    const gonio_pair *compared; /* [compared_count]: where it will be compared; none: anywhere */
+    size_t compared_count;
     const char *method; /* of the library's own, by name; NULL for any other */
 } benchmark_task;
 

@@ -90,7 +90,9 @@ static gonio_status predict_published(void *self, gonio_context *context, const 
 static gonio_status complete(gonio_context *context, const benchmark_task *task,
                              benchmark_completion *completion)
 {
-    const gonio_reconstruct_options how = benchmark_how(task->setting);
+    gonio_reconstruct_options how = benchmark_how(task->setting);
+    how.expected_at = task->compared;
+    how.expected_count = task->compared_count;
     made *m = gonio_i_allocate(context, 1, sizeof *m);
     if (m == NULL) {
         return GONIO_ERROR_MEMORY;

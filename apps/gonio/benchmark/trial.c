@@ -193,7 +193,10 @@ static gonio_status try_published(state *s, size_t n, benchmark_task *task)
 static gonio_status try_methods(state *s, size_t n, const gonio_readings *readings)
 {
     const benchmark_setting *setting = s->trial->setting;
-    benchmark_task task = {.setting = setting, .readings = readings};
+    benchmark_task task = {.setting = setting,
+                           .readings = readings,
+                           .compared = s->sample.candidate,
+                           .compared_count = s->sample.candidates};
     gonio_status status = GONIO_OK;
     if (s->trial->ways->own_methods) {
         return try_published(s, n, &task);
