@@ -5,6 +5,8 @@
  * Method    The nearest reading next, at its nearest setting. Then, by turns, a tour through fixed
  *           settings (tour.h), and the best settings along a fixed order, by dynamic programming,
  *           until neither helps. Small runs begin again from each reading. */
+#include "order.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,7 +14,10 @@
 #include "instrument.h"
 #include "tour.h"
 
-enum { MOST_TOUR = 3000, MOST_ROUNDS = 8, SMALL = 12 };
+enum { MOST_KEPT = 3000, MOST_ROUNDS = 8, SMALL = 12 };
+
+/* By effort: how often tours are disturbed. */
+static const size_t kicks[] = {[GONIO_I_ROUGH_ORDER] = 500, [GONIO_I_FINE_ORDER] = 8000};
 
 typedef struct search {
     gonio_context *context;
@@ -20,12 +25,14 @@ typedef struct search {
     const gonio_setting *setting;
     const size_t *first; /* [count + 1] */
     size_t count;
+    gonio_i_order_effort effort;
     gonio_setting start;
-    size_t *order;  /* [count]: readings */
-    size_t *chosen; /* [count]: the setting of each reading */
-    double *cost;   /* [all settings] of dynamic programming */
-    size_t *from;   /* [all settings]: the setting before */
-    double *matrix; /* of tours; NULL: too many readings */
+    size_t *order;              /* [count]: readings */
+    size_t *chosen;             /* [count]: the setting of each reading */
+    double *cost;               /* [all settings] of dynamic programming */
+    size_t *from;               /* [all settings]: the setting before */
+    const gonio_setting **node; /* [count + 1] of tours: the start, then in the present order */
+    double *matrix;             /* [count + 1][count + 1]: their distances; NULL: too many */
 } search;
 
 static double travel(const search *s, size_t from, size_t to)
@@ -130,26 +137,38 @@ static void choose_settings(search *s)
 
 /* ---- tours through chosen settings ---- */
 
-/* Node 0 is the start, node k + 1 the reading at place k of the present order. */
-static gonio_status improve_tour(search *s)
+static double travel_of_nodes(const void *data, size_t a, size_t b)
+{
+    const search *s = data;
+    return gonio_instrument_travel(s->instrument, s->node[a], s->node[b]);
+}
+
+static void fill_matrix(search *s)
 {
     const size_t nodes = s->count + 1;
-    if (s->matrix == NULL) {
-        return GONIO_OK;
-    }
-    for (size_t i = 0; i < nodes; i++) {
+    for (size_t i = 0; i < nodes && s->matrix != NULL; i++) {
         for (size_t j = 0; j < i; j++) {
-            const size_t a = s->chosen[s->order[i - 1]];
-            const double time =
-                j == 0 ? travel_from_start(s, a) : travel(s, s->chosen[s->order[j - 1]], a);
+            const double time = travel_of_nodes(s, i, j);
             s->matrix[i * nodes + j] = time;
             s->matrix[j * nodes + i] = time;
         }
     }
+}
+
+/* Node 0 is the start, node k + 1 the reading at place k of the present order. */
+static gonio_status improve_tour(search *s)
+{
+    const size_t nodes = s->count + 1;
+    s->node[0] = &s->start;
+    for (size_t k = 0; k < s->count; k++) {
+        s->node[k + 1] = &s->setting[s->chosen[s->order[k]]];
+    }
+    fill_matrix(s);
+    const gonio_i_distances distances = {nodes, s->matrix, travel_of_nodes, s};
     size_t *tour = gonio_i_allocate(s->context, 2 * nodes, sizeof *tour);
     gonio_status status = tour == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
     if (status == GONIO_OK) {
-        status = gonio_i_shorten_path(s->context, s->matrix, nodes, tour);
+        status = gonio_i_shorten_path(s->context, &distances, kicks[s->effort], tour);
     }
     for (size_t k = 0; k < s->count && status == GONIO_OK; k++) {
         tour[nodes + k] = s->order[tour[k + 1] - 1];
@@ -216,10 +235,10 @@ static gonio_status check(gonio_context *context, const size_t *first, size_t co
     return GONIO_OK;
 }
 
-gonio_status gonio_instrument_order(gonio_context *context, const gonio_instrument *instrument,
-                                    const gonio_setting *setting, const size_t *first, size_t count,
-                                    const gonio_setting *start, size_t *order,
-                                    gonio_setting *chosen)
+gonio_status gonio_i_order(gonio_context *context, const gonio_instrument *instrument,
+                           const gonio_setting *setting, const size_t *first, size_t count,
+                           const gonio_setting *start, gonio_i_order_effort effort, size_t *order,
+                           gonio_setting *chosen)
 {
     gonio_status status = check(context, first, count);
     if (status != GONIO_OK || count == 0) {
@@ -230,14 +249,16 @@ gonio_status gonio_instrument_order(gonio_context *context, const gonio_instrume
                 .setting = setting,
                 .first = first,
                 .count = count,
+                .effort = effort,
                 .order = order,
                 .chosen = gonio_i_allocate(context, count, sizeof *s.chosen),
                 .cost = gonio_i_allocate(context, first[count], sizeof *s.cost),
-                .from = gonio_i_allocate(context, first[count], sizeof *s.from)};
-    if (count <= MOST_TOUR) {
+                .from = gonio_i_allocate(context, first[count], sizeof *s.from),
+                .node = gonio_i_allocate(context, count + 1, sizeof *s.node)};
+    if (count <= MOST_KEPT) {
         s.matrix = gonio_i_allocate(context, (count + 1) * (count + 1), sizeof *s.matrix);
     }
-    const bool whole = s.chosen && s.cost && s.from && (s.matrix || count > MOST_TOUR);
+    const bool whole = s.chosen && s.cost && s.from && s.node && (s.matrix || count > MOST_KEPT);
     status = whole ? GONIO_OK : GONIO_ERROR_MEMORY;
     if (start != NULL) {
         s.start = *start;
@@ -253,6 +274,16 @@ gonio_status gonio_instrument_order(gonio_context *context, const gonio_instrume
     free(s.chosen);
     free(s.cost);
     free(s.from);
+    free(s.node);
     free(s.matrix);
     return status;
+}
+
+gonio_status gonio_instrument_order(gonio_context *context, const gonio_instrument *instrument,
+                                    const gonio_setting *setting, const size_t *first, size_t count,
+                                    const gonio_setting *start, size_t *order,
+                                    gonio_setting *chosen)
+{
+    return gonio_i_order(context, instrument, setting, first, count, start, GONIO_I_FINE_ORDER,
+                         order, chosen);
 }

@@ -13,13 +13,7 @@
 
 #include "../core/random.h"
 
-enum {
-    NEAR = 12,
-    LONGEST_SEGMENT = 3,
-    LONGEST_BRIDGE = 50,
-    KICKS_PER_NODE = 40,
-    MOST_KICKS = 8000
-};
+enum { NEAR = 12, LONGEST_SEGMENT = 3, LONGEST_BRIDGE = 50, KICKS_PER_NODE = 40 };
 
 /* The distance between the first and the closing node, which no exchange may part. */
 static const double TIE = -1e6;
@@ -27,29 +21,44 @@ static const double TIE = -1e6;
 /* A gain that is not rounding. */
 static const double LEAST_GAIN = 1e-7;
 
+/* Nodes from a place on that were put in the other order. */
+typedef struct reversal {
+    size_t place, count;
+} reversal;
+
 typedef struct tour {
-    const double *distance; /* [nodes][nodes] */
-    size_t nodes;           /* without the closing one */
-    size_t n;               /* with it */
-    size_t *at;             /* [n]: the node at each place */
-    size_t *place;          /* [n]: of each node */
-    size_t *near;           /* [nodes][NEAR] */
+    const gonio_i_distances *distances;
+    size_t nodes;  /* without the closing one */
+    size_t n;      /* with it */
+    size_t *at;    /* [n]: the node at each place */
+    size_t *place; /* [n]: of each node */
+    size_t *near;  /* [nodes][NEAR] */
     size_t nears;
     size_t *queue; /* [n]: nodes to look at */
     bool *queued;  /* [n] */
     size_t queue_first;
     size_t queue_count;
-    size_t *kept; /* [n]: the best tour */
+    reversal *made; /* [made_room]: the reversals since the best tour */
+    size_t made_count;
+    size_t made_room;
+    bool logged;
+    bool out_of_memory;
     double length;
     gonio_i_random random;
 } tour;
+
+static double distance(const tour *t, size_t a, size_t b)
+{
+    const gonio_i_distances *d = t->distances;
+    return d->matrix != NULL ? d->matrix[a * d->nodes + b] : d->compute(d->data, a, b);
+}
 
 static double between(const tour *t, size_t a, size_t b)
 {
     if (a == t->nodes || b == t->nodes) {
         return a == 0 || b == 0 ? TIE : 0.0;
     }
-    return t->distance[a * t->nodes + b];
+    return distance(t, a, b);
 }
 
 static size_t after(const tour *t, size_t node)
@@ -75,12 +84,11 @@ static void look_again(tour *t, size_t node)
 
 /* ---- changes ---- */
 
-/* Reverses the nodes from place i on, `count` of them, around the end. */
-static void reverse_places(tour *t, size_t i, size_t count)
+static void turn_places(tour *t, reversal r)
 {
-    size_t a = i;
-    size_t b = (i + count + t->n - 1) % t->n;
-    for (size_t k = 0; k < count / 2; k++) {
+    size_t a = r.place;
+    size_t b = (r.place + r.count + t->n - 1) % t->n;
+    for (size_t k = 0; k < r.count / 2; k++) {
         const size_t node = t->at[a];
         t->at[a] = t->at[b];
         t->at[b] = node;
@@ -88,6 +96,34 @@ static void reverse_places(tour *t, size_t i, size_t count)
         t->place[t->at[b]] = b;
         a = a + 1 == t->n ? 0 : a + 1;
         b = b == 0 ? t->n - 1 : b - 1;
+    }
+}
+
+static void remember(tour *t, reversal r)
+{
+    if (t->made_count == t->made_room) {
+        const size_t room = t->made_room > 0 ? 2 * t->made_room : 256;
+        reversal *more = reallocarray(t->made, room, sizeof *more);
+        if (more == NULL) {
+            t->out_of_memory = true;
+            return;
+        }
+        t->made = more;
+        t->made_room = room;
+    }
+    t->made[t->made_count++] = r;
+}
+
+/* Reverses the nodes from place i on, `count` of them, around the end. */
+static void reverse_places(tour *t, size_t i, size_t count)
+{
+    const reversal r = {i % t->n, count};
+    if (count < 2) {
+        return;
+    }
+    turn_places(t, r);
+    if (t->logged) {
+        remember(t, r);
     }
 }
 
@@ -148,13 +184,16 @@ static bool in_segment(const tour *t, const segment *g, size_t node)
     return (t->place[node] + t->n - t->place[g->s]) % t->n <= length;
 }
 
-/* Puts the nodes of a segment at places from `first` on. */
-static void put_segment(tour *t, const size_t *node, size_t length, size_t first, bool turned)
+/* From place i on, `first` nodes and the `second` after them change places. */
+static void swap_neighbours(tour *t, size_t i, size_t first, size_t second, bool turn_first,
+                            bool turn_second)
 {
-    for (size_t k = 0; k < length; k++) {
-        const size_t place = (first + k) % t->n;
-        t->at[place] = node[turned ? length - 1 - k : k];
-        t->place[t->at[place]] = place;
+    reverse_places(t, i, first + second);
+    if (!turn_second) {
+        reverse_places(t, i, second);
+    }
+    if (!turn_first) {
+        reverse_places(t, i + second, first);
     }
 }
 
@@ -162,23 +201,15 @@ static void put_segment(tour *t, const size_t *node, size_t length, size_t first
  * make room, on the side where they are fewer. */
 static void shift_segment(tour *t, const segment *g, size_t c, size_t d, bool turned)
 {
-    size_t node[LONGEST_SEGMENT] = {0};
     const size_t n = t->n;
     const size_t length = (t->place[g->e] + n - t->place[g->s]) % n + 1;
-    for (size_t k = 0; k < length; k++) {
-        node[k] = t->at[(t->place[g->s] + k) % n];
-    }
     const size_t ahead = (t->place[c] + n - t->place[g->e]) % n;
     const size_t back = (t->place[g->s] + n - t->place[d]) % n;
-    const bool forward = ahead <= back;
-    size_t to = forward ? t->place[g->s] : t->place[g->e];
-    for (size_t k = 0; k < (forward ? ahead : back); k++) {
-        const size_t moved = t->at[(forward ? to + length : to + n - length) % n];
-        t->at[to] = moved;
-        t->place[moved] = to;
-        to = (forward ? to + 1 : to + n - 1) % n;
+    if (ahead <= back) {
+        swap_neighbours(t, t->place[g->s], length, ahead, turned, false);
+    } else {
+        swap_neighbours(t, t->place[d], back, length, false, turned);
     }
-    put_segment(t, node, length, forward ? to : (to + n + 1 - length) % n, turned);
 }
 
 static void move_segment(tour *t, const segment *g, size_t c, size_t d, bool turned)
@@ -235,8 +266,13 @@ static bool improve_node(tour *t, size_t node)
 {
     const bool closing = node == t->nodes;
     const size_t count = closing ? t->nodes : t->nears + 1;
+    const double longest =
+        fmax(between(t, before(t, node), node), between(t, node, after(t, node)));
     for (size_t k = 0; k < count; k++) {
-        const size_t c = closing ? k : k == t->nears ? t->nodes : t->near[node * NEAR + k];
+        const size_t c = closing ? k : k == 0 ? t->nodes : t->near[node * NEAR + k - 1];
+        if (between(t, node, c) > longest) {
+            break;
+        }
         if (try_two_edges(t, node, c, true) || try_two_edges(t, node, c, false) ||
             (!closing && try_segments(t, node, c))) {
             return true;
@@ -272,21 +308,18 @@ static double length_of(const tour *t)
 /* Exchanges the segments from place i and from place j on, which meet: A B becomes B A. */
 static void exchange_segments(tour *t, size_t i, size_t j, size_t end)
 {
-    size_t room[2 * LONGEST_BRIDGE];
-    size_t count = 0;
-    for (size_t k = j; k < end; k++) {
-        room[count++] = t->at[k];
-    }
-    for (size_t k = i; k < j; k++) {
-        room[count++] = t->at[k];
-    }
-    for (size_t k = 0; k < count; k++) {
-        t->at[i + k] = room[k];
-        t->place[room[k]] = i + k;
-    }
-    const size_t ends[] = {i - 1, i, i + (end - j) - 1, i + (end - j), end - 1, end % t->n};
+    const size_t before_a = t->at[i - 1];
+    const size_t a = t->at[i];
+    const size_t end_a = t->at[j - 1];
+    const size_t b = t->at[j];
+    const size_t end_b = t->at[end - 1];
+    const size_t after_b = t->at[end % t->n];
+    t->length += between(t, before_a, b) + between(t, end_b, a) + between(t, end_a, after_b) -
+                 between(t, before_a, a) - between(t, end_a, b) - between(t, end_b, after_b);
+    swap_neighbours(t, i, j - i, end - j, false, false);
+    const size_t ends[] = {before_a, a, end_a, b, end_b, after_b};
     for (size_t k = 0; k < sizeof ends / sizeof *ends; k++) {
-        look_again(t, t->at[ends[k]]);
+        look_again(t, ends[k]);
     }
 }
 
@@ -297,64 +330,63 @@ static void kick(tour *t)
     const size_t first = 1 + gonio_i_random_below(&t->random, both - 1);
     const size_t i = 1 + gonio_i_random_below(&t->random, t->n - both);
     exchange_segments(t, i, i + first, i + both);
-    t->length = length_of(t);
 }
 
-static void keep(tour *t)
-{
-    memcpy(t->kept, t->at, t->n * sizeof *t->at);
-}
-
+/* Back to the best tour. */
 static void restore(tour *t)
 {
-    memcpy(t->at, t->kept, t->n * sizeof *t->at);
-    for (size_t k = 0; k < t->n; k++) {
-        t->place[t->at[k]] = k;
+    while (t->made_count > 0) {
+        turn_places(t, t->made[--t->made_count]);
     }
 }
 
-static gonio_status iterate(gonio_context *context, tour *t)
+static gonio_status iterate(gonio_context *context, tour *t, size_t most_kicks)
 {
     const size_t wanted = (size_t)KICKS_PER_NODE * t->n;
-    const size_t kicks = t->n < 5 ? 0 : wanted < MOST_KICKS ? wanted : MOST_KICKS;
+    const size_t kicks = t->n < 5 ? 0 : wanted < most_kicks ? wanted : most_kicks;
     gonio_status status = GONIO_OK;
     t->length = length_of(t);
     descend(t);
-    keep(t);
-    double best = length_of(t);
+    t->length = length_of(t);
+    double best = t->length;
+    t->logged = true;
     for (size_t k = 0; k < kicks && status == GONIO_OK; k++) {
         kick(t);
         descend(t);
         if (t->length < best - LEAST_GAIN) {
             best = t->length;
-            keep(t);
+            t->made_count = 0;
         } else {
             restore(t);
+            t->length = best;
         }
         status = k % 256 == 0 ? gonio_i_progress(context, "ordering", (double)k / (double)kicks)
                               : GONIO_OK;
     }
-    restore(t);
-    return status;
+    return t->out_of_memory ? gonio_i_fail(context, GONIO_ERROR_MEMORY, "out of memory for orders")
+                            : status;
 }
 
 /* ---- making it ---- */
 
+/* The nearest nodes, the nearest first. */
 static void find_near(tour *t, size_t node)
 {
+    double away[NEAR];
     size_t *near = t->near + node * NEAR;
     size_t count = 0;
     for (size_t other = 0; other < t->nodes; other++) {
-        const double distance = t->distance[node * t->nodes + other];
-        if (other == node ||
-            (count == NEAR && distance >= t->distance[node * t->nodes + near[NEAR - 1]])) {
+        const double here = other == node ? INFINITY : distance(t, node, other);
+        if (other == node || (count == NEAR && here >= away[NEAR - 1])) {
             continue;
         }
         size_t k = count < NEAR ? count++ : NEAR - 1;
-        for (; k > 0 && t->distance[node * t->nodes + near[k - 1]] > distance; k--) {
+        for (; k > 0 && away[k - 1] > here; k--) {
             near[k] = near[k - 1];
+            away[k] = away[k - 1];
         }
         near[k] = other;
+        away[k] = here;
     }
     t->nears = count;
 }
@@ -383,24 +415,24 @@ static void take_path(const tour *t, size_t *path)
     }
 }
 
-gonio_status gonio_i_shorten_path(gonio_context *context, const double *distance, size_t nodes,
-                                  size_t *path)
+gonio_status gonio_i_shorten_path(gonio_context *context, const gonio_i_distances *distances,
+                                  size_t kicks, size_t *path)
 {
+    const size_t nodes = distances->nodes;
     const size_t n = nodes + 1;
-    tour t = {.distance = distance,
+    tour t = {.distances = distances,
               .nodes = nodes,
               .n = n,
               .at = gonio_i_allocate(context, n, sizeof *t.at),
               .place = gonio_i_allocate(context, n, sizeof *t.place),
               .near = gonio_i_allocate(context, nodes * NEAR, sizeof *t.near),
               .queue = gonio_i_allocate(context, n, sizeof *t.queue),
-              .queued = gonio_i_allocate(context, n, sizeof *t.queued),
-              .kept = gonio_i_allocate(context, n, sizeof *t.kept)};
-    const bool whole = t.at && t.place && t.near && t.queue && t.queued && t.kept;
+              .queued = gonio_i_allocate(context, n, sizeof *t.queued)};
+    const bool whole = t.at && t.place && t.near && t.queue && t.queued;
     gonio_status status = whole ? GONIO_OK : GONIO_ERROR_MEMORY;
     if (status == GONIO_OK) {
         begin(&t);
-        status = iterate(context, &t);
+        status = iterate(context, &t, kicks);
     }
     if (status == GONIO_OK) {
         take_path(&t, path);
@@ -410,6 +442,6 @@ gonio_status gonio_i_shorten_path(gonio_context *context, const double *distance
     free(t.near);
     free(t.queue);
     free(t.queued);
-    free(t.kept);
+    free(t.made);
     return status;
 }

@@ -29,6 +29,10 @@ enum {
     MOST_WAITING = 2 /* an exchange */
 };
 
+/* A pass over fewer values than this is made by one thread: sharing it gains less than is lost
+ * where a processor is busy with something else, because every pass waits for the last thread. */
+static const size_t FEW_VALUES = 4000000;
+
 /* A reading that was added (sign 1) or removed (-1): P became P - sign g g'. */
 typedef struct change {
     double *g;
@@ -256,6 +260,11 @@ GONIO_I_VECTORISED static seen_changes see_two(const float *f, const change *c, 
     return (seen_changes){{a, other_a}, {b, other_b}};
 }
 
+static int threads_of_a_pass(const design *d)
+{
+    return d->rows * d->k < FEW_VALUES ? 1 : gonio_context_threads(d->problem->context);
+}
+
 /* Applies the deferred changes to q and t. */
 static void catch_up(design *d)
 {
@@ -264,7 +273,7 @@ static void catch_up(design *d)
     if (count == 0) {
         return;
     }
-#pragma omp parallel for schedule(static) num_threads(gonio_context_threads(d->problem->context))
+#pragma omp parallel for schedule(static) num_threads(threads_of_a_pass(d))
     for (size_t x = 0; x < d->rows; x++) {
         const seen_changes seen =
             count == 1 ? see_one(row_of(d, x), c, d->k) : see_two(row_of(d, x), c, d->k);

@@ -63,11 +63,13 @@ static gonio_status find_alternatives(gonio_context *context, const gonio_instru
 /* ---- the order ---- */
 
 static gonio_status order_block(gonio_context *context, const gonio_instrument *instrument,
-                                const alternatives *a, size_t begin, size_t end, gonio_i_run *run)
+                                const alternatives *a, size_t begin, size_t end,
+                                gonio_i_order_effort effort, gonio_i_run *run)
 {
-    const gonio_status status = gonio_instrument_order(
-        context, instrument, a->setting, a->first + begin, end - begin,
-        begin > 0 ? &run->setting[begin - 1] : NULL, run->order + begin, run->setting + begin);
+    const gonio_status status =
+        gonio_i_order(context, instrument, a->setting, a->first + begin, end - begin,
+                      begin > 0 ? &run->setting[begin - 1] : NULL, effort, run->order + begin,
+                      run->setting + begin);
     for (size_t k = begin; k < end; k++) {
         run->order[k] += begin;
     }
@@ -75,14 +77,15 @@ static gonio_status order_block(gonio_context *context, const gonio_instrument *
 }
 
 static gonio_status order_all(gonio_context *context, const gonio_instrument *instrument,
-                              const alternatives *a, bool nested, gonio_i_run *run)
+                              const alternatives *a, bool nested, gonio_i_order_effort effort,
+                              gonio_i_run *run)
 {
     gonio_status status = GONIO_OK;
     size_t begin = 0;
     size_t end = nested ? GONIO_I_FIRST_BLOCK : run->count;
     while (begin < run->count && status == GONIO_OK) {
         end = end < run->count ? end : run->count;
-        status = order_block(context, instrument, a, begin, end, run);
+        status = order_block(context, instrument, a, begin, end, effort, run);
         begin = end;
         end *= 2;
     }
@@ -108,7 +111,7 @@ static gonio_status find_unordered(gonio_context *context, const gonio_instrumen
 
 gonio_status gonio_i_run_create(gonio_context *context, const gonio_instrument *instrument,
                                 const gonio_setting *offered, const size_t *chosen, size_t count,
-                                bool nested, gonio_i_run *run)
+                                bool nested, gonio_i_order_effort effort, gonio_i_run *run)
 {
     alternatives a = {NULL, NULL};
     *run = (gonio_i_run){.count = count,
@@ -120,7 +123,7 @@ gonio_status gonio_i_run_create(gonio_context *context, const gonio_instrument *
         status = find_alternatives(context, instrument, offered, chosen, count, &a);
     }
     if (status == GONIO_OK) {
-        status = order_all(context, instrument, &a, nested, run);
+        status = order_all(context, instrument, &a, nested, effort, run);
     }
     if (status == GONIO_OK) {
         run->duration = gonio_instrument_schedule(instrument, run->setting, count, run->time);

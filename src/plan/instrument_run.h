@@ -5,6 +5,7 @@
 
 #include <gonio/plan.h>
 
+#include "../instrument/order.h"
 #include "../prior/prior.h"
 
 typedef struct gonio_i_run {
@@ -20,7 +21,7 @@ typedef struct gonio_i_run {
  * freed in any case. Errors: _MEMORY, _CANCELLED. */
 gonio_status gonio_i_run_create(gonio_context *context, const gonio_instrument *instrument,
                                 const gonio_setting *offered, const size_t *chosen, size_t count,
-                                bool nested, gonio_i_run *run);
+                                bool nested, gonio_i_order_effort effort, gonio_i_run *run);
 void gonio_i_run_free(gonio_i_run *run);
 
 /* Moves a run into a plan. Errors: _MEMORY. */

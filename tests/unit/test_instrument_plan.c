@@ -228,6 +228,41 @@ static void test_plans_keep_to_the_time(void **state)
     assert_non_null(strstr(support_message(), "no reading fits"));
 }
 
+/* Up to all that there is to read: no other number limits a run. */
+static void test_plans_use_the_time(void **state)
+{
+    fixture *f = *state;
+    const gonio_freedom all = GONIO_ALL_FREEDOM;
+    gonio_setting *offered = NULL;
+    gonio_instrument *rig = NULL;
+    size_t count = 0;
+    const char *text =
+        "{\"gonio_instrument\": 1, \"kinematics\": \"in-plane\", \"axes\": {\"incidence\": "
+        "{\"positions_deg\": [10, 40, 65]}, \"detector\": {\"from_deg\": -80, \"to_deg\": 80, "
+        "\"step_deg\": 4, \"speed_deg_per_s\": 10}}, \"times\": {\"exposure_s\": 1, "
+        "\"incidence_change_s\": 10}}";
+    assert_int_equal(gonio_instrument_parse(f->context, text, "rig.json", &rig), GONIO_OK);
+    assert_int_equal(gonio_instrument_candidates(f->context, rig, all, 10000, &offered, &count),
+                     GONIO_OK);
+    gonio_plan_options options = options_of(f);
+    options.instrument = rig;
+    options.count = GONIO_USUAL_COUNT;
+    options.budget = 3600.0;
+    gonio_plan *plan = make_plan(f, &options);
+    assert_int_equal(plan->count, count);
+    const double whole = plan->run->duration;
+    gonio_plan_free(&plan);
+    options.budget = 0.5 * whole;
+    plan = make_plan(f, &options);
+    print_message("%zu of %zu readings in %.1f s of %.1f\n", plan->count, count,
+                  plan->run->duration, options.budget);
+    assert_true(plan->run->duration <= options.budget &&
+                plan->run->duration > 0.95 * options.budget);
+    gonio_plan_free(&plan);
+    gonio_instrument_free(&rig);
+    free(offered);
+}
+
 static void test_options_that_contradict(void **state)
 {
     fixture *f = *state;
@@ -338,6 +373,7 @@ int main(void)
         cmocka_unit_test(test_orders_refuse_readings_without_settings),
         cmocka_unit_test(test_plans_keep_to_the_reach),
         cmocka_unit_test(test_plans_keep_to_the_time),
+        cmocka_unit_test(test_plans_use_the_time),
         cmocka_unit_test(test_options_that_contradict),
         cmocka_unit_test(test_plan_files_have_axes),
         cmocka_unit_test(test_rehearsed_runs)};
