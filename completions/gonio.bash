@@ -32,7 +32,7 @@ _gonio_values()
         --mapping)  echo "log relative" ;;
         --method)   [[ $2 == reconstruct ]] && echo "posterior least-squares ridge" ||
                         echo "expected-error condition random matusik nielsen frost" ;;
-        --directions) echo "planned next random in-plane repeated condition matusik nielsen frost" ;;
+        --directions) echo "planned next random in-plane two-incidences repeated condition matusik nielsen frost" ;;
         --methods)  echo "posterior interpolation lambert-ggx external" ;;
         --environment|-e) echo "studio sky furnace" ;;
         --light)    echo "directional point" ;;

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "incidences.h"
 #include "methods.h"
 #include "score.h"
 #include "summary.h"
@@ -189,10 +190,94 @@ static void means_count_losses_and_honesty(void **state)
     benchmark_summary_free(&summary);
 }
 
+/* ---- two incidences ---- */
+
+enum { LEVELS = 4, STEPS = 21, PAIRS_OF_LEVELS = 6, CHOSEN = 9 };
+
+/* Readings in the plane at 10, 30, 50 and 70 degrees, every 8 degrees of the detector, and one out
+ * of the plane for each. */
+static size_t list_plane(gonio_pair *pair)
+{
+    size_t count = 0;
+    for (int k = 0; k < LEVELS * STEPS; k++) {
+        const double theta = (10.0 + 20.0 * (k % LEVELS)) * M_PI / 180.0;
+        const double detector = (k / LEVELS - 10) * 8.0 * M_PI / 180.0;
+        pair[count++] =
+            (gonio_pair){{theta, 0.3}, {fabs(detector), detector > 0.0 ? 0.3 + M_PI : 0.3}};
+        pair[count++] = (gonio_pair){{theta, 0.3}, {0.5, 1.3}};
+    }
+    return count;
+}
+
+/* Of each draw the two incidences, as a set of bits. */
+static unsigned incidences_of(const benchmark_pairs *chosen)
+{
+    unsigned bits = 0;
+    for (size_t k = 0; k < chosen->count; k++) {
+        assert_true(benchmark_is_in_plane(&chosen->pair[k]));
+        bits |= 1u << lround((chosen->pair[k].incident.theta * 180.0 / M_PI - 10.0) / 20.0);
+        for (size_t j = 0; j < k; j++) {
+            assert_memory_not_equal(&chosen->pair[j], &chosen->pair[k], sizeof(gonio_pair));
+        }
+    }
+    return bits;
+}
+
+static void test_draws_take_all_pairs_of_incidences(void **state)
+{
+    (void)state;
+    gonio_pair pair[2 * LEVELS * STEPS];
+    benchmark_setting setting;
+    benchmark_pairs chosen = {0};
+    bool seen[1 << LEVELS] = {false};
+    benchmark_setting_default(&setting);
+    gonio_readings *known = read_model(); /* the sample is one of scattered readings */
+    const benchmark_sample sample = {
+        .known = known, .candidate = pair, .candidates = list_plane(pair)};
+    for (size_t draw = 0; draw < PAIRS_OF_LEVELS; draw++) {
+        const benchmark_choosing with = {.setting = &setting, .sample = &sample, .draw = draw};
+        assert_int_equal(benchmark_choose_two_incidences(NULL, &with, CHOSEN, &chosen), GONIO_OK);
+        assert_int_equal(chosen.count, CHOSEN);
+        const unsigned bits = incidences_of(&chosen);
+        assert_int_equal(__builtin_popcount(bits), 2);
+        assert_false(seen[bits]);
+        seen[bits] = true;
+    }
+    const benchmark_choosing with = {.setting = &setting, .sample = &sample};
+    assert_int_equal(benchmark_choose_two_incidences(NULL, &with, 2 * STEPS + 1, &chosen),
+                     GONIO_OK);
+    assert_int_equal(chosen.count, 0); /* not so many at two incidences */
+    free(chosen.pair);
+    gonio_readings_free(&known);
+}
+
+/* Of tables any incidences; the detector keeps to the reach. */
+static void test_two_incidences_of_tables(void **state)
+{
+    (void)state;
+    benchmark_setting setting;
+    benchmark_pairs chosen = {0};
+    benchmark_setting_default(&setting);
+    const benchmark_sample sample = {.known = NULL};
+    const benchmark_choosing with = {.setting = &setting, .sample = &sample};
+    assert_int_equal(benchmark_choose_two_incidences(NULL, &with, CHOSEN, &chosen), GONIO_OK);
+    assert_int_equal(chosen.count, CHOSEN);
+    for (size_t k = 0; k < CHOSEN; k++) {
+        assert_true(benchmark_is_in_plane(&chosen.pair[k]));
+        assert_true(chosen.pair[k].outgoing.theta <= setting.reach);
+        assert_true(k == 0 || (k == 5) != (chosen.pair[k].incident.theta ==
+                                           chosen.pair[k - 1].incident.theta));
+    }
+    free(chosen.pair);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(interpolation_keeps_readings), cmocka_unit_test(the_fit_finds_its_model),
-        cmocka_unit_test(the_truth_has_no_error), cmocka_unit_test(means_count_losses_and_honesty)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(interpolation_keeps_readings),
+                                       cmocka_unit_test(the_fit_finds_its_model),
+                                       cmocka_unit_test(the_truth_has_no_error),
+                                       cmocka_unit_test(means_count_losses_and_honesty),
+                                       cmocka_unit_test(test_draws_take_all_pairs_of_incidences),
+                                       cmocka_unit_test(test_two_incidences_of_tables)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

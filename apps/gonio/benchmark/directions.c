@@ -8,10 +8,10 @@
 
 #include "core/random.h"
 #include "core/core.h"
+#include "incidences.h"
 
 enum { RANDOM_STREAM = 3000, PLANE_STREAM = 4000, REPEATS = 9 };
 static const char usual_plan[] = "expected-error";
-static const double IN_PLANE = M_PI / 180.0;
 
 static gonio_status make_room(gonio_context *context, benchmark_pairs *chosen, size_t n)
 {
@@ -331,12 +331,6 @@ static gonio_status choose_repeated(gonio_context *context, const benchmark_choo
     return status;
 }
 
-static bool is_in_plane(const gonio_pair *pair)
-{
-    return fabs(sin(pair->outgoing.phi - pair->incident.phi)) < sin(IN_PLANE) ||
-           pair->incident.theta < IN_PLANE || pair->outgoing.theta < IN_PLANE;
-}
-
 /* Of scattered readings those in the plane of incidence; of tables the polar angles of the
  * candidates, the viewer on the mirror's side or on the light's. */
 static size_t list_plane(const benchmark_sample *sample, gonio_pair *pair)
@@ -347,7 +341,7 @@ static size_t list_plane(const benchmark_sample *sample, gonio_pair *pair)
         if (sample->known == NULL) {
             p.outgoing.phi = cos(p.outgoing.phi) < 0.0 ? M_PI : 0.0;
         }
-        if (is_in_plane(&p)) {
+        if (benchmark_is_in_plane(&p)) {
             pair[count++] = p;
         }
     }
@@ -390,6 +384,10 @@ static const benchmark_directions list[] = {
      .summary = "at random in the plane of incidence",
      .drawn = true,
      .choose = choose_in_plane},
+    {.name = "two-incidences",
+     .summary = "in the plane of incidence, evenly spread over two incidences",
+     .drawn = true,
+     .choose = benchmark_choose_two_incidences},
     {.name = "repeated",
      .summary = "at random, the first of them read ten times",
      .drawn = true,
