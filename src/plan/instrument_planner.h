@@ -1,4 +1,4 @@
-/* What the parts of a plan for an instrument share: see instrument_plan.c. */
+/* What the parts of a plan for an instrument share: what is offered, and what is chosen of it. */
 #ifndef GONIO_INSTRUMENT_PLANNER_H
 #define GONIO_INSTRUMENT_PLANNER_H
 
