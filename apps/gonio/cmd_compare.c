@@ -118,13 +118,6 @@ static void free_paired(paired *p)
     free(p->left_out);
 }
 
-/* Values of a material or of readings at the directions of readings. */
-static gonio_status take_values(tool *t, const tool_input *from, gonio_readings *at)
-{
-    return from->readings != NULL ? gonio_readings_look_up(t->context, at, from->readings)
-                                  : gonio_measure_material(t->context, at, from->material, NULL);
-}
-
 /* Pairs the values: at the directions of the reference if it is readings, otherwise of the other.
  */
 static gonio_status pair_values(tool *t, const comparing *c, const tool_input *other, paired *p)
@@ -136,8 +129,8 @@ static gonio_status pair_values(tool *t, const comparing *c, const tool_input *o
         status = gonio_readings_copy(t->context, at, &p->other);
     }
     if (status == GONIO_OK) {
-        status =
-            known ? take_values(t, other, p->other) : take_values(t, &c->reference, p->reference);
+        status = known ? tool_take_values(t, other, NULL, p->other)
+                       : tool_take_values(t, &c->reference, NULL, p->reference);
     }
     return status == GONIO_OK ? gonio_readings_share_channels(t->context, p->reference, p->other)
                               : status;

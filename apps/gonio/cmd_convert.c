@@ -70,13 +70,6 @@ static int convert_readings(tool *t, const correction_options *corrections, cons
     const gonio_readings_options any = {
         .size = sizeof any, .average_repeats = true, .negative_to_zero = true};
     gonio_readings *readings = NULL;
-    if (!names_readings(output)) {
-        tool_refuse(t,
-                    "%s: these are readings; 'gonio reconstruct' makes a material of them. OUT can "
-                    "be .csv, or .json or .brdf (BRDF JSON)",
-                    input);
-        return EXIT_DATA;
-    }
     gonio_reconstruct_options usual;
     gonio_reconstruct_options_default(&usual);
     gonio_status status =
@@ -88,6 +81,24 @@ static int convert_readings(tool *t, const correction_options *corrections, cons
     return status == GONIO_OK && tool_json
                ? tool_print_json(t, json_pack("{s:s, s:s}", "output", output, "readings", input))
                : tool_exit_code(status);
+}
+
+/* Readings become other readings. Those on a grid become a material too, by the name of OUT. */
+static int convert_readings_or_grid(tool *t, const options *o, const gonio_write_options *how,
+                                    const char *input, const char *output)
+{
+    gonio_kind kind = GONIO_KIND_UNKNOWN;
+    if (how->format == NULL && names_readings(output)) {
+        return convert_readings(t, &o->corrections, input, output);
+    }
+    if (gonio_file_expect(NULL, input, GONIO_KIND_MATERIAL, &kind) == GONIO_OK) {
+        return convert_material(t, &o->write, how, input, output);
+    }
+    tool_refuse(t,
+                "%s: these are readings; 'gonio reconstruct' makes a material of them. OUT can be "
+                ".csv, or .json or .brdf (BRDF JSON)",
+                input);
+    return EXIT_DATA;
 }
 
 static int run(tool *t, void *given)
@@ -111,7 +122,7 @@ static int run(tool *t, void *given)
         return tool_exit_code(status);
     }
     if (kind == GONIO_KIND_READINGS || tool_has_convention(arguments[0])) {
-        return convert_readings(t, &o->corrections, arguments[0], arguments[1]);
+        return convert_readings_or_grid(t, o, &how, arguments[0], arguments[1]);
     }
     return kind == GONIO_KIND_BASIS
                ? convert_basis(t, arguments[0], format, arguments[1])
@@ -134,8 +145,7 @@ int cmd_convert(int argc, const char **argv)
             "table of all channels in HDF5 (.h5); BSDF-XML (.xml), for Radiance; readings on a "
             "grid (.csv); a MERL .binary table otherwise.\n"
             "If IN is readings, in any format that gonio reads, OUT becomes CSV (.csv) or BRDF "
-            "JSON "
-            "(.json, .brdf).\n"
+            "JSON (.json, .brdf); those of a Zemax .bsdf become a material by any other name.\n"
             "If IN is a basis of an older gonio (HDF5), OUT becomes the same basis in the present "
             "format.",
         .work = run,

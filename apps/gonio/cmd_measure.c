@@ -43,17 +43,17 @@ static int report(const tool *t, const options *o, const gonio_readings *reading
     return 0;
 }
 
-/* Reads a material, whose name goes to *name. */
-static gonio_status read_material(const tool *t, const options *o, const gonio_material *material,
-                                  gonio_readings *plan, const char **name)
+/* Reads a material or readings, of which the name goes to *name. */
+static gonio_status read_input(tool *t, const options *o, const tool_input *known,
+                               gonio_readings *plan, const char **name)
 {
     const gonio_instrument_options instrument = {.size = sizeof instrument,
                                                  .noise = o->noise / 100.0,
                                                  .floor = o->floor,
                                                  .seed = (uint64_t)o->seed,
                                                  .outliers = o->outliers / 100.0};
-    *name = gonio_material_name(material);
-    return gonio_measure_material(t->context, plan, material, &instrument);
+    *name = known->material != NULL ? gonio_material_name(known->material) : known->path;
+    return tool_take_values(t, known, &instrument, plan);
 }
 
 /* Writes the run of an instrument, and says how long it takes. */
@@ -77,7 +77,7 @@ static gonio_status rehearse(const tool *t, const options *o, const gonio_materi
 }
 
 /* Reads the input by the plan, and writes what was read. */
-static gonio_status read_and_write(const tool *t, const options *o, const tool_input *known,
+static gonio_status read_and_write(tool *t, const options *o, const tool_input *known,
                                    gonio_readings *readings, written *w)
 {
     gonio_status status = GONIO_OK;
@@ -88,15 +88,14 @@ static gonio_status read_and_write(const tool *t, const options *o, const tool_i
     if (o->instrument != NULL) {
         return rehearse(t, o, known->material, readings, w);
     }
-    status = known->readings != NULL ? gonio_readings_look_up(t->context, readings, known->readings)
-                                     : read_material(t, o, known->material, readings, &w->material);
+    status = read_input(t, o, known, readings, &w->material);
     w->channels = gonio_readings_describe(readings)->channels;
     return status == GONIO_OK
                ? gonio_readings_write(t->context, readings, t->command_line, o->output)
                : status;
 }
 
-static int measure(const tool *t, const options *o, const char *plan, const char *path)
+static int measure(tool *t, const options *o, const char *plan, const char *path)
 {
     const gonio_readings_options how = {.size = sizeof how,
                                         .values_needed = false,

@@ -1,6 +1,9 @@
 /* The input files of a command: see inputs.h. */
 #include "inputs.h"
 
+#include <stdio.h>
+#include <stdlib.h>
+
 gonio_status tool_open_material(const tool *t, const char *path, gonio_material **material)
 {
     gonio_kind kind = GONIO_KIND_UNKNOWN;
@@ -72,6 +75,62 @@ void tool_close_input(tool_input *input)
 {
     gonio_material_free(&input->material);
     gonio_readings_free(&input->readings);
+}
+
+/* ---- values at the directions of readings ---- */
+
+/* Counts the directions without a reading of their own. */
+static gonio_status count_unread(const tool *t, const gonio_readings *known,
+                                 const gonio_readings *at, size_t *unread)
+{
+    const size_t count = gonio_readings_describe(at)->count;
+    bool *read = calloc(count, sizeof *read);
+    const gonio_status status =
+        read != NULL ? gonio_readings_find(t->context, at, known, read) : GONIO_ERROR_MEMORY;
+    *unread = 0;
+    for (size_t k = 0; k < count && status == GONIO_OK; k++) {
+        *unread += !read[k];
+    }
+    free(read);
+    return status;
+}
+
+static bool is_grid(const char *path)
+{
+    gonio_kind kind = GONIO_KIND_UNKNOWN;
+    return gonio_file_expect(NULL, path, GONIO_KIND_MATERIAL, &kind) == GONIO_OK;
+}
+
+static gonio_status interpolate(tool *t, const char *path, size_t unread, gonio_readings *at)
+{
+    gonio_material *material = NULL;
+    char text[512];
+    gonio_status status = gonio_material_open(t->context, path, &material);
+    if (status == GONIO_OK) {
+        status = gonio_measure_material(t->context, at, material, NULL);
+    }
+    if (status == GONIO_OK) {
+        snprintf(text, sizeof text,
+                 "%s: %zu of %zu directions are none of its own: values are interpolated", path,
+                 unread, gonio_readings_describe(at)->count);
+        tool_say(&t->messages, GONIO_MESSAGE_NOTE, text);
+    }
+    gonio_material_free(&material);
+    return status;
+}
+
+gonio_status tool_take_values(tool *t, const tool_input *from,
+                              const gonio_instrument_options *instrument, gonio_readings *at)
+{
+    size_t unread = 0;
+    if (from->material != NULL) {
+        return gonio_measure_material(t->context, at, from->material, instrument);
+    }
+    const gonio_status status = count_unread(t, from->readings, at, &unread);
+    if (status == GONIO_OK && unread > 0 && is_grid(from->path)) {
+        return interpolate(t, from->path, unread, at);
+    }
+    return status == GONIO_OK ? gonio_readings_look_up(t->context, at, from->readings) : status;
 }
 
 gonio_status tool_read_mesh(const tool *t, const char *path, gonio_mesh **mesh)

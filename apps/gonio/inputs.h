@@ -33,6 +33,12 @@ typedef struct tool_input {
 gonio_status tool_open_input(const tool *t, const char *path, tool_input *input);
 void tool_close_input(tool_input *input);
 
+/* Gives readings the values of an input at their directions: those of a material, readings that
+ * are looked up, or, of readings on a grid (Zemax) that lack some of the directions, interpolated
+ * ones, with a note. instrument: of a material; NULL reads it without noise. */
+gonio_status tool_take_values(tool *t, const tool_input *from,
+                              const gonio_instrument_options *instrument, gonio_readings *at);
+
 /* As gonio_mesh_read, after gonio_file_expect. */
 gonio_status tool_read_mesh(const tool *t, const char *path, gonio_mesh **mesh);
 

@@ -64,10 +64,10 @@ typedef struct gonio_material_view {
 
 /* Opens a material: a MERL .binary table (phi_d of 180 bins, or 360 folded by reciprocity), a
  * neural BRDF .h5, an RGL .bsdf (RGB or spectral, isotropic or not), the unpolarised part of a
- * KAIST .pbsdf, a UTIA .bin, the reflection of BSDF-XML (Klems matrices, tensor trees), recognised
- * by content, or "atlas:NAME" for a built-in one. The path is copied. Errors: _IO (missing,
- * unreadable, a directory), _FORMAT (not a known format, truncated, oversized, non-finite weights),
- * _ARGUMENT (no such built-in material), _MEMORY. */
+ * KAIST .pbsdf, a UTIA .bin, the reflection of BSDF-XML (Klems matrices, tensor trees), a Zemax
+ * BSDF with all its sample rotations, recognised by content, or "atlas:NAME" for a built-in one.
+ * The path is copied. Errors: _IO (missing, unreadable, a directory), _FORMAT (not a known format,
+ * truncated, oversized, non-finite weights), _ARGUMENT (no such built-in material), _MEMORY. */
 GONIO_API gonio_status gonio_material_open(gonio_context *context, const char *path,
                                            gonio_material **material);
 

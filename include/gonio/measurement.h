@@ -220,14 +220,16 @@ GONIO_API gonio_status gonio_readings_write(gonio_context *context, const gonio_
 
 /* ---- two sets of readings ---- */
 
-/* Finds the readings whose directions occur in `others`: same[count]. Errors: _MEMORY. */
+/* Finds the readings whose directions occur in `others`, as gonio_readings_look_up does:
+ * same[count]. Errors: _MEMORY. */
 GONIO_API gonio_status gonio_readings_find(gonio_context *context, const gonio_readings *readings,
                                            const gonio_readings *others, bool *same);
 
 /* Looks up the values of a plan's directions in readings of the same material at more directions. A
  * direction gets the nearest reading within 1e-4 radians. If there is none, it gets one whose
- * directions are rotated about the normal, otherwise one at the reciprocal directions. Repeats are
- * averaged, with a note. Errors: _DATA if a direction was not read; _MEMORY. */
+ * directions are rotated about the normal, otherwise one at the reciprocal directions. Where the
+ * readings themselves differ as the sample turns, by 15 % and more (median), rotated ones are not
+ * taken. Repeats are averaged, with a note. Errors: _DATA if a direction was not read; _MEMORY. */
 GONIO_API gonio_status gonio_readings_look_up(gonio_context *context, gonio_readings *plan,
                                               const gonio_readings *known);
 

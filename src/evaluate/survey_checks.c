@@ -68,7 +68,7 @@ gonio_status gonio_i_survey_reciprocity(gonio_context *context, const gonio_read
         exchanged[k] = (gonio_pair){view->pair[k].outgoing, view->pair[k].incident};
     }
     if (status == GONIO_OK) {
-        status = gonio_i_find_readings(context, readings, exchanged, view->count, found);
+        status = gonio_i_find_readings(context, readings, false, exchanged, view->count, found);
     }
     difference d = {0.0, 0};
     for (size_t k = 0; k < view->count && status == GONIO_OK; k++) {

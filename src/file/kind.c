@@ -69,11 +69,25 @@ static gonio_kind first_of(const gonio_i_file *file, unsigned these, const char 
     return GONIO_KIND_UNKNOWN;
 }
 
+/* Readings on a grid (Zemax) are a material where only these are wanted. */
+static gonio_kind kind_of_readings(const gonio_i_file *file, unsigned wanted, const char **format)
+{
+    const char *material =
+        (wanted & GONIO_KIND_MATERIAL) != 0 && (wanted & GONIO_KIND_READINGS) == 0
+            ? gonio_i_material_format_of_readings(file)
+            : NULL;
+    *format = material != NULL ? material : *format;
+    return material != NULL ? GONIO_KIND_MATERIAL : GONIO_KIND_READINGS;
+}
+
 /* An RGL .bsdf is a material and has readings in it: readings where only these are wanted. CSV is
  * what any text may be. */
 static gonio_kind kind_of(const gonio_i_file *file, unsigned wanted, const char **format)
 {
     const gonio_kind kind = first_of(file, ~0U, format);
+    if (kind == GONIO_KIND_READINGS) {
+        return kind_of_readings(file, wanted, format);
+    }
     const char *readings = (wanted & GONIO_KIND_READINGS) != 0 && (kind & wanted) == 0
                                ? gonio_i_readings_format_of(file)
                                : NULL;

@@ -27,7 +27,13 @@ static const gonio_i_format_reader *find_reader(const gonio_i_file *file)
 const char *gonio_i_material_format_of(const gonio_i_file *file)
 {
     const gonio_i_format_reader *reader = find_reader(file);
-    return reader != NULL ? reader->name : NULL;
+    return reader != NULL && !reader->readings ? reader->name : NULL;
+}
+
+const char *gonio_i_material_format_of_readings(const gonio_i_file *file)
+{
+    const gonio_i_format_reader *reader = find_reader(file);
+    return reader != NULL && reader->readings ? reader->name : NULL;
 }
 
 const char *gonio_i_material_format_name(int index)

@@ -194,7 +194,7 @@ static gonio_status prepare(blank *b)
         b->deviation == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    status = gonio_i_find_readings(b->context, b->dark, r->pair, r->count, b->found);
+    status = gonio_i_find_readings(b->context, b->dark, true, r->pair, r->count, b->found);
     for (size_t c = 0; c < r->channels && status == GONIO_OK; c++) {
         status = find_level(b, c);
     }

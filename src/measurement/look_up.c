@@ -1,11 +1,17 @@
 /* Looking up readings in other readings of the same material: see measurement.h. */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "readings.h"
 
 static const double SAME = 1e-4; /* radians */
+
+/* Readings of an anisotropic sample differ by 28 % and more at other rotations of it (median), as
+ * gonio_interpretation.anisotropic says. Noise and drift of instruments are below. */
+static const double ANISOTROPIC = 0.25;
+enum { ENOUGH_TURNED = 5 };
 
 /* How a known reading matches directions that are looked up. Smaller is better. */
 typedef enum likeness { EXACT, ROTATED, RECIPROCAL, NONE } likeness;
@@ -40,11 +46,16 @@ static double distance_rotated(gonio_pair a, gonio_pair b)
     return fmax(theta, turn * sin(fmin(a.incident.theta, a.outgoing.theta)));
 }
 
-static likeness compare(gonio_pair a, gonio_pair b, double *apart)
+/* turned: the rotation of the sample matters. */
+static likeness compare(gonio_pair a, gonio_pair b, bool turned, double *apart)
 {
     *apart = distance(a, b);
     if (*apart <= SAME) {
         return EXACT;
+    }
+    if (turned) {
+        *apart = distance((gonio_pair){a.outgoing, a.incident}, b);
+        return *apart <= SAME ? RECIPROCAL : NONE;
     }
     *apart = distance_rotated(a, b);
     if (*apart <= SAME) {
@@ -80,12 +91,29 @@ static int compare_places(const void *a, const void *b)
 
 typedef struct known_places {
     const gonio_readings *readings;
-    place *place; /* [readings->count], sorted */
+    place *place;  /* [readings->count], sorted */
+    bool turned;   /* the rotation of the sample matters */
+    double median; /* by what readings at other rotations differ, |ln| */
 } known_places;
+
+/* Whether readings at other rotations of the sample differ by more than noise, so that only the
+ * readings of a rotation stand for it. */
+static bool are_turned(gonio_context *context, const gonio_readings *known, known_places *k)
+{
+    size_t pairs = 0;
+    const gonio_status status = gonio_i_readings_compare_turned(context, known, &pairs, &k->median);
+    k->turned = status == GONIO_OK && pairs >= ENOUGH_TURNED && k->median > ANISOTROPIC;
+    return status == GONIO_OK;
+}
 
 static bool sort_places(gonio_context *context, const gonio_readings *known, known_places *k)
 {
-    *k = (known_places){known, gonio_i_allocate(context, known->count, sizeof *k->place)};
+    *k = (known_places){.readings = known,
+                        .place = gonio_i_allocate(context, known->count, sizeof *k->place)};
+    if (k->place != NULL && !are_turned(context, known, k)) {
+        free(k->place);
+        k->place = NULL;
+    }
     for (size_t n = 0; k->place != NULL && n < known->count; n++) {
         const gonio_pair *pair = &known->pair[n];
         k->place[n] = (place){column_of(pair->incident.theta), pair->outgoing.theta, n};
@@ -123,7 +151,7 @@ static void try_reading(const known_places *k, gonio_pair at, size_t reading, be
 {
     double apart = 0.0;
     const gonio_pair here = k->readings->pair[reading];
-    const likeness like = compare(at, here, &apart);
+    const likeness like = compare(at, here, k->turned, &apart);
     const double turn = turn_between(at.incident.phi, here.incident.phi) +
                         turn_between(at.outgoing.phi, here.outgoing.phi);
     const bool first = turn < b->turn || (turn == b->turn && reading < b->reading);
@@ -159,12 +187,14 @@ static size_t find(const known_places *k, gonio_pair at)
 }
 
 gonio_status gonio_i_find_readings(gonio_context *context, const gonio_readings *readings,
-                                   const gonio_pair *pair, size_t count, size_t *found)
+                                   bool any_rotation, const gonio_pair *pair, size_t count,
+                                   size_t *found)
 {
     known_places k;
     if (!sort_places(context, readings, &k)) {
         return GONIO_ERROR_MEMORY;
     }
+    k.turned = k.turned && !any_rotation;
     for (size_t n = 0; n < count; n++) {
         best b = {NONE, INFINITY, INFINITY, readings->count};
         try_angles(&k, pair[n], pair[n].incident.theta, pair[n].outgoing.theta, &b);
@@ -256,6 +286,21 @@ static gonio_status take_channels(gonio_context *context, gonio_readings *plan,
     return plan->deviation != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
 }
 
+static gonio_status refuse_unread(gonio_context *context, const gonio_readings *plan, size_t row,
+                                  const known_places *k)
+{
+    char turned[96] = "";
+    if (k->turned) {
+        snprintf(turned, sizeof turned,
+                 " and this rotation of the sample, by which readings differ (%.0f %%)",
+                 100.0 * expm1(k->median));
+    }
+    return gonio_i_fail(context, GONIO_ERROR_DATA,
+                        "%s:%zu: %s has no reading at these directions%s; plan with --candidates "
+                        "to choose among those it has",
+                        plan->path, plan->line[row], k->readings->path, turned);
+}
+
 static gonio_status fill(gonio_context *context, gonio_readings *plan, const known_places *k,
                          const size_t *next)
 {
@@ -264,10 +309,7 @@ static gonio_status fill(gonio_context *context, gonio_readings *plan, const kno
     for (size_t n = 0; n < plan->count; n++) {
         const size_t from = find(k, plan->pair[n]);
         if (from == known->count) {
-            return gonio_i_fail(context, GONIO_ERROR_DATA,
-                                "%s:%zu: %s has no reading at these directions; plan with "
-                                "--candidates to choose among those it has",
-                                plan->path, plan->line[n], known->path);
+            return refuse_unread(context, plan, n, k);
         }
         averaged += take_values(plan, n, known, next, from);
     }

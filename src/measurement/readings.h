@@ -105,10 +105,12 @@ void gonio_i_value_name(const gonio_readings *readings, size_t channel, bool dev
 
 /* ---- the same directions (repeats.c, look_up.c) ---- */
 
-/* Finds the reading that matches each pair of directions, as it is, rotated about the normal or
- * reciprocal: found[count], readings->count where there is none. Errors: _MEMORY. */
+/* Finds the reading that matches each pair of directions, as it is or rotated about the normal:
+ * found[count], readings->count where there is none. Rotated ones match if any_rotation, or if the
+ * readings do not differ as the sample turns. Errors: _MEMORY. */
 gonio_status gonio_i_find_readings(gonio_context *context, const gonio_readings *readings,
-                                   const gonio_pair *pair, size_t count, size_t *found);
+                                   bool any_rotation, const gonio_pair *pair, size_t count,
+                                   size_t *found);
 
 /* Fills in first_same for readings in any order. */
 gonio_status gonio_i_readings_group(gonio_context *context, gonio_readings *readings);

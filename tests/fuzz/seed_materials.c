@@ -92,6 +92,15 @@ static const char tree4[] =
     XML_BEGIN "TensorTree4</IncidentDataStructure></DataDefinition>" XML_BLOCK(
         "Visible", "{ 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 }") XML_END;
 
+#define SIX "TIS 1\n1 2 3\n0 5 6\n"
+#define PLANE "DataBegin\n" SIX SIX SIX SIX SIX SIX "DataEnd\n"
+
+static const char grid[] =
+    "# a sheet\nSymmetry ASymmetrical4D\nSpectralContent XYZ\nScatterType BRDF\nSampleRotation "
+    "3\n0 "
+    "45 90\nAngleOfIncidence 2\n10 50\nScatterAzimuth 3\n0 90 180\nScatterRadial 2\n0 30\n"
+    "TristimulusX\n" PLANE "TristimulusY\n" PLANE "TristimulusZ\n" PLANE;
+
 /* The smallest anisotropic table. */
 static void seed_anisotropic_table(void)
 {
@@ -131,4 +140,5 @@ void seed_materials(void)
     seed_text("material", "spectrum.xml", spectrum);
     seed_text("material", "tree3.xml", tree3);
     seed_text("material", "tree4.xml", tree4);
+    seed_text("material", "zemax.bsdf", grid);
 }

@@ -432,10 +432,45 @@ static void test_spectra_as_colours(void **state)
     }
 }
 
+/* Readings that differ as the sample turns are not taken for those of another rotation. */
+static void test_rotations_of_an_anisotropic_sample(void **state)
+{
+    (void)state;
+    enum { ROTATIONS = 6 };
+    double rows[ROTATIONS][7];
+    gonio_context *context = support_context();
+    for (int k = 0; k < ROTATIONS; k++) {
+        const double row[7] = {30, 30.0 * k, 50, 30.0 * k + 40, 1 + k % 2, 1 + k % 2, 1 + k % 2};
+        memcpy(rows[k], row, sizeof row);
+    }
+    gonio_readings *known = made_colours((const double(*)[7])rows, ROTATIONS);
+    static const struct {
+        double row[4];
+        double value; /* -1: none */
+    } cases[] = {
+        {{30, 30, 50, 70}, 2.0},  {{50, 70, 30, 30}, 2.0},    {{30, 60, 50, 100}, 1.0},
+        {{30, 45, 50, 85}, -1.0}, {{30, 210, 50, 250}, -1.0},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        gonio_readings *plan = made_directions(&cases[k].row, 1);
+        const gonio_status status = gonio_readings_look_up(context, plan, known);
+        assert_int_equal(status, cases[k].value > 0.0 ? GONIO_OK : GONIO_ERROR_DATA);
+        if (status == GONIO_OK) {
+            assert_close(gonio_readings_value(plan, 0, 0), cases[k].value, 0.0);
+        } else {
+            assert_non_null(strstr(support_message(), "this rotation of the sample"));
+        }
+        gonio_readings_free(&plan);
+    }
+    gonio_readings_free(&known);
+    gonio_context_free(&context);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_look_up),
+        cmocka_unit_test(test_rotations_of_an_anisotropic_sample),
         cmocka_unit_test(test_own_lines_come_first),
         cmocka_unit_test(test_rounded_angles_are_found),
         cmocka_unit_test(test_repeats_are_averaged),

@@ -172,5 +172,5 @@ static bool recognises(const gonio_i_file *file)
            memmem(file->head, file->head_size, name, sizeof name - 1) != NULL;
 }
 
-const gonio_i_format_reader gonio_i_anisotropic_reader = {"gonio anisotropic table .h5", recognises,
-                                                          open_table};
+const gonio_i_format_reader gonio_i_anisotropic_reader = {
+    .name = "gonio anisotropic table .h5", .recognises = recognises, .open = open_table};

@@ -385,4 +385,5 @@ static bool recognises(const gonio_i_file *file)
            memmem(file->head, file->head_size, ":WindowElement", 14) != NULL;
 }
 
-const gonio_i_format_reader gonio_i_bsdf_xml_reader = {"BSDF-XML", recognises, open_xml};
+const gonio_i_format_reader gonio_i_bsdf_xml_reader = {
+    .name = "BSDF-XML", .recognises = recognises, .open = open_xml};

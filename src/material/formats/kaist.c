@@ -203,4 +203,5 @@ static bool recognises(const gonio_i_file *file)
            memmem(file->head, file->head_size, "vndf", 4) == NULL;
 }
 
-const gonio_i_format_reader gonio_i_kaist_reader = {"KAIST .pbsdf", recognises, open_kaist};
+const gonio_i_format_reader gonio_i_kaist_reader = {
+    .name = "KAIST .pbsdf", .recognises = recognises, .open = open_kaist};

@@ -286,7 +286,8 @@ static gonio_status open_table(gonio_context *context, const gonio_i_file *file,
     return GONIO_OK;
 }
 
-const gonio_i_format_reader gonio_i_merl_reader = {"MERL .binary table", recognises, open_table};
+const gonio_i_format_reader gonio_i_merl_reader = {
+    .name = "MERL .binary table", .recognises = recognises, .open = open_table};
 
 GONIO_I_VECTORISED static void to_stored(double *values, int channel)
 {

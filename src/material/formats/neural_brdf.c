@@ -255,4 +255,5 @@ static gonio_status open_network(gonio_context *context, const gonio_i_file *fil
     return GONIO_OK;
 }
 
-const gonio_i_format_reader gonio_i_neural_reader = {"neural BRDF .h5", recognises, open_network};
+const gonio_i_format_reader gonio_i_neural_reader = {
+    .name = "neural BRDF .h5", .recognises = recognises, .open = open_network};

@@ -410,4 +410,5 @@ static bool recognises(const gonio_i_file *file)
            memmem(file->head, file->head_size, "vndf", 4) != NULL;
 }
 
-const gonio_i_format_reader gonio_i_rgl_reader = {"RGL .bsdf", recognises, open_rgl};
+const gonio_i_format_reader gonio_i_rgl_reader = {
+    .name = "RGL .bsdf", .recognises = recognises, .open = open_rgl};

@@ -209,4 +209,5 @@ static bool recognises(const gonio_i_file *file)
     return true;
 }
 
-const gonio_i_format_reader gonio_i_utia_reader = {"UTIA .bin", recognises, open_utia};
+const gonio_i_format_reader gonio_i_utia_reader = {
+    .name = "UTIA .bin", .recognises = recognises, .open = open_utia};

@@ -3,9 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../core/text_numbers.h"
 #include "../import.h"
 #include "format.h"
-#include "numbers.h"
 
 enum { MOST_NUMBERS = 64, MOST_COORDINATES = 6 };
 

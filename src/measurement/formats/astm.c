@@ -4,10 +4,10 @@
 #include <string.h>
 #include <strings.h>
 
+#include "../../core/text_numbers.h"
 #include "../../material/colour.h"
 #include "../import.h"
 #include "format.h"
-#include "numbers.h"
 
 enum { MOST_CHANNELS = 4096, ANGLES = 4 };
 

@@ -7,9 +7,9 @@
 #include <string.h>
 
 #include "../../core/text_file.h"
+#include "../../core/text_numbers.h"
 #include "../import.h"
 #include "format.h"
-#include "numbers.h"
 
 enum { PAIRS = 205, ROW = 1 + PAIRS, TABLE_ROW = 5, MOST_SAMPLES = 1000 };
 

@@ -5,9 +5,9 @@
 #include <string.h>
 #include <strings.h>
 
+#include "../../core/text_numbers.h"
 #include "../import.h"
 #include "format.h"
-#include "numbers.h"
 
 /* The value where the detector was blocked. */
 static const double BLOCKED = 1e-5;

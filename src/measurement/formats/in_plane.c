@@ -7,9 +7,9 @@
 #include <string.h>
 #include <strings.h>
 
+#include "../../core/text_numbers.h"
 #include "../import.h"
 #include "format.h"
-#include "numbers.h"
 
 enum { THETA_I, PHI_I, THETA_O, PHI_O, VALUE, MOST_COLUMNS = 4096 };
 

@@ -5,10 +5,10 @@
 #include <string.h>
 #include <strings.h>
 
+#include "../../core/text_numbers.h"
 #include "../../material/colour.h"
 #include "../import.h"
 #include "format.h"
-#include "numbers.h"
 
 enum { MOST_VALUES = 64 };
 

@@ -2,9 +2,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../core/text_numbers.h"
 #include "../import.h"
 #include "format.h"
-#include "numbers.h"
 
 enum { MOST_WAVELENGTHS = 4096, ANGLES = 4, LEAST_WAVELENGTH = 100 };
 

@@ -8,10 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../core/text_numbers.h"
 #include "../import.h"
 #include "../long_table.h"
 #include "format.h"
-#include "numbers.h"
 
 enum {
     TEMPERATURE,

@@ -1,5 +1,5 @@
-/* The words and numbers of a text: see numbers.h. */
-#include "numbers.h"
+/* The words and numbers of a text: see text_numbers.h. */
+#include "text_numbers.h"
 
 #include <ctype.h>
 #include <math.h>

@@ -1,8 +1,8 @@
 /* The words and numbers of a text, one after another, with the line that each is in. */
-#ifndef GONIO_NUMBERS_H
-#define GONIO_NUMBERS_H
+#ifndef GONIO_TEXT_NUMBERS_H
+#define GONIO_TEXT_NUMBERS_H
 
-#include "../../core/core.h"
+#include "core.h"
 
 enum { GONIO_I_WORD = 64 };
 
