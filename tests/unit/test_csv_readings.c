@@ -299,12 +299,82 @@ static void test_names_of_angles(void **state)
     }
 }
 
+/* Without azimuths readings are in the plane of incidence. */
+static void test_angles_in_the_plane(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text;
+        const char *as;
+        double degrees[4];
+        const char *note;
+    } cases[] = {
+        {"theta_i,theta_o,brdf\n30,40,1\n", "", {30, 0, 40, 180}, "equal signs on the mirror"},
+        {"theta_i,theta_o,brdf\n30,-40,1\n", "", {30, 0, 40, 0}, "1 with theta below zero"},
+        {"theta_i,theta_o,brdf\n30,-40,1\n", "mirror=180", {30, 0, 40, 180}, "opposite signs"},
+        {"theta_i,theta_o,brdf\n-30,40,1\n", "mirror=180", {30, 180, 40, 0}, "opposite signs"},
+        {"theta_i,theta_o,brdf\n-30,-40,1\n", "mirror=0", {30, 180, 40, 0}, "equal signs"},
+        {"# mirror: 180\ntheta_i,theta_o,brdf\n30,40,1\n", "", {30, 0, 40, 0}, "opposite signs"},
+        {"# mirror: 0\n" ANGLES ",value_per_sr\n30,0,40,0,1\n", "", {30, 0, 40, 180}, "phi_i on"},
+        {"theta_i,angle from specular,brdf\n30,10,1\n", "", {30, 0, 40, 180}, "away from the"},
+        {"theta_i,off-specular angle [rad],brdf\n1,-0.5,1\n",
+         "angles=degrees",
+         {1, 0, 0.5, 180},
+         "from the mirror direction"},
+        {"theta_i,aspecular angle,brdf\n45,15,1\n", "", {45, 0, 30, 180}, "towards the light"},
+        {"theta_i,aspecular angle,brdf\n45,110,1\n", "mirror=0", {45, 0, 65, 0}, "towards the"},
+        {"theta_i,phi_i,delta specular,brdf\n30,20,10,1\n", "", {30, 20, 40, 200}, "away from"},
+        {ANGLES ",from specular,brdf\n30,0,40,180,9,1\n", "", {30, 0, 40, 180}, "not read"},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        print_message("%s", cases[k].text);
+        gonio_readings *readings = read_good(cases[k].text, cases[k].as);
+        assert_degrees(readings, 0, cases[k].degrees);
+        assert_note(readings, cases[k].note);
+        gonio_readings_free(&readings);
+    }
+}
+
+/* What is written has gonio's azimuths, and nothing that turns them again. */
+static void test_the_plane_is_written_with_azimuths(void **state)
+{
+    (void)state;
+    char *folder = support_folder();
+    char path[256];
+    const gonio_readings_options how = {.size = sizeof how, .values_needed = true};
+    const double degrees[4] = {30, 0, 40, 180};
+    gonio_readings *again = NULL;
+    gonio_context *context = support_context();
+    gonio_readings *readings = read_good("# mirror: 0\ntheta_i,theta_o,brdf\n30,40,1\n", "");
+    snprintf(path, sizeof path, "%s/again.csv", folder);
+    assert_int_equal(gonio_readings_write(context, readings, NULL, path), GONIO_OK);
+    assert_int_equal(gonio_readings_read(context, path, &how, &again), GONIO_OK);
+    assert_degrees(again, 0, degrees);
+    gonio_readings_free(&again);
+    gonio_readings_free(&readings);
+    gonio_context_free(&context);
+    support_remove(folder);
+}
+
 static void test_names_that_are_no_angles(void **state)
 {
     (void)state;
-    static const char *const names[] = {"phi_d",   "theta_h", "theta_d_deg",  "phi", "theta",
-                                        "light",   "in",      "temperature",  "",    "angle",
-                                        "theta_1", "time",    "phi_i_theta_i"};
+    static const char *const names[] = {"phi_d",
+                                        "theta_h",
+                                        "theta_d_deg",
+                                        "phi",
+                                        "theta",
+                                        "light",
+                                        "in",
+                                        "temperature",
+                                        "",
+                                        "angle",
+                                        "theta_1",
+                                        "time",
+                                        "phi_i_theta_i",
+                                        "specular",
+                                        "delta_theta",
+                                        "theta_i from specular"};
     for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
         if (gonio_i_column_name_of(names[k]).kind == GONIO_I_ANGLE) {
             fail_msg("'%s' is no angle", names[k]);
@@ -324,6 +394,10 @@ static void test_angles_that_are_refused(void **state)
         {"theta_i_rad,phi_i_deg,theta_o,phi_o,brdf\n1,2,3,4,5\n",
          "the angles of columns 'theta_i_rad' and 'phi_i_deg' differ in their unit"},
         {"theta_i,theta_o,phi_o,brdf\n1,2,3,4\n", "no column 'phi_i_deg'"},
+        {"theta_i,theta_o,brdf\n-30,30,1\n", "--as mirror=180 says"},
+        {"theta_i,off-specular angle,raa,brdf\n30,10,0,1\n", "no azimuth as in 'raa' belongs"},
+        {"theta_i,off specular,aspecular,brdf\n30,10,0,1\n", "two columns of the same angle"},
+        {"theta_i,off specular,brdf\n30,10,1\n30,inf,1\n", "is not a finite number"},
         {"# angles: radians\ntheta_i,phi_i,theta_o,phi_o,brdf\n45,0,30,180,1\n",
          "these look like degrees: use --as angles=degrees"},
         {ANGLES ",brdf\n10,0,95,0,1\n", "none of the 1 rows is a reading above the horizon"},
@@ -422,6 +496,8 @@ int main(void)
         cmocka_unit_test(test_what_is_refused),
         cmocka_unit_test(test_deviations),
         cmocka_unit_test(test_names_of_angles),
+        cmocka_unit_test(test_angles_in_the_plane),
+        cmocka_unit_test(test_the_plane_is_written_with_azimuths),
         cmocka_unit_test(test_names_that_are_no_angles),
         cmocka_unit_test(test_angles_that_are_refused),
         cmocka_unit_test(test_a_line_for_each_wavelength),

@@ -41,6 +41,7 @@ typedef struct csv_source {
     double *deviation;         /* [channels] */
     gonio_i_csv_others others; /* columns that are not read */
     double difference;         /* of azimuths, degrees, of a row */
+    double off;                /* from the mirror direction, degrees, of a row */
     double wavelength;         /* of a row */
     gonio_i_long_table table;  /* rows of one wavelength each */
 } csv_source;
@@ -72,7 +73,13 @@ static gonio_status take_angle(csv_source *s, size_t column, size_t index, gonio
     if (!isfinite(number)) {
         return bad_cell(s, column, GONIO_ERROR_FORMAT, "is not a finite number");
     }
-    *(index == GONIO_I_AZIMUTH_DIFFERENCE ? &s->difference : &row->degrees[index]) = degrees;
+    if (index == GONIO_I_AZIMUTH_DIFFERENCE) {
+        s->difference = degrees;
+    } else if (index >= GONIO_I_FROM_SPECULAR) {
+        s->off = degrees;
+    } else {
+        row->degrees[index] = degrees;
+    }
     return GONIO_OK;
 }
 
@@ -184,6 +191,29 @@ static void take_difference(const csv_source *s, gonio_i_row *row)
     }
 }
 
+/* The detector in the plane of incidence, from the mirror direction or with a sign. Without a word
+ * on it the detector is on the mirror's side where it has the sign of theta_i. */
+static gonio_status take_plane(const csv_source *s, gonio_i_row *row)
+{
+    const gonio_i_csv_columns *c = s->columns;
+    const int mirror = s->in.how.mirror;
+    if (c->from_specular != 0) {
+        row->degrees[0] = fabs(row->degrees[0]);
+        row->degrees[2] = gonio_i_import_rounded(row->degrees[0] + c->from_specular * s->off);
+        row->degrees[3] = row->degrees[1] + (mirror == GONIO_MIRROR_0 ? 0.0 : 180.0);
+    } else if (c->in_plane) {
+        row->degrees[3] = mirror == GONIO_AS_STATED ? 180.0 : 0.0;
+        if (mirror == GONIO_AS_STATED && row->degrees[0] < 0.0) {
+            return gonio_i_fail(s->context, GONIO_ERROR_DATA,
+                                "%s:%zu: theta_i below zero without azimuths: --as mirror=180 says "
+                                "that light and mirror direction have opposite signs, --as "
+                                "mirror=0 that they have the same",
+                                s->reader.path, row->line);
+        }
+    }
+    return GONIO_OK;
+}
+
 /* Adds a row of one wavelength. It is kept until all wavelengths of its directions are known. */
 static gonio_status add_long(csv_source *s, const gonio_i_row *row)
 {
@@ -212,6 +242,7 @@ static gonio_status take_row(csv_source *s)
         status = take_cell(s, s->columns->read[k], &row);
     }
     take_difference(s, &row);
+    status = status == GONIO_OK ? take_plane(s, &row) : status;
     gonio_i_csv_others_look(&s->others, &s->reader);
     if (status != GONIO_OK) {
         return status;
@@ -340,9 +371,9 @@ static gonio_status import_wide(csv_source *s)
 
 static gonio_status import_rows(csv_source *s, gonio_i_csv_kept *kept)
 {
-    char taken_as[GONIO_I_TAKEN_ROOM];
-    gonio_i_csv_describe(&s->reader, s->columns, taken_as);
+    char taken_as[GONIO_I_TAKEN_ROOM] = "";
     begin_import(s, kept, taken_as);
+    gonio_i_csv_describe(&s->reader, s->columns, s->in.how.mirror, taken_as);
     gonio_status status = gonio_i_csv_others_begin(&s->others, s->context, s->columns);
     if (status == GONIO_OK) {
         status = s->columns->by_wavelength ? import_long(s) : import_wide(s);

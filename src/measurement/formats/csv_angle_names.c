@@ -15,7 +15,10 @@ enum {
     ANY_ANGLE = 1 << 5, /* an angle in the plane: polar unless a word says azimuth */
     DEGREES = 1 << 6,
     RADIANS = 1 << 7,
-    FILLER = 1 << 8
+    FILLER = 1 << 8,
+    SPECULAR = 1 << 9,
+    FROM = 1 << 10,
+    TOWARDS_NORMAL = 1 << 11
 };
 
 static const gonio_i_known_word angle_words[] = {
@@ -82,6 +85,12 @@ static const gonio_i_known_word angle_words[] = {
     {"dphi", AZIMUTH | DIFFERENCE, 0},
     {"deltaphi", AZIMUTH | DIFFERENCE, 0},
     {"phidiff", AZIMUTH | DIFFERENCE, 0},
+    {"specular", SPECULAR, 0},
+    {"mirror", SPECULAR, 0},
+    {"aspecular", SPECULAR | FROM | TOWARDS_NORMAL, 0},
+    {"from", FROM, 0},
+    {"off", FROM, 0},
+    {"offset", FROM, 0},
     {"angle", ANY_ANGLE, 0},
     {"angles", ANY_ANGLE, 0},
     {"direction", FILLER, 0},
@@ -123,14 +132,26 @@ static int unit_of_angle(unsigned bits)
                                    : 0;
 }
 
-/* The number of an angle, 0 to 3, or GONIO_I_AZIMUTH_DIFFERENCE; -1 for none. */
+/* An angle from the mirror direction in the plane; -1 for none. */
+static int angle_from_specular(unsigned bits)
+{
+    if ((bits & (AZIMUTH | INCIDENT)) != 0 || (bits & (FROM | DIFFERENCE)) == 0) {
+        return -1;
+    }
+    return (bits & TOWARDS_NORMAL) != 0 ? GONIO_I_ASPECULAR : GONIO_I_FROM_SPECULAR;
+}
+
+/* The number of an angle, 0 to 3, or one of those behind them; -1 for none. */
 static int angle_of(unsigned bits)
 {
     const bool in = (bits & INCIDENT) != 0;
     const bool out = (bits & OUTGOING) != 0;
     const bool azimuth = (bits & AZIMUTH) != 0;
     const bool polar = (bits & POLAR) != 0 || ((bits & ANY_ANGLE) != 0 && !azimuth);
-    if (polar == azimuth) {
+    if ((bits & SPECULAR) != 0) {
+        return angle_from_specular(bits);
+    }
+    if (polar == azimuth || (bits & FROM) != 0) {
         return -1;
     }
     if (azimuth && in == out) {

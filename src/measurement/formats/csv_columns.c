@@ -5,131 +5,9 @@
 #include <string.h>
 
 #include "../rules.h"
+#include "csv_finder.h"
 
-/* The search for columns. */
-typedef struct finder {
-    const gonio_i_csv_reader *r;
-    const gonio_readings_options *options;
-    gonio_i_csv_columns *c;
-    gonio_i_column_name *name; /* [columns] */
-    gonio_i_strength strongest;
-    gonio_i_family family; /* of the channels that are read */
-    int quantity;
-} finder;
-
-static gonio_status refuse_two(const finder *f, const char *what, size_t a, size_t b)
-{
-    return gonio_i_fail(f->r->context, GONIO_ERROR_FORMAT,
-                        "%s: two columns of %s, '%s' and '%s'; delete or rename one", f->r->path,
-                        what, f->r->name[a], f->r->name[b]);
-}
-
-/* Checks that columns agree in their unit. unit: of one column; *stated: of those before, 0 for
- * none.
- */
-static gonio_status agree(const finder *f, const char *what, const char *key, size_t k, int unit,
-                          int *stated, size_t *by)
-{
-    if (unit != 0 && *stated != 0 && unit != *stated) {
-        return gonio_i_fail(f->r->context, GONIO_ERROR_FORMAT,
-                            "%s: the %s of columns '%s' and '%s' differ in their unit; give one "
-                            "unit, or state it by --as %s=...",
-                            f->r->path, what, f->r->name[*by], f->r->name[k], key);
-    }
-    *by = unit != 0 ? k : *by;
-    *stated = unit != 0 ? unit : *stated;
-    return GONIO_OK;
-}
-
-/* The text after the key of a comment "key: ...", in any letter case; NULL for another key. */
-static const char *text_behind(const char *comment, const char *key)
-{
-    const size_t length = strlen(key);
-    const bool same = strncasecmp(comment, key, length) == 0 && comment[length] == ':';
-    return same ? comment + length + 1 + strspn(comment + length + 1, " ") : NULL;
-}
-
-/* The text of the first comment with one of the keys, which end with NULL. */
-static const char *comment_of(const finder *f, const char *const *keys)
-{
-    const char *text = NULL;
-    for (size_t k = 0; k < f->r->comment.count && text == NULL; k++) {
-        for (size_t j = 0; keys[j] != NULL && text == NULL; j++) {
-            text = text_behind(f->r->comment.line[k], keys[j]);
-        }
-    }
-    return text;
-}
-
-/* ---- angles ---- */
-
-/* Chooses the column of each angle. gonio's own names come before others. */
-static gonio_status choose_angles(const finder *f, size_t chosen[GONIO_I_ANGLE_COLUMNS])
-{
-    const size_t none = f->r->columns;
-    for (size_t k = 0; k < none; k++) {
-        if (f->name[k].kind != GONIO_I_ANGLE) {
-            continue;
-        }
-        size_t *at = &chosen[f->name[k].index];
-        if (*at == none || (f->name[k].own && !f->name[*at].own)) {
-            *at = k;
-        } else if (f->name[k].own == f->name[*at].own) {
-            return refuse_two(f, "the same angle", *at, k);
-        }
-    }
-    return GONIO_OK;
-}
-
-static gonio_status refuse_missing(const finder *f, size_t angle)
-{
-    return gonio_i_fail(f->r->context, GONIO_ERROR_FORMAT,
-                        "%s: no column '%s'; theta_i_deg, phi_i_deg, theta_o_deg and phi_o_deg "
-                        "are needed",
-                        f->r->path, gonio_i_angle_names[angle]);
-}
-
-static gonio_status check_angles(const finder *f, const size_t chosen[GONIO_I_ANGLE_COLUMNS])
-{
-    for (size_t angle = 0; angle < 4; angle++) {
-        const bool replaced = angle % 2 == 1 && f->c->difference_gives != 0;
-        if (chosen[angle] == f->r->columns && !replaced) {
-            return refuse_missing(f, angle);
-        }
-    }
-    return GONIO_OK;
-}
-
-static gonio_status find_angles(const finder *f)
-{
-    static const char *const keys[] = {"angles", "angle unit", "angle units",
-                                       "unit",   "units",      NULL};
-    const size_t none = f->r->columns;
-    size_t chosen[GONIO_I_ANGLE_COLUMNS] = {none, none, none, none, none};
-    size_t by = 0;
-    gonio_status status = choose_angles(f, chosen);
-    if (chosen[GONIO_I_AZIMUTH_DIFFERENCE] != none) {
-        f->c->difference_gives = chosen[3] == none ? 3 : chosen[1] == none ? 1 : 0;
-    }
-    status = status == GONIO_OK ? check_angles(f, chosen) : status;
-    f->c->own_angles = f->c->difference_gives == 0;
-    for (size_t angle = 0; angle < GONIO_I_ANGLE_COLUMNS && status == GONIO_OK; angle++) {
-        const size_t k = chosen[angle];
-        if (k == none || (angle == GONIO_I_AZIMUTH_DIFFERENCE && f->c->difference_gives == 0)) {
-            continue;
-        }
-        f->c->column[k] = (gonio_i_csv_column){.kind = GONIO_I_ANGLE, .index = angle};
-        f->c->own_angles = f->c->own_angles && f->name[k].own;
-        if (f->options->as.angles == GONIO_AS_STATED) {
-            status = agree(f, "angles", "angles", k, f->name[k].unit, &f->c->stated.angles, &by);
-        }
-    }
-    const char *comment = comment_of(f, keys);
-    if (f->c->stated.angles == 0 && comment != NULL) {
-        f->c->stated.angles = gonio_i_angle_unit_in(comment);
-    }
-    return status;
-}
+typedef gonio_i_csv_finder finder;
 
 /* ---- values ---- */
 
@@ -203,11 +81,11 @@ static gonio_status add_value(const finder *f, size_t k, size_t *unit_by, size_t
     c->any_value = true;
     c->own = c->own && n->own;
     if (f->options->as.values == GONIO_AS_STATED) {
-        status = agree(f, "values", "values", k, n->unit, &c->stated.values, unit_by);
+        status = gonio_i_csv_agree(f, "values", "values", k, n->unit, &c->stated.values, unit_by);
     }
     if (status == GONIO_OK && f->options->as.wavelengths == GONIO_AS_STATED) {
-        status = agree(f, "wavelengths", "wavelengths", k, n->wavelength_unit,
-                       &c->stated.wavelengths, wave_by);
+        status = gonio_i_csv_agree(f, "wavelengths", "wavelengths", k, n->wavelength_unit,
+                                   &c->stated.wavelengths, wave_by);
     }
     return status;
 }
@@ -236,7 +114,7 @@ static gonio_status find_values(const finder *f)
             status = add_value(f, k, &unit_by, &wave_by);
         }
     }
-    take_value_comment(c, comment_of(f, keys));
+    take_value_comment(c, gonio_i_csv_comment_of(f, keys));
     return status;
 }
 
@@ -293,7 +171,7 @@ static gonio_status refuse_twice(const finder *f, const key_list *list)
             } else if (f->family == GONIO_I_COLOUR) {
                 snprintf(what, sizeof what, "%c", "RGB"[(int)a->key]);
             }
-            return refuse_two(f, what, a->column, list->item[k].column);
+            return gonio_i_csv_refuse_two(f, what, a->column, list->item[k].column);
         }
     }
     return GONIO_OK;
@@ -460,7 +338,7 @@ static gonio_status order_columns(const finder *f)
 
 static gonio_status choose_columns(finder *f)
 {
-    gonio_status status = find_angles(f);
+    gonio_status status = gonio_i_csv_find_angles(f);
     if (status == GONIO_OK) {
         status = choose_family(f);
     }

@@ -30,8 +30,15 @@ typedef enum gonio_i_strength {
     GONIO_I_CERTAIN   /* with _per_sr */
 } gonio_i_strength;
 
-/* Index of phi_o - phi_i, behind theta_i, phi_i, theta_o, phi_o. */
-enum { GONIO_I_AZIMUTH_DIFFERENCE = 4, GONIO_I_ANGLE_COLUMNS };
+/* Indices behind theta_i, phi_i, theta_o, phi_o: of phi_o - phi_i, and of the angle between the
+ * detector and the mirror direction, in the plane of incidence: above zero farther from the normal,
+ * or nearer to it. */
+enum {
+    GONIO_I_AZIMUTH_DIFFERENCE = 4,
+    GONIO_I_FROM_SPECULAR,
+    GONIO_I_ASPECULAR,
+    GONIO_I_ANGLE_COLUMNS
+};
 
 typedef struct gonio_i_column_name {
     gonio_i_column_kind kind;

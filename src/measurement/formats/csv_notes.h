@@ -5,10 +5,11 @@
 
 #include "csv_columns.h"
 
-/* "CSV (angles 'sza', 'vza', 'raa'; values 'brdf')", for the note of the import. */
+/* "CSV (angles 'sza', 'vza', 'raa'; values 'brdf')", for the note of the import; mirror: a
+ * gonio_mirror_azimuth, or 0 if nothing says it. */
 enum { GONIO_I_TAKEN_ROOM = 512 };
 void gonio_i_csv_describe(const gonio_i_csv_reader *reader, const gonio_i_csv_columns *columns,
-                          char text[GONIO_I_TAKEN_ROOM]);
+                          int mirror, char text[GONIO_I_TAKEN_ROOM]);
 
 /* Columns that are not read and have held only numbers so far. */
 typedef struct gonio_i_csv_others {

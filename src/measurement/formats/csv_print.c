@@ -123,8 +123,9 @@ static bool add_notes(gonio_i_comments *all, const gonio_i_comments *note)
 /* Drops comments on units, because gonio writes its own units. */
 static void drop_units(gonio_i_comments *all)
 {
-    static const char *const keys[] = {"unit",        "units",      "values",     "angles",
-                                       "angle units", "angle unit", "value unit", "quantity"};
+    static const char *const keys[] = {"unit",       "units",       "values",
+                                       "angles",     "angle units", "angle unit",
+                                       "value unit", "quantity",    "mirror"};
     for (size_t k = 0; k < sizeof keys / sizeof *keys; k++) {
         gonio_i_comments_drop(all, keys[k]);
     }
