@@ -59,52 +59,63 @@ static int report(const tool *t, const options *o, const answer *a)
     return 0;
 }
 
-static gonio_status find_next(tool *t, const options *o, const gonio_basis *basis,
-                              const gonio_readings *readings, answer *a)
+/* How the readings were made: by the instrument that is to go on, if one is named. */
+static gonio_reconstruct_options how_of(const options *o, const gonio_instrument *instrument)
 {
     gonio_reconstruct_options how;
-    gonio_plan_options what;
-    planning_inputs inputs;
     gonio_reconstruct_options_default(&how);
     posterior_options_apply(&o->posterior, &how);
-    gonio_plan_options_default(&what);
-    gonio_status status = planning_options_apply(t, &o->planning, &what, &inputs);
-    if (status == GONIO_OK) {
-        status = gonio_plan_next(t->context, basis, readings, &how, &what, &a->now,
-                                 &a->interpretation, &a->plan);
+    if (instrument != NULL && !o->planning.anisotropic) {
+        how.source_aperture = gonio_instrument_describe(instrument)->source_aperture;
+        how.detector_aperture = gonio_instrument_describe(instrument)->detector_aperture;
     }
-    planning_inputs_free(&inputs);
-    return status;
+    return how;
 }
 
-static int next(tool *t, const options *o, const char *basis_path, const char *path)
+/* What `next` works on. */
+typedef struct next_inputs {
+    const char *basis_path, *path;
+    gonio_plan_options what;
+    planning_inputs planning;
+} next_inputs;
+
+static gonio_status find_next(tool *t, const options *o, const next_inputs *in, answer *a)
 {
     const gonio_readings_options any = {
         .size = sizeof any, .values_needed = true, .average_repeats = true};
+    const gonio_reconstruct_options how = how_of(o, in->planning.instrument);
     gonio_readings *readings = NULL;
     gonio_basis *basis = NULL;
-    answer a = {0};
-    gonio_status status = tool_read_corrected(
-        t, path, &any, &o->corrections, o->posterior.noise / 100.0, o->posterior.floor, &readings);
+    gonio_status status =
+        tool_read_corrected(t, in->path, &any, &o->corrections, o->posterior.noise / 100.0,
+                            o->posterior.floor, &readings);
     if (status == GONIO_OK) {
-        status = tool_basis(t, basis_path, NULL, &basis);
+        status = tool_basis(t, in->basis_path, NULL, &basis);
     }
     if (status == GONIO_OK) {
         status = tool_keep_read_channels(t, basis, readings);
     }
     if (status == GONIO_OK) {
-        status = find_next(t, o, basis, readings, &a);
+        status = gonio_plan_next(t->context, basis, readings, &how, &in->what, &a->now,
+                                 &a->interpretation, &a->plan);
     }
+    gonio_basis_free(&basis);
+    gonio_readings_free(&readings);
+    return status;
+}
+
+static int next(tool *t, const options *o, const next_inputs *in)
+{
+    answer a = {0};
+    gonio_status status = find_next(t, o, in, &a);
     if (status == GONIO_OK) {
-        tool_note_interpretation("next", path, &a.interpretation);
+        tool_note_interpretation("next", in->path, &a.interpretation);
     }
     if (status == GONIO_OK && a.plan != NULL) {
         status = gonio_plan_write(t->context, a.plan, t->command_line, o->output);
     }
     const int code = status == GONIO_OK ? report(t, o, &a) : tool_exit_code(status);
     gonio_plan_free(&a.plan);
-    gonio_basis_free(&basis);
-    gonio_readings_free(&readings);
     return code;
 }
 
@@ -114,25 +125,39 @@ static bool check(const tool *t, const options *o, const char *const *inputs, si
         return tool_refuse(t, "READINGS are needed; give a BASIS before them if you have one");
     }
     return tool_check_output(t, o->output, inputs, count) &&
-           planning_options_check(t, &o->planning, o->output) &&
-           posterior_options_check(t, &o->posterior);
+           planning_options_check(t, &o->planning, o->output);
+}
+
+/* Sets what the instrument says and no option does. */
+static bool settle(const tool *t, options *o, const gonio_instrument *instrument)
+{
+    posterior_options_settle(&o->posterior,
+                             instrument != NULL ? gonio_instrument_describe(instrument) : NULL);
+    return posterior_options_check(t, &o->posterior);
 }
 
 static int run(tool *t, void *given)
 {
-    const options *o = given;
+    options *o = given;
     size_t count = 0;
     const char **arguments = tool_arguments(t, &count);
     if (!check(t, o, arguments, count)) {
         return EXIT_USAGE;
     }
-    return next(t, o, count > 1 ? arguments[0] : NULL, arguments[count - 1]);
+    next_inputs in = {.basis_path = count > 1 ? arguments[0] : NULL, .path = arguments[count - 1]};
+    gonio_plan_options_default(&in.what);
+    const gonio_status status = planning_options_apply(t, &o->planning, &in.what, &in.planning);
+    const int code = status != GONIO_OK                      ? tool_exit_code(status)
+                     : !settle(t, o, in.planning.instrument) ? EXIT_USAGE
+                                                             : next(t, o, &in);
+    planning_inputs_free(&in.planning);
+    return code;
 }
 
 int cmd_next(int argc, const char **argv)
 {
     options o = {.planning = {.count = PLANNING_USUAL_COUNT},
-                 .posterior = posterior_options_default()};
+                 .posterior = posterior_options_open()};
     const struct poptOption table[] = {
         {"output", 'o', POPT_ARG_STRING, &o.output, 0, "The plan to write (CSV)", "PLAN"},
         PLANNING_OPTIONS(&o.planning, "Number of readings to propose (default: 5)",

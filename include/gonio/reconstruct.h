@@ -39,10 +39,11 @@ typedef struct gonio_reconstruct_options {
     /* Of gonio_reconstruct_anisotropic and gonio_check_isotropy only: */
     int symmetry; /* turns of the sample, in a full one, that change nothing: 1, 2 (brushed metal,
                    * satin) or 4 (weaves); 0: found */
-    /* Of gonio_reconstruct by posterior, and of many at once: half angles of the apertures over
-     * which a reading is the mean, rad, from 0 (a point) to below pi/4. Where a lobe is narrower
-     * than an aperture, its peak is read too low, and what is beside it too high; this is undone.
-     * It takes several times as long, and usual mistakes and dark levels are not looked for. */
+    /* Of gonio_reconstruct by posterior, of many at once, and of gonio_plan_next: half angles of
+     * the apertures over which a reading is the mean, rad, from 0 (a point) to below pi/4. Where a
+     * lobe is narrower than an aperture, its peak is read too low, and what is beside it too high;
+     * this is undone. It takes several times as long, and usual mistakes and dark levels are not
+     * looked for. */
     double source_aperture;
     double detector_aperture;
     /* Of posterior only: the directions over which gonio_reconstruction.predicted_e6 is expected,

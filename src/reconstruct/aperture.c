@@ -41,6 +41,24 @@ typedef struct deconvolution {
     double change;             /* largest, of an offset in a round */
 } deconvolution;
 
+bool gonio_i_has_apertures(const gonio_reconstruct_options *options)
+{
+    return options->source_aperture > 0.0 || options->detector_aperture > 0.0;
+}
+
+gonio_status gonio_i_check_half_angles(gonio_context *context,
+                                       const gonio_reconstruct_options *options)
+{
+    const double half_angle[2] = {options->source_aperture, options->detector_aperture};
+    for (int k = 0; k < 2; k++) {
+        if (!(half_angle[k] >= 0.0 && half_angle[k] < 0.25 * M_PI)) {
+            return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
+                                "half angles of apertures must be from 0 to below 45 degrees");
+        }
+    }
+    return GONIO_OK;
+}
+
 /* ---- about a reconstruction ---- */
 
 /* Fills in the BRDF over the apertures of a reading, and the weights, of all channels together:
@@ -114,17 +132,12 @@ static gonio_status improve(deconvolution *d, const gonio_i_reconstruct_task *ro
     return status;
 }
 
-static gonio_status solve(deconvolution *d, const gonio_i_reconstruct_task *task,
-                          gonio_reconstruction **reconstruction)
+static gonio_status solve(deconvolution *d, const gonio_i_reconstruct_task *task)
 {
     const gonio_i_apertures apertures = {d->spread, d->offset};
-    gonio_reconstruct_options unchecked = *task->options;
-    unchecked.no_checks = true;
-    gonio_reconstruct_options plain = unchecked;
+    gonio_reconstruct_options plain = *task->options;
+    plain.no_checks = true;
     plain.deviation = false;
-    gonio_i_reconstruct_task final = *task;
-    final.options = &unchecked;
-    final.apertures = &apertures;
     gonio_i_reconstruct_task rough = *task;
     rough.options = &plain;
     gonio_status status = GONIO_OK;
@@ -133,8 +146,7 @@ static gonio_status solve(deconvolution *d, const gonio_i_reconstruct_task *task
         status = improve(d, &rough);
         rough.apertures = &apertures;
     }
-    return status == GONIO_OK ? task->method->from_readings(&final, d->readings, reconstruction)
-                              : status;
+    return status;
 }
 
 /* ---- the apertures ---- */
@@ -182,16 +194,47 @@ static void end(deconvolution *d)
     free(d->offset);
 }
 
-gonio_status gonio_i_reconstruct_apertures(const gonio_i_reconstruct_task *task,
-                                           const gonio_readings *readings,
-                                           gonio_reconstruction **reconstruction)
+gonio_status gonio_i_find_apertures(const gonio_i_reconstruct_task *task,
+                                    const gonio_readings *readings, gonio_i_apertures_use *use,
+                                    void *data)
 {
     deconvolution d = {.context = task->context, .basis = task->basis, .readings = readings};
     cover(&d, task->options->source_aperture, task->options->detector_aperture);
     gonio_status status = begin(&d);
     if (status == GONIO_OK) {
-        status = solve(&d, task, reconstruction);
+        status = solve(&d, task);
+    }
+    if (status == GONIO_OK) {
+        const gonio_i_apertures apertures = {d.spread, d.offset};
+        status = use(data, &apertures);
     }
     end(&d);
     return status;
+}
+
+/* ---- a reconstruction ---- */
+
+typedef struct final_task {
+    const gonio_i_reconstruct_task *task;
+    const gonio_readings *readings;
+    gonio_reconstruction **reconstruction;
+} final_task;
+
+static gonio_status reconstruct_with(void *data, const gonio_i_apertures *apertures)
+{
+    const final_task *f = data;
+    gonio_reconstruct_options unchecked = *f->task->options;
+    unchecked.no_checks = true;
+    gonio_i_reconstruct_task last = *f->task;
+    last.options = &unchecked;
+    last.apertures = apertures;
+    return last.method->from_readings(&last, f->readings, f->reconstruction);
+}
+
+gonio_status gonio_i_reconstruct_apertures(const gonio_i_reconstruct_task *task,
+                                           const gonio_readings *readings,
+                                           gonio_reconstruction **reconstruction)
+{
+    final_task last = {task, readings, reconstruction};
+    return gonio_i_find_apertures(task, readings, reconstruct_with, &last);
 }

@@ -84,6 +84,20 @@ GONIO_I_RECONSTRUCT_METHODS(GONIO_I_DECLARE_METHOD)
 gonio_status gonio_i_reconstruct_check_rows(gonio_context *context, const gonio_basis *basis,
                                             const size_t *rows, size_t count);
 
+/* Whether options state apertures, and whether they can be. Errors: _ARGUMENT. */
+bool gonio_i_has_apertures(const gonio_reconstruct_options *options);
+gonio_status gonio_i_check_half_angles(gonio_context *context,
+                                       const gonio_reconstruct_options *options);
+
+/* What is done with readings that are linear about their reconstruction. */
+typedef gonio_status gonio_i_apertures_use(void *data, const gonio_i_apertures *apertures);
+
+/* Finds how readings are linear through the apertures that the options of a task state, and uses
+ * that once, while it is there. Errors: those of the method and of `use`. */
+gonio_status gonio_i_find_apertures(const gonio_i_reconstruct_task *task,
+                                    const gonio_readings *readings, gonio_i_apertures_use *use,
+                                    void *data);
+
 /* Carries out a task of readings through the apertures that its options state. */
 gonio_status gonio_i_reconstruct_apertures(const gonio_i_reconstruct_task *task,
                                            const gonio_readings *readings,

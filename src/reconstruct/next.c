@@ -66,14 +66,45 @@ static void release(next *n)
     free(n->read);
 }
 
-static gonio_status find_posterior(next *n, const gonio_reconstruct_options *options)
+/* The posterior of what was read; apertures: NULL of single directions. */
+static gonio_status find_posterior(void *data, const gonio_i_apertures *apertures)
 {
-    const gonio_i_noise noise = gonio_i_posterior_noise(options);
+    next *n = data;
     const gonio_i_posterior_options how = {.smoothness = -1.0,
                                            .wavelength = n->readings->wavelength};
+    gonio_i_spread_out(apertures, n->readings->channels, &n->columns);
+    return gonio_i_posterior_find(n->context, n->prior, n->columns.column, n->columns.count, &how,
+                                  &n->posterior);
+}
+
+static gonio_status find_through_apertures(next *n, const gonio_reconstruct_options *options)
+{
+    const gonio_i_reconstruct_task task = {
+        n->context, &gonio_i_posterior_method, n->basis, options, 0.0, NULL};
+    return gonio_i_find_apertures(&task, n->readings, find_posterior, n);
+}
+
+/* Through apertures usual mistakes are not looked for, as in a reconstruction. */
+static gonio_status interpret(next *n, const gonio_reconstruct_options *options,
+                              const gonio_i_noise *noise)
+{
     double *dark = NULL;
+    const gonio_status status = options->no_checks || gonio_i_has_apertures(options)
+                                    ? GONIO_OK
+                                    : gonio_i_interpret(n->context, n->prior, n->readings, noise,
+                                                        &n->columns, &n->interpretation, &dark);
+    free(dark);
+    return status;
+}
+
+static gonio_status know(next *n, const gonio_reconstruct_options *options)
+{
+    const gonio_i_noise noise = gonio_i_posterior_noise(options);
     gonio_status status = gonio_i_reconstruct_check(n->context, &gonio_i_posterior_method, n->basis,
                                                     n->readings, options);
+    if (status == GONIO_OK) {
+        status = gonio_i_check_half_angles(n->context, options);
+    }
     if (status == GONIO_OK) {
         status = gonio_i_columns_create(n->context, n->view, n->readings, &noise, &n->columns);
     }
@@ -83,18 +114,16 @@ static gonio_status find_posterior(next *n, const gonio_reconstruct_options *opt
     if (status == GONIO_OK) {
         status = gonio_i_prior_create(n->context, n->basis, &n->prior);
     }
-    if (status == GONIO_OK && !options->no_checks) {
-        status = gonio_i_interpret(n->context, n->prior, n->readings, &noise, &n->columns,
-                                   &n->interpretation, &dark);
+    if (status == GONIO_OK) {
+        status = interpret(n, options, &noise);
     }
     if (status == GONIO_OK) {
         status = allocate(n);
     }
     if (status == GONIO_OK) {
-        status = gonio_i_posterior_find(n->context, n->prior, n->columns.column, n->columns.count,
-                                        &how, &n->posterior);
+        status = gonio_i_has_apertures(options) ? find_through_apertures(n, options)
+                                                : find_posterior(n, NULL);
     }
-    free(dark);
     return status;
 }
 
@@ -186,7 +215,7 @@ gonio_status gonio_plan_next(gonio_context *context, const gonio_basis *basis,
         return plan_anisotropic(&n, &how, &wanted, expected_now, interpretation, plan);
     }
     if (status == GONIO_OK) {
-        status = find_posterior(&n, &how);
+        status = know(&n, &how);
     }
     if (status == GONIO_OK && is_unlike(&n)) {
         status = forget_values(&n);

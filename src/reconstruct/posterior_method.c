@@ -204,9 +204,8 @@ static gonio_status estimate(gonio_context *context, const gonio_i_prior *prior,
     return status == GONIO_OK ? find(context, prior, columns, options, r) : status;
 }
 
-/* Makes observations those of means over apertures. */
-static void spread_out(const gonio_i_apertures *apertures, size_t channels,
-                       const gonio_i_columns *columns)
+void gonio_i_spread_out(const gonio_i_apertures *apertures, size_t channels,
+                        const gonio_i_columns *columns)
 {
     for (size_t k = 0; apertures != NULL && k < columns->count; k++) {
         for (size_t i = 0; i < columns->column[k].count; i++) {
@@ -232,7 +231,7 @@ static gonio_status from_readings(const gonio_i_reconstruct_task *task,
     gonio_status status = gonio_i_columns_create(context, view, readings, &noise, &columns);
     if (status == GONIO_OK) {
         status = gonio_i_columns_check(context, &columns, readings);
-        spread_out(task->apertures, readings->channels, &columns);
+        gonio_i_spread_out(task->apertures, readings->channels, &columns);
     }
     if (status == GONIO_OK) {
         status = gonio_i_prior_create(context, basis, &prior);

@@ -5,7 +5,12 @@
 #include <gonio/reconstruct.h>
 
 #include "../posterior/observations.h"
+#include "method.h"
 
 gonio_i_noise gonio_i_posterior_noise(const gonio_reconstruct_options *options);
+
+/* Makes observations those of means over apertures; nothing without any. */
+void gonio_i_spread_out(const gonio_i_apertures *apertures, size_t channels,
+                        const gonio_i_columns *columns);
 
 #endif

@@ -201,19 +201,12 @@ static gonio_status check_fingerprint(gonio_context *context, const gonio_basis 
 
 static gonio_status check_apertures(const gonio_i_reconstruct_task *task)
 {
-    const double half_angle[2] = {task->options->source_aperture, task->options->detector_aperture};
-    for (int k = 0; k < 2; k++) {
-        if (!(half_angle[k] >= 0.0 && half_angle[k] < 0.25 * M_PI)) {
-            return gonio_i_fail(task->context, GONIO_ERROR_ARGUMENT,
-                                "half angles of apertures must be from 0 to below 45 degrees");
-        }
-    }
-    if ((half_angle[0] > 0.0 || half_angle[1] > 0.0) && task->method != &gonio_i_posterior_method) {
+    if (gonio_i_has_apertures(task->options) && task->method != &gonio_i_posterior_method) {
         return gonio_i_fail(task->context, GONIO_ERROR_ARGUMENT,
                             "apertures need a reconstruction by posterior, not by %s",
                             task->method->name);
     }
-    return GONIO_OK;
+    return gonio_i_check_half_angles(task->context, task->options);
 }
 
 gonio_status gonio_reconstruct(gonio_context *context, const gonio_basis *basis,
@@ -240,7 +233,7 @@ gonio_status gonio_reconstruct(gonio_context *context, const gonio_basis *basis,
     if (status != GONIO_OK) {
         return status;
     }
-    return how.source_aperture > 0.0 || how.detector_aperture > 0.0
+    return gonio_i_has_apertures(&how)
                ? gonio_i_reconstruct_apertures(&task, readings, reconstruction)
                : task.method->from_readings(&task, readings, reconstruction);
 }

@@ -127,6 +127,20 @@ expect_ok reconstruct b.gonio run.csv --method posterior --predict-at run.csv -o
 expect_ok reconstruct b.gonio run.csv --method posterior --instrument four-axis --predict-at run.csv -o instrument.csv
 expect_ok reconstruct b.gonio run.csv --method posterior --aperture 1.2,0.2 --predict-at run.csv -o apertures.csv
 expect_true 'apertures count' differ <(grep -v '^#' points.csv) <(grep -v '^#' apertures.csv)
+# `next` knows as much of the readings as a reconstruction through the same apertures.
+sed 's/"detector_half_angle_deg": [0-9.]*/"detector_half_angle_deg": 9/' "$source/data/instruments/four-axis.json" >wide.json
+error_of() { sed -n 's/.*expected error (E6) \(now \)\{0,1\}\([0-9.]*\) %.*/\2/p' "$root/work/stdout"; }
+errors=
+for rig in four-axis wide.json; do
+    expect_ok reconstruct b.gonio run.csv --method posterior --instrument $rig -o known.binary
+    known=$(error_of)
+    expect_ok next b.gonio run.csv --instrument $rig -n 2 -o next.csv
+    expect_true "next by $rig" test -n "$known" -a "$known" = "$(error_of)"
+    errors="$errors $known"
+done
+# shellcheck disable=SC2086
+expect_true 'apertures count' test "$(printf '%s\n' $errors | sort -u | wc -l)" = 2
+expect_fail 2 '--noise cannot be negative' next b.gonio run.csv --instrument four-axis --noise -1 -o no.csv
 expect_fail 2 "--aperture: 'wide' is not a half angle" reconstruct b.gonio run.csv --aperture wide -o no.binary
 expect_fail 2 "--aperture: '50' is not a half angle" reconstruct b.gonio run.csv --aperture 50 -o no.binary
 expect_fail 2 'apertures need a reconstruction by posterior' \
