@@ -11,7 +11,6 @@ static const char *read_numeric(gonio_i_hdf_object object, gonio_i_hdf_number_ty
     const char *problem = gonio_i_hdf_read_set(object, set);
     return problem != NULL                             ? problem
            : !gonio_i_hdf_converts(&set->type, wanted) ? "is not numeric"
-           : !gonio_i_hdf_is_stored(set)               ? "is not in the file, or not all of it"
                                                        : NULL;
 }
 
@@ -19,6 +18,7 @@ const char *gonio_i_hdf_describe(gonio_i_hdf_object set, gonio_i_hdf_array *arra
 {
     gonio_i_hdf_set found;
     const char *problem = read_numeric(set, GONIO_I_HDF_DOUBLE, &found);
+    problem = problem != NULL ? problem : gonio_i_hdf_lacks(&found, found.type.size);
     if (problem != NULL) {
         return problem;
     }
@@ -60,6 +60,7 @@ const char *gonio_i_hdf_visit(gonio_i_hdf_object set, gonio_i_hdf_number_type ty
 {
     gonio_i_hdf_set found;
     const char *problem = read_numeric(set, type, &found);
+    problem = problem != NULL ? problem : gonio_i_hdf_lacks(&found, gonio_i_hdf_width(type));
     passing p = {.type = &found.type, .wanted = type, .run = run, .user = user};
     return problem != NULL ? problem : gonio_i_hdf_visit_stored(&found, pass, &p);
 }
@@ -116,6 +117,7 @@ const char *gonio_i_hdf_read_array(gonio_i_hdf_object group, const char *path, i
         return "is missing";
     }
     const char *problem = read_numeric(object, type, &set);
+    problem = problem != NULL ? problem : gonio_i_hdf_lacks(&set, gonio_i_hdf_width(type));
     if (problem != NULL) {
         return problem;
     }

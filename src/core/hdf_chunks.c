@@ -88,18 +88,47 @@ static const char *add_size(walk *w, const stored_chunk *chunk)
     return inside && chunk->size >= least_size(&w->set->layout) ? NULL : damaged;
 }
 
-bool gonio_i_hdf_is_stored(const gonio_i_hdf_set *set)
+static size_t chunk_places(const gonio_i_hdf_set *set)
+{
+    size_t places = 1;
+    for (int k = 0; k < set->space.rank; k++) {
+        places *= (set->space.extent[k] + set->layout.chunk[k] - 1) / set->layout.chunk[k];
+    }
+    return places;
+}
+
+/* Tables compress to a half or so, and constant ones to a thousandth. A file that grows more than a
+ * hundredfold, beyond what costs little, was made to fill the memory or to take for ever. */
+static bool is_moderate(const gonio_i_hdf_set *set, size_t width)
+{
+    const double most_free = 512.0 * 1048576.0;
+    const double most_compression = 100.0;
+    const double most = most_free + most_compression * (double)set->file->size;
+    const double chunk = (double)set->layout.chunk_bytes;
+    return (double)set->space.count * (double)width <= most && chunk <= most / 4.0 &&
+           chunk * (double)chunk_places(set) <= most;
+}
+
+/* Whether no chunk is larger than filters allow, and there are enough of them. */
+static bool is_stored(const gonio_i_hdf_set *set)
 {
     walk w = {.set = set, .take = add_size};
     const double bytes = (double)set->space.count * (double)set->type.size;
-    if (!set->layout.chunked || set->space.count == 0) {
-        return true; /* as was checked with the layout */
-    }
     w.bytes = set->layout.single.left;
     const bool good = set->layout.tree != GONIO_I_HDF_NOWHERE ? walk_tree(&w) == NULL
                                                               : w.bytes >= least_size(&set->layout);
     const double stored = (double)(w.bytes < set->file->size ? w.bytes : set->file->size);
     return good && w.bytes > 0 && bytes <= stored * GONIO_I_HDF_MOST_DEFLATION;
+}
+
+const char *gonio_i_hdf_lacks(const gonio_i_hdf_set *set, size_t width)
+{
+    if (!set->layout.chunked || set->space.count == 0) {
+        return NULL; /* as was checked with the layout */
+    }
+    return !is_stored(set)            ? "is not in the file, or not all of it"
+           : !is_moderate(set, width) ? "is far larger than its file (made to fill the memory?)"
+                                      : NULL;
 }
 
 /* ---- elements of a chunk ---- */
@@ -159,15 +188,6 @@ static const char *take_chunk(walk *w, const stored_chunk *chunk)
     return run_over_stored(w, stored, chunk->mask, chunk->start);
 }
 
-static size_t chunk_places(const gonio_i_hdf_set *set)
-{
-    size_t places = 1;
-    for (int k = 0; k < set->space.rank; k++) {
-        places *= (set->space.extent[k] + set->layout.chunk[k] - 1) / set->layout.chunk[k];
-    }
-    return places;
-}
-
 static const char *visit_chunks(const gonio_i_hdf_set *set, gonio_i_hdf_stored_run *run, void *user)
 {
     const size_t room = set->layout.chunk_bytes + GONIO_I_HDF_SPARE;
@@ -193,8 +213,9 @@ const char *gonio_i_hdf_visit_stored(const gonio_i_hdf_set *set, gonio_i_hdf_sto
     if (set->space.count == 0) {
         return NULL;
     }
-    if (!gonio_i_hdf_is_stored(set)) {
-        return "is not in the file, or not all of it";
+    const char *problem = gonio_i_hdf_lacks(set, set->type.size);
+    if (problem != NULL) {
+        return problem;
     }
     if (set->layout.chunked) {
         return visit_chunks(set, run, user);

@@ -13,8 +13,9 @@ typedef void gonio_i_hdf_stored_run(void *user, size_t first, size_t count,
 const char *gonio_i_hdf_visit_stored(const gonio_i_hdf_set *set, gonio_i_hdf_stored_run *run,
                                      void *user);
 
-/* Whether a dataset's chunks can hold what its shape says: no chunk is larger than filters allow,
- * and there are enough of them. Memory for the whole of it grows with the file then. */
-bool gonio_i_hdf_is_stored(const gonio_i_hdf_set *set);
+/* What keeps a dataset from being read: chunks that cannot hold what its shape says, or data that
+ * are far larger than their file where an element takes `width` bytes; NULL if nothing does. Memory
+ * and time for the whole of it grow with the file then. */
+const char *gonio_i_hdf_lacks(const gonio_i_hdf_set *set, size_t width);
 
 #endif

@@ -6,6 +6,7 @@
 #include "hdf_messages.h"
 
 enum { LONGEST_LIST = 1 << 20, LONGEST_VARIABLE_LIST = 1 << 14, HEAP_PLACE = 16 };
+enum { MOST_IN_HEAP = 4096 }; /* objects of a collection, which HDF5 keeps below 64 KiB */
 
 /* ---- attributes ---- */
 
@@ -105,7 +106,7 @@ static stretch find_in_heap(const gonio_i_hdf_file *file, uint64_t address, uint
         return (stretch){NULL, 0};
     }
     c.left = (size_t)size - HEAP_PLACE;
-    while (!c.failed) {
+    for (int k = 0; k < MOST_IN_HEAP && !c.failed; k++) {
         const uint64_t number = gonio_i_hdf_number(&c, 2);
         gonio_i_hdf_take(&c, 6);
         const uint64_t bytes = gonio_i_hdf_number(&c, 8);
@@ -222,7 +223,7 @@ bool gonio_i_hdf_read_string_set(gonio_i_hdf_object group, const char *path, cha
     gonio_i_hdf_object object;
     gonio_i_hdf_set set;
     if (!gonio_i_hdf_find(group, path, &object) || gonio_i_hdf_read_set(object, &set) != NULL ||
-        !is_list(&set.type, &set.space) || !gonio_i_hdf_is_stored(&set)) {
+        !is_list(&set.type, &set.space) || gonio_i_hdf_lacks(&set, set.type.size) != NULL) {
         return false;
     }
     filling f = {.element = set.type.size};

@@ -23,16 +23,34 @@ static const char grid_name[] = "half/difference 90 x 90 x 180";
 
 enum { FORMATS = sizeof formats / sizeof *formats };
 
+/* Whether this is a table of gonio's own, whatever its other comments look like. */
+static bool is_own(const char *text, size_t size)
+{
+    static const char *const first[] = {"# gonio readings", "# gonio plan"};
+    bool own = false;
+    for (size_t k = 0; k < sizeof first / sizeof *first; k++) {
+        const size_t length = strlen(first[k]);
+        own = own || (size >= length && memcmp(text, first[k], length) == 0);
+    }
+    return own;
+}
+
+/* The number of the format that a text looks like, of which CSV is the last; FORMATS if of none. */
+static size_t recognise(const char *text, size_t size)
+{
+    size_t k = is_own(text, size) ? FORMATS - 1 : 0;
+    while (k < FORMATS && !formats[k]->recognises(text, size)) {
+        k++;
+    }
+    return k;
+}
+
 const char *gonio_i_readings_format_of(const gonio_i_file *file)
 {
     char head[GONIO_I_HEAD + 1];
     const size_t size = gonio_i_text_plain_head(file->head, file->head_size, head, sizeof head);
-    for (int k = 0; k < FORMATS && file->size > 0; k++) {
-        if (formats[k]->recognises(head, size)) {
-            return formats[k]->name;
-        }
-    }
-    return NULL;
+    const size_t found = file->size > 0 ? recognise(head, size) : FORMATS;
+    return found < FORMATS ? formats[found]->name : NULL;
 }
 
 const char *gonio_i_readings_format_name(int index)
@@ -45,15 +63,15 @@ const char *gonio_readings_format_word(int index)
     return index >= 0 && index < FORMATS ? formats[index]->word : NULL;
 }
 
-/* The format that the user names, otherwise the one that recognises the text. */
+/* The format that the user names, otherwise the one that recognises the text, otherwise CSV. */
 static const gonio_i_readings_format *find_format(const char *word, const char *text, size_t size)
 {
     size_t k = 0;
-    while (k + 1 < FORMATS && !(word != NULL ? strcmp(word, formats[k]->word) == 0
-                                             : formats[k]->recognises(text, size))) {
+    while (word != NULL && k < FORMATS && strcmp(word, formats[k]->word) != 0) {
         k++;
     }
-    return formats[k];
+    k = word != NULL ? k : recognise(text, size);
+    return formats[k < FORMATS ? k : FORMATS - 1];
 }
 
 /* The number of a "key: number" comment; 0 if there is no such comment. */

@@ -171,11 +171,22 @@ static exr_result_t unpack(exr_decode_pipeline_t *decoder)
     return EXR_ERR_SUCCESS;
 }
 
+/* Chunks are parts of an image: a small file with a single one of hundreds of megabytes was made to
+ * fill the memory. */
+static bool is_moderate(const exr_chunk_info_t *chunk)
+{
+    enum { MOST_FREE = 128 << 20, MOST_COMPRESSION = 100 };
+    return chunk->unpacked_size <= MOST_FREE + chunk->packed_size * MOST_COMPRESSION;
+}
+
 /* Decodes one chunk whose first pixel is at column x, row y of the image. */
 static exr_result_t decode(exr_context_t exr, const exr_chunk_info_t *chunk, int x, int y,
                            channels wanted, gonio_image *image, bool first,
                            exr_decode_pipeline_t *decoder)
 {
+    if (!is_moderate(chunk)) {
+        return EXR_ERR_CORRUPT_CHUNK;
+    }
     exr_result_t code = first ? exr_decoding_initialize(exr, 0, chunk, decoder)
                               : exr_decoding_update(exr, 0, chunk, decoder);
     if (code != EXR_ERR_SUCCESS) {
@@ -254,17 +265,29 @@ static void complete(channels found, gonio_image *image)
     }
 }
 
-/* Whether a file can hold so many pixels. No compression makes one a thousand times smaller, but of
- * black images, which may be of 256 MiB. */
-static bool can_hold(const gonio_i_bytes *bytes, int64_t pixels)
+/* Bytes of a pixel in all channels of a file, or here if that is more. */
+static int64_t bytes_of_pixel(const exr_attr_chlist_t *list)
 {
-    enum { MOST_COMPRESSION = 1000, BLACK = 256 << 20 };
-    return pixels <= ((int64_t)bytes->size * MOST_COMPRESSION + BLACK) / PIXEL_BYTES;
+    int64_t bytes = 0;
+    for (int k = 0; k < list->num_channels; k++) {
+        bytes += list->entries[k].pixel_type == EXR_PIXEL_HALF ? 2 : 4;
+    }
+    return bytes > PIXEL_BYTES ? bytes : PIXEL_BYTES;
+}
+
+/* Whether a file can hold so many bytes of pixels. No compression makes an image a thousand times
+ * smaller, but of one colour, which may be of 512 MiB: 8192 x 4096 pixels. */
+static bool can_hold(const gonio_i_bytes *bytes, int64_t unpacked)
+{
+    enum { MOST_COMPRESSION = 1000, PLAIN = 512 << 20, HEAD = 1 << 20 };
+    const int64_t more = (int64_t)bytes->size - HEAD;
+    return unpacked <= PLAIN + (more > 0 ? more * MOST_COMPRESSION : 0);
 }
 
 static gonio_status read_pixels(const stream *s, exr_context_t exr, const exr_attr_box2i_t *window,
-                                channels found, bool tiled, gonio_image **image)
+                                const exr_attr_chlist_t *list, bool tiled, gonio_image **image)
 {
+    const channels found = find_channels(list);
     const int64_t width = (int64_t)window->max.x - window->min.x + 1;
     const int64_t height = (int64_t)window->max.y - window->min.y + 1;
     if (width < 1 || height < 1 || width > GONIO_MOST_PIXELS || height > GONIO_MOST_PIXELS) {
@@ -272,7 +295,7 @@ static gonio_status read_pixels(const stream *s, exr_context_t exr, const exr_at
                             "%s: an image of %lld x %lld pixels: each side must be 1 to %d",
                             s->path, (long long)width, (long long)height, GONIO_MOST_PIXELS);
     }
-    if (!can_hold(s->bytes, width * height)) {
+    if (!can_hold(s->bytes, width * height * bytes_of_pixel(list))) {
         return gonio_i_fail(s->context, GONIO_ERROR_FORMAT,
                             "%s: an image of %lld x %lld pixels in %zu bytes: damaged or cut off",
                             s->path, (long long)width, (long long)height, s->bytes->size);
@@ -314,7 +337,7 @@ static gonio_status read_part(const stream *s, exr_context_t exr, gonio_image **
         return gonio_i_fail(s->context, GONIO_ERROR_FORMAT,
                             "%s: has no channels R, G, B (or Y) of full size", s->path);
     }
-    return read_pixels(s, exr, &window, found, storage == EXR_STORAGE_TILED, image);
+    return read_pixels(s, exr, &window, list, storage == EXR_STORAGE_TILED, image);
 }
 
 gonio_status gonio_i_read_exr(gonio_context *context, const char *path, const gonio_i_bytes *bytes,

@@ -203,7 +203,7 @@ static gonio_status read_lines(reading *r, gonio_image *image)
  * pixels 2 bytes a component. */
 static bool can_hold(const reading *r)
 {
-    return (int64_t)r->width * r->height / 127 * 2 <= r->end - r->at;
+    return (int64_t)r->width * r->height / 127 * 2 * RGBE <= r->end - r->at;
 }
 
 gonio_status gonio_i_read_radiance(gonio_context *context, const char *path,

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mutations.h"
 #include "render_fixture.h"
 
 static void openexr_comes_back_as_it_was(void **state)
@@ -27,6 +28,38 @@ static void openexr_comes_back_as_it_was(void **state)
     assert_memory_equal(back->rgba, image->rgba, sizeof(float) * 37 * 53 * 4);
     gonio_image_free(&image);
     gonio_image_free(&back);
+    free(path);
+    support_remove(folder);
+}
+
+/* A file of a MiB that claims 8000 x 7000 pixels, for which memory is not asked. Its window is two
+ * corners of four bytes each. */
+static void small_images_with_many_pixels(void **state)
+{
+    (void)state;
+    enum { PADDING = 1000000 };
+    static const unsigned char window[16] = {0, 0, 0, 0, 0, 0, 0, 0, 0x3f, 0x1f, 0, 0, 0x57, 0x1b};
+    char *folder = support_folder();
+    char *path = path_in(folder, "image.exr");
+    gonio_image *image = NULL;
+    size_t size = 0;
+    assert_int_equal(gonio_image_create(NULL, 37, 53, &image), GONIO_OK);
+    assert_int_equal(gonio_image_write_exr(NULL, image, path), GONIO_OK);
+    gonio_image_free(&image);
+    unsigned char *bytes = read_bytes(path, &size);
+    bytes = realloc(bytes, size + PADDING);
+    assert_non_null(bytes);
+    memset(bytes + size, 0, PADDING);
+    static const char name[] = "dataWindow\0box2i\0\20\0\0";
+    unsigned char *at = memmem(bytes, size, name, sizeof name);
+    assert_non_null(at);
+    memcpy(at + sizeof name, window, sizeof window);
+    write_bytes(path, bytes, size + PADDING);
+    free(bytes);
+    gonio_context *context = support_context();
+    assert_int_equal(gonio_image_read(context, path, &image), GONIO_ERROR_FORMAT);
+    assert_non_null(strstr(support_message(), "8000 x 7000 pixels"));
+    gonio_context_free(&context);
     free(path);
     support_remove(folder);
 }
@@ -217,6 +250,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(openexr_comes_back_as_it_was),
+        cmocka_unit_test(small_images_with_many_pixels),
         cmocka_unit_test(radiance_images_are_read),
         cmocka_unit_test(radiance_images_are_exposed),
         cmocka_unit_test(coded_radiance_images_are_read_or_refused),

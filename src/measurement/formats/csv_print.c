@@ -145,9 +145,12 @@ static gonio_status print_comments(gonio_context *context, const printer *p, con
     done = done && add_notes(&all, &p->readings->note) &&
            gonio_i_comments_add(&all, "program: gonio %s", gonio_version()) &&
            (command == NULL || gonio_i_comments_add(&all, "command: %s", command));
-    for (size_t k = 0; k < all.count; k++) {
-        const bool title = k == 0 && strcmp(all.line[k], "gonio plan") == 0;
-        fprintf(p->stream, "# %s\n", title ? "gonio readings" : all.line[k]);
+    /* The first line says what the file is, also if other comments look like those of a format. */
+    const char *first = all.count > 0 ? all.line[0] : "";
+    const bool titled = strcmp(first, "gonio plan") == 0 || strcmp(first, "gonio readings") == 0;
+    fputs("# gonio readings\n", p->stream);
+    for (size_t k = titled ? 1 : 0; k < all.count; k++) {
+        fprintf(p->stream, "# %s\n", all.line[k]);
     }
     gonio_i_comments_free(&all);
     return done ? GONIO_OK : gonio_i_fail(context, GONIO_ERROR_MEMORY, "out of memory");
