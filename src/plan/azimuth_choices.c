@@ -178,7 +178,7 @@ static double covariance(const maker *m, size_t a, size_t b)
     const double kernel = gonio_i_azimuth_kernel(m->azimuth[a], m->azimuth[b]);
     const double known = dot(m->f + a * m->length, m->f + b * m->length, m->length);
     return (1.0 - SHARE + SHARE * kernel) * known +
-           ALPHA * ALPHA * kernel * gonio_i_remainder(&m->seen[a], &m->seen[b], PEAK);
+           ALPHA * ALPHA * kernel * gonio_i_remainder(&m->seen[a], &m->seen[b], PEAK, 0.0);
 }
 
 static size_t largest(const double *values, size_t count)

@@ -134,7 +134,7 @@ static void factorise(gonio_i_choices *p, const float *f, const gonio_i_place *p
     const size_t k = p->prior->components;
     for (size_t i = 0; i < p->rows; i++) {
         left[i] = dot(f + i * k, f + i * k, k) +
-                  SMOOTHNESS * SMOOTHNESS * gonio_i_remainder(&place[i], &place[i], PEAK);
+                  SMOOTHNESS * SMOOTHNESS * gonio_i_remainder(&place[i], &place[i], PEAK, 0.0);
     }
     size_t rank = 0;
     for (; rank < most; rank++) {
@@ -150,7 +150,7 @@ static void factorise(gonio_i_choices *p, const float *f, const gonio_i_place *p
         for (size_t i = 0; i < p->rows; i++) {
             const double c =
                 dot(f + i * k, f + pivot * k, k) +
-                SMOOTHNESS * SMOOTHNESS * gonio_i_remainder(&place[i], &place[pivot], PEAK);
+                SMOOTHNESS * SMOOTHNESS * gonio_i_remainder(&place[i], &place[pivot], PEAK, 0.0);
             const double known = dot(p->f + i * most, p->f + pivot * most, rank);
             const float entry = (float)((c - known) / root);
             p->f[i * most + rank] = entry;

@@ -92,7 +92,7 @@ static double predict(const gonio_i_fit *e, const gonio_i_hemisphere *h, const d
     }
     for (size_t i = 0; i < e->n; i++) {
         g += e->model.alpha * e->model.alpha * e->solved[i] *
-             gonio_i_remainder(&h->place[node], &e->sites->place[i], e->model.peak);
+             gonio_i_remainder(&h->place[node], &e->sites->place[i], e->model.peak, e->model.retro);
     }
     return g;
 }

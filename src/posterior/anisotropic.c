@@ -390,9 +390,10 @@ static void see_readings(const gonio_i_stretch *stretch, const gonio_i_solution 
         v->w[i] = amount > 1e-9 ? amount * gonio_i_dot(v->f, sites->f + i * sites->components,
                                                        sites->components)
                                 : 0.0;
-        v->w[i] += m->alpha > 0.0 ? m->alpha * m->alpha * kernel *
-                                        gonio_i_remainder(&v->place, &sites->place[i], m->peak)
-                                  : 0.0;
+        v->w[i] += m->alpha > 0.0
+                       ? m->alpha * m->alpha * kernel *
+                             gonio_i_remainder(&v->place, &sites->place[i], m->peak, m->retro)
+                       : 0.0;
     }
 }
 
@@ -417,7 +418,7 @@ static double variance_of(const gonio_i_solution *s, view_of_place *v)
     const gonio_i_fit *e = &s->fit;
     const gonio_i_model *m = &e->model;
     double sum = m->h * m->h * gonio_i_dot(v->f, v->f, e->components) +
-                 m->alpha * m->alpha * gonio_i_remainder(&v->place, &v->place, m->peak);
+                 m->alpha * m->alpha * gonio_i_remainder(&v->place, &v->place, m->peak, m->retro);
     for (size_t j = 0; j < s->samples; j++) {
         const double apart = gonio_i_dot(v->f, s->move + j * e->components, e->components) -
                              gonio_i_dot(v->w, s->answered + j * e->n, e->n);

@@ -231,7 +231,7 @@ static gonio_status see_group(line *x, const group *g)
         const gonio_i_place *here = &x->place[k / sites->n];
         const gonio_i_place *there = &sites->place[k % sites->n];
         x->seen[k] = turning > 0.0 ? turning * x->seen[k] : 0.0;
-        x->seen[k] += rest > 0.0 ? rest * gonio_i_remainder(here, there, m->peak) : 0.0;
+        x->seen[k] += rest > 0.0 ? rest * gonio_i_remainder(here, there, m->peak, m->retro) : 0.0;
     }
     return status;
 }

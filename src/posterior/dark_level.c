@@ -35,7 +35,8 @@ static const double FEW = 20.0;
 static const double TOLERANCE = 2.0;
 
 /* alpha of the models, from a usual material to the most unusual one. */
-static const gonio_i_model MODELS[] = {{1.0, 0.12, 0.0}, {1.0, 0.25, 8.0}, {1.0, 0.5, 8.0}};
+static const gonio_i_model MODELS[] = {
+    {1.0, 0.12, 0.0, 0.0}, {1.0, 0.25, 8.0, 0.0}, {1.0, 0.5, 8.0, 0.0}};
 
 enum { MODELS_COUNT = sizeof MODELS / sizeof *MODELS };
 

@@ -23,7 +23,7 @@ typedef struct filler {
     const gonio_i_sites *sites;
     const gonio_i_field_column *columns;
     size_t count;
-    size_t size;   /* K + 2 n */
+    size_t size;   /* gonio_i_terms */
     double *panel; /* [panels][size][WIDE]: the columns' terms; 0 past the last */
 } filler;
 
@@ -37,7 +37,7 @@ static void fill_panels(filler *f)
     }
 }
 
-/* f, smooth and peaked of a row: [size]. */
+/* f, smooth, peaked and back of a row: [size]. */
 static void fill_terms(const filler *f, size_t row, double *terms)
 {
     const gonio_i_sites *sites = f->sites;
@@ -50,6 +50,9 @@ static void fill_terms(const filler *f, size_t row, double *terms)
     for (size_t i = 0; i < sites->n; i++) {
         smooth[i] = gonio_i_smooth(&here, &sites->place[i]);
         peaked[i] = gonio_i_peaked(&here, &sites->place[i]);
+    }
+    for (size_t i = 0; i < sites->n && sites->back != NULL; i++) {
+        peaked[sites->n + i] = gonio_i_back(&here, &sites->place[i]);
     }
 }
 
@@ -95,6 +98,10 @@ static void fill_tile(const filler *f, size_t row, size_t rows, const double *te
     add_terms(terms, f->size, panel, components, sum);
     add_terms(terms + components, f->size, panel + components * WIDE, n, sum);
     add_terms(terms + components + n, f->size, panel + (components + n) * WIDE, n, sum);
+    if (f->sites->back != NULL) {
+        const size_t back = components + 2 * n;
+        add_terms(terms + back, f->size, panel + back * WIDE, n, sum);
+    }
     for (size_t w = 0; w < columns; w++) {
         for (size_t h = 0; h < rows; h++) {
             f->columns[first + w].field[row + h] = sum[h * WIDE + w];
@@ -141,10 +148,7 @@ static gonio_status fill_rows(gonio_context *context, const filler *f)
 gonio_status gonio_i_fields_fill(gonio_context *context, const gonio_i_sites *sites,
                                  const gonio_i_field_column *columns, size_t count)
 {
-    filler f = {.sites = sites,
-                .columns = columns,
-                .count = count,
-                .size = sites->components + 2 * sites->n};
+    filler f = {.sites = sites, .columns = columns, .count = count, .size = gonio_i_terms(sites)};
     const size_t panels = (count + WIDE - 1) / WIDE;
     f.panel = gonio_i_allocate(context, panels * f.size * WIDE, sizeof *f.panel);
     if (f.panel == NULL) {

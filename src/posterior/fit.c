@@ -112,7 +112,8 @@ static gonio_status factorise(gonio_i_fit *e, double *logarithm)
     const size_t n = e->n;
     const gonio_i_model m = e->model;
     for (size_t i = 0; i < n * n; i++) {
-        const double k = e->sites->smooth[i] + m.peak * m.peak * e->sites->peaked[i];
+        double k = e->sites->smooth[i] + m.peak * m.peak * e->sites->peaked[i];
+        k += m.retro > 0.0 && e->sites->back != NULL ? m.retro * m.retro * e->sites->back[i] : 0.0;
         e->lower[i] = m.h * m.h * e->sites->gram[i] + m.alpha * m.alpha * k;
     }
     for (size_t i = 0; i < n; i++) {

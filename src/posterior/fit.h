@@ -10,6 +10,7 @@ typedef struct gonio_i_model {
     double h;     /* kernel width: each kernel's covariance is h^2 I; 1 without samples */
     double alpha; /* of the remainder, log units */
     double peak;  /* of the remainder */
+    double retro; /* the same, towards the light */
 } gonio_i_model;
 
 /* An h that does well when nothing is known of it. */

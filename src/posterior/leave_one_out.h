@@ -35,7 +35,7 @@ void gonio_i_subset_read(gonio_i_subset *subset, const gonio_i_column *columns);
 
 /* The alpha of the model while wrong readings are searched. If models were chosen first, wrong
  * readings would look like a remainder. */
-static const gonio_i_model GONIO_I_SETTLING = {GONIO_I_KERNEL_WIDTH, 0.12, 0.0};
+static const gonio_i_model GONIO_I_SETTLING = {GONIO_I_KERNEL_WIDTH, 0.12, 0.0, 0.0};
 
 /* The prior's penalty for each factor of e in alpha, in the unit of scores. */
 static const double GONIO_I_FOR_REMAINDERS = 16.0 / 3.0;

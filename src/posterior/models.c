@@ -10,10 +10,10 @@
 /* Models with narrow peaks need a large alpha: for materials like the database's own, peaks
  * increase the error by a tenth. */
 static const struct remainder {
-    double alpha;
-    double peak;
-} REMAINDERS[] = {{0.0, 0.0},  {0.03, 0.0}, {0.06, 0.0}, {0.12, 0.0}, {0.25, 0.0},
-                  {0.25, 8.0}, {0.5, 0.0},  {0.5, 8.0},  {1.0, 0.0},  {1.0, 8.0}};
+    double alpha, peak, retro;
+} REMAINDERS[] = {{0.0, 0.0, 0.0},  {0.03, 0.0, 0.0}, {0.06, 0.0, 0.0}, {0.12, 0.0, 0.0},
+                  {0.25, 0.0, 0.0}, {0.25, 8.0, 0.0}, {0.5, 0.0, 0.0},  {0.5, 8.0, 0.0},
+                  {1.0, 0.0, 0.0},  {1.0, 8.0, 0.0},  {0.25, 0.0, 8.0}, {0.5, 0.0, 8.0}};
 
 /* The share of the score that counts. Channels and neighbouring readings are not independent, so
  * the sum over all of them is overconfident. */
@@ -35,7 +35,13 @@ static gonio_i_model choice(int k, size_t readings)
 {
     const struct remainder remainder = REMAINDERS[k % ALL_REMAINDERS];
     const double h = k < ALL_REMAINDERS ? gonio_i_kernel_width(readings) : 1.0;
-    return (gonio_i_model){h, remainder.alpha, remainder.peak};
+    return (gonio_i_model){h, remainder.alpha, remainder.peak, remainder.retro};
+}
+
+/* Peaks towards the light are for readings near it: elsewhere nothing would tell of them. */
+static bool is_offered(int k, const gonio_i_sites *sites)
+{
+    return REMAINDERS[k % ALL_REMAINDERS].retro == 0.0 || sites->back != NULL;
 }
 
 /* The log prior of a model, up to a constant. */
@@ -78,7 +84,9 @@ static gonio_status score_models(gonio_i_fit *e, size_t readings, bool judge_out
     }
     for (int k = 0; k < CHOICES && status == GONIO_OK; k++) {
         const gonio_i_model model = choice(k, readings);
-        status = gonio_i_leave_one_out_score(e, &model, s->score + (size_t)k * e->n);
+        double *score = s->score + (size_t)k * e->n;
+        score[0] = -INFINITY;
+        status = is_offered(k, e->sites) ? gonio_i_leave_one_out_score(e, &model, score) : GONIO_OK;
     }
     return status;
 }
@@ -197,7 +205,8 @@ gonio_status gonio_i_models_weigh(gonio_context *context, const gonio_i_prior *p
         judged.outlying == 0 || outliers_are_wrong(prior, subset->count, &judged, &unjudged);
     const subset_scores *chosen = wrong ? &judged : &unjudged;
     for (int k = 0; k < CHOICES; k++) {
-        log_weight[k] = SHARE * chosen->score[k] + log_prior(k);
+        log_weight[k] =
+            is_offered(k, subset->sites[0]) ? SHARE * chosen->score[k] + log_prior(k) : -INFINITY;
     }
     *models = normalise(log_weight, subset->readings[0]);
     models->judge_outliers = wrong;

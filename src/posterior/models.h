@@ -13,7 +13,7 @@
 
 #include "leave_one_out.h"
 
-enum { GONIO_I_MOST_MODELS = 20 };
+enum { GONIO_I_MOST_MODELS = 24 };
 
 typedef struct gonio_i_models {
     size_t count;

@@ -179,8 +179,8 @@ gonio_status gonio_i_posterior_find(gonio_context *context, const gonio_i_prior 
     gonio_i_finding all = {.context = context,
                            .prior = prior,
                            .options = options,
-                           .models = gonio_i_models_of(
-                               (gonio_i_model){GONIO_I_KERNEL_WIDTH, options->smoothness, 0.0}),
+                           .models = gonio_i_models_of((gonio_i_model){
+                               GONIO_I_KERNEL_WIDTH, options->smoothness, 0.0, 0.0}),
                            .p = p,
                            .count = count,
                            .steps = {.task = "reconstructing", .all = count}};

@@ -31,6 +31,7 @@ void gonio_i_sites_free(gonio_i_sites **sites)
     free((*sites)->gram);
     free((*sites)->smooth);
     free((*sites)->peaked);
+    free((*sites)->back);
     free(*sites);
     *sites = NULL;
 }
@@ -46,6 +47,19 @@ static void relate(gonio_i_sites *s, size_t i)
         s->peaked[i * s->n + j] = peaked;
         s->peaked[j * s->n + i] = peaked;
     }
+}
+
+static gonio_status relate_back(gonio_context *context, gonio_i_sites *s)
+{
+    bool any = false;
+    for (size_t i = 0; i < s->n; i++) {
+        any = any || gonio_i_place_is_back(&s->place[i]);
+    }
+    s->back = any ? gonio_i_allocate(context, s->n * s->n, sizeof *s->back) : NULL;
+    for (size_t i = 0; s->back != NULL && i < s->n * s->n; i++) {
+        s->back[i] = gonio_i_back(&s->place[i / s->n], &s->place[i % s->n]);
+    }
+    return any && s->back == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
 }
 
 /* F F' and F z_j. */
@@ -97,6 +111,9 @@ gonio_status gonio_i_sites_create(gonio_context *context, const gonio_i_prior *p
         relate(s, i);
     }
     free(scratch);
+    if (status == GONIO_OK) {
+        status = relate_back(context, s);
+    }
     if (status == GONIO_OK) {
         status = see_samples(context, s);
     }

@@ -18,8 +18,9 @@ typedef struct gonio_i_sites {
     double *mean;         /* [n]: m */
     double *seen;         /* [samples][n]: F z_j */
     double *gram;         /* [n][n]: F F' */
-    double *smooth;       /* [n][n]: the two parts of k */
+    double *smooth;       /* [n][n]: the first parts of k */
     double *peaked;       /* [n][n] */
+    double *back;         /* [n][n]: the third part; NULL if no direction is near the light */
 } gonio_i_sites;
 
 /* The sites of a column's observations, whose values do not matter. The prior must outlive them.
@@ -27,6 +28,12 @@ typedef struct gonio_i_sites {
 gonio_status gonio_i_sites_create(gonio_context *context, const gonio_i_prior *prior,
                                   const gonio_i_column *column, gonio_i_sites **sites);
 void gonio_i_sites_free(gonio_i_sites **sites);
+
+/* Numbers that a column's field over the sites is made of (fields.h). */
+static inline size_t gonio_i_terms(const gonio_i_sites *sites)
+{
+    return sites->components + (sites->back != NULL ? 3 : 2) * sites->n;
+}
 
 /* Whether two columns were read at the same directions in the same order, so that sites of one are
  * those of the other. */

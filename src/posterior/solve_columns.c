@@ -34,7 +34,7 @@ static double square_left(const gonio_i_fit *e)
     return sum;
 }
 
-/* Adds an estimate by a model, times its weight, to terms[K + 2 n]. c: [K]; solved: [n]. */
+/* Adds an estimate by a model, times its weight, to terms (fields.h). c: [K]; solved: [n]. */
 static void add_terms(const gonio_i_fit *e, double weight, const double *c, const double *solved,
                       double *terms)
 {
@@ -48,6 +48,9 @@ static void add_terms(const gonio_i_fit *e, double weight, const double *c, cons
         const double part = weight * m->alpha * m->alpha * solved[i];
         smooth[i] += part;
         peaked[i] += part * m->peak * m->peak;
+        if (e->sites->back != NULL) {
+            peaked[e->n + i] += part * m->retro * m->retro;
+        }
     }
 }
 
@@ -270,7 +273,7 @@ static void follow_deviation(const gonio_i_finding *all, size_t column)
 static void follow_fits(const group *g)
 {
     const gonio_i_finding *all = g->all;
-    const size_t terms = g->sites->components + 2 * g->sites->n;
+    const size_t terms = gonio_i_terms(g->sites);
     for (size_t k = 0; k < g->count; k++) {
         const size_t column = g->member[k];
         if (!gonio_i_is_fitted(all->neighbours, column)) {
@@ -311,7 +314,7 @@ static gonio_status begin_columns(const group *g)
 {
     const gonio_i_finding *all = g->all;
     const double *wavelength = all->options->wavelength;
-    const size_t terms = g->sites->components + 2 * g->sites->n;
+    const size_t terms = gonio_i_terms(g->sites);
     gonio_status status = GONIO_OK;
     if (wavelength != NULL) {
         status = gonio_i_neighbours_choose(all->context, all->column, wavelength, g->member,

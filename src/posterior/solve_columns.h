@@ -12,7 +12,7 @@
 /* What is found of a column. */
 typedef struct gonio_i_found_column {
     gonio_i_column merged; /* its observations, if there were too many; or empty */
-    double *terms;         /* [K + 2 n]: of its field (fields.h), the mean over the models */
+    double *terms;         /* of its field (fields.h), the mean over the models */
     double *part[2];       /* the same by each neighbour, of a column that is not fitted */
     double outlying;
     double surprise;

@@ -69,7 +69,7 @@ static double gain_at(const gonio_i_search *s, const double *c, gonio_i_oriented
 /* The coefficients of a column under the isotropic model. */
 static gonio_status find_isotropic(gonio_i_search *s, size_t column, double *c)
 {
-    static const gonio_i_model usual = {1.0, 0.12, 0.0};
+    static const gonio_i_model usual = {1.0, 0.12, 0.0, 0.0};
     gonio_i_sites *sites = NULL;
     gonio_i_fit fit = {0};
     gonio_status status = gonio_i_sites_create(s->context, &s->plain, &s->column[column], &sites);

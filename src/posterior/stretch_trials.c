@@ -15,11 +15,12 @@ static const double SEARCHED_SHARE = 0.1;
 const double gonio_i_trial_shares[GONIO_I_TRIAL_SHARES] = {0.0, 0.03, 0.1, 0.3};
 
 const gonio_i_model gonio_i_trial_models[GONIO_I_TRIAL_MODELS] = {
-    {1.0, 0.0, 0.0},  {1.0, 0.03, 0.0}, {1.0, 0.06, 0.0}, {1.0, 0.12, 0.0}, {1.0, 0.25, 0.0},
-    {1.0, 0.25, 8.0}, {1.0, 0.5, 0.0},  {1.0, 0.5, 8.0},  {1.0, 1.0, 0.0},  {1.0, 1.0, 8.0}};
+    {1.0, 0.0, 0.0, 0.0},  {1.0, 0.03, 0.0, 0.0}, {1.0, 0.06, 0.0, 0.0}, {1.0, 0.12, 0.0, 0.0},
+    {1.0, 0.25, 0.0, 0.0}, {1.0, 0.25, 8.0, 0.0}, {1.0, 0.5, 0.0, 0.0},  {1.0, 0.5, 8.0, 0.0},
+    {1.0, 1.0, 0.0, 0.0},  {1.0, 1.0, 8.0, 0.0}};
 
-const gonio_i_model gonio_i_searched_models[GONIO_I_SEARCHED_MODELS] = {{1.0, 0.12, 0.0},
-                                                                        {1.0, 0.5, 0.0}};
+const gonio_i_model gonio_i_searched_models[GONIO_I_SEARCHED_MODELS] = {{1.0, 0.12, 0.0, 0.0},
+                                                                        {1.0, 0.5, 0.0, 0.0}};
 
 const double gonio_i_score_share = 1.0 / 8.0;
 const double gonio_i_for_isotropic = 2.0;

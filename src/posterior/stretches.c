@@ -138,7 +138,7 @@ static gonio_status mix(pool *p)
         const gonio_i_hypothesis *h = &p->hypothesis[k];
         const bool isotropic = gonio_i_stretch_is_isotropic(&h->stretch);
         if (isotropic || anisotropic++ < BEST_MIXED) {
-            const gonio_i_model model = {p->search.h, h->model.alpha, h->model.peak};
+            const gonio_i_model model = {p->search.h, h->model.alpha, h->model.peak, 0.0};
             trials[count++] = gonio_i_trial_of(h->stretch, &model, 1);
         }
     }

@@ -22,7 +22,7 @@ static const double MOST_OF_A_READING = 3.0;
 static gonio_i_model model_of(const gonio_i_column *column, int model)
 {
     return (gonio_i_model){gonio_i_kernel_width(column->count), MODELS[model].alpha,
-                           MODELS[model].peak};
+                           MODELS[model].peak, 0.0};
 }
 
 gonio_status gonio_i_transform_trial_begin(gonio_context *context, const gonio_i_prior *prior,

@@ -36,7 +36,7 @@ enum {
 };
 
 /* A remainder that does not trust the database. */
-static const gonio_i_model MODEL = {GONIO_I_KERNEL_WIDTH, 0.25, 8.0};
+static const gonio_i_model MODEL = {GONIO_I_KERNEL_WIDTH, 0.25, 8.0, 0.0};
 
 typedef struct search {
     gonio_context *context;

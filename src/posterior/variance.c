@@ -40,7 +40,7 @@ static double calibrated(double variance, const calibration *c)
 
 struct gonio_i_rows {
     const gonio_i_sites *sites;
-    double peak;
+    double peak, retro;
     size_t n;           /* readings whose smoothness counts: none if alpha is 0 */
     size_t size;        /* of t */
     size_t count;       /* rows looked at: */
@@ -66,7 +66,8 @@ static void fill_t(const gonio_i_rows *r, size_t number, double *t)
         const gonio_i_place here =
             gonio_i_place_of(gonio_i_row_coordinates(prior->view, row, &channel));
         for (size_t i = 0; i < r->n; i++) {
-            t[prior->components + i] = gonio_i_remainder(&here, &r->sites->place[i], r->peak);
+            t[prior->components + i] =
+                gonio_i_remainder(&here, &r->sites->place[i], r->peak, r->retro);
         }
     }
 }
@@ -78,7 +79,7 @@ static void fill_row(gonio_i_rows *r, size_t number)
     int channel = 0;
     if (r->n > 0) {
         const gonio_i_place here = gonio_i_place_of(gonio_i_row_coordinates(view, row, &channel));
-        r->itself[number] = gonio_i_remainder(&here, &here, r->peak);
+        r->itself[number] = gonio_i_remainder(&here, &here, r->peak, r->retro);
     }
     if (r->t != NULL) {
         fill_t(r, number, r->t + number * r->size);
@@ -110,7 +111,7 @@ gonio_status gonio_i_rows_create(gonio_context *context, const gonio_i_sites *si
     if (r == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    *r = (gonio_i_rows){.sites = sites, .peak = model->peak};
+    *r = (gonio_i_rows){.sites = sites, .peak = model->peak, .retro = model->retro};
     r->n = model->alpha > 0.0 ? sites->n : 0;
     r->size = sites->components + r->n;
     r->count = all ? sites->prior->view->rows : targets->count;

@@ -6,11 +6,12 @@
 
 #include "parallel_for.h"
 
-/* Remainders that an unknown kind of material may have: smooth ones, and with narrow peaks. */
+/* Remainders that an unknown kind of material may have: smooth ones, and with narrow peaks;
+ * those towards the light where it was read near it. */
 static const struct remainder {
-    double alpha;
-    double peak;
-} REMAINDERS[] = {{0.03, 0.0}, {0.12, 0.0}, {0.5, 0.0}, {0.12, 8.0}, {0.5, 8.0}};
+    double alpha, peak, retro;
+} REMAINDERS[] = {{0.03, 0.0, 0.0}, {0.12, 0.0, 0.0}, {0.5, 0.0, 0.0}, {0.12, 8.0, 0.0},
+                  {0.5, 8.0, 0.0},  {0.25, 0.0, 8.0}, {0.5, 0.0, 8.0}};
 
 /* Directions that are as far off as this, in deviations, may be left out; this many of the worst
  * are tried. */
@@ -148,7 +149,7 @@ static void leave_out(direction_search *d, size_t number, bool out)
 static gonio_i_model model_of(const direction_search *d, size_t column, size_t k)
 {
     return (gonio_i_model){gonio_i_kernel_width(d->subset->readings[column]), REMAINDERS[k].alpha,
-                           REMAINDERS[k].peak};
+                           REMAINDERS[k].peak, REMAINDERS[k].retro};
 }
 
 static gonio_status score_column(void *data, gonio_context *context, size_t c)
@@ -159,7 +160,10 @@ static gonio_status score_column(void *data, gonio_context *context, size_t c)
     gonio_status status = GONIO_OK;
     for (size_t k = 0; k < MODELS && status == GONIO_OK; k++) {
         const gonio_i_model model = model_of(d, c, k);
-        status = gonio_i_leave_one_out_score(e, &model, d->score[c] + k * e->n);
+        double *score = d->score[c] + k * e->n;
+        const bool offered = model.retro == 0.0 || e->sites->back != NULL;
+        score[0] = -INFINITY;
+        status = offered ? gonio_i_leave_one_out_score(e, &model, score) : GONIO_OK;
     }
     return status;
 }

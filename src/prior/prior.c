@@ -6,7 +6,21 @@
 
 #include "../direction/grid.h"
 
-static const double WIDTH = M_PI / 180.0;
+#define DEGREE (M_PI / 180.0)
+
+/* Of the mirror direction, of what comes back, and where that begins to differ from the mirror
+ * direction. */
+static const double WIDTH = 1.0 * DEGREE;
+static const double BACK_WIDTH = 3.0 * DEGREE;
+static const double BACK_FROM = 10.0 * DEGREE;
+
+/* b from which on a place is near the light. */
+static const double BACK = 0.05;
+
+static double bell(double angle, double width)
+{
+    return exp(-0.5 * angle * angle / (width * width));
+}
 
 /* The weight of a column in learning, on average 1 (docs/method.md, mixtures). */
 static double weight_of(const gonio_basis_view *view, size_t column)
@@ -101,7 +115,8 @@ gonio_i_place gonio_i_place_of(gonio_half_difference at)
     return (gonio_i_place){{GONIO_THETA_H_BINS / 10.0 * sqrt(fmax(at.theta_h, 0.0) / quarter),
                             at.theta_d / quarter * 90.0 / 20.0, turn * cos(2.0 * at.phi_d),
                             turn * sin(2.0 * at.phi_d)},
-                           exp(-0.5 * at.theta_h * at.theta_h / (WIDTH * WIDTH))};
+                           bell(at.theta_h, WIDTH),
+                           bell(at.theta_d, BACK_WIDTH) * (1.0 - bell(at.theta_h, BACK_FROM))};
 }
 
 double gonio_i_place_distance(const gonio_i_place *a, const gonio_i_place *b)
@@ -124,10 +139,25 @@ double gonio_i_peaked(const gonio_i_place *a, const gonio_i_place *b)
     return both > 1e-12 ? both * exp(-2.0 * gonio_i_place_distance(a, b)) : 0.0;
 }
 
-double gonio_i_remainder(const gonio_i_place *a, const gonio_i_place *b, double peak)
+/* Peaks towards the light change little with the angle of incidence. */
+double gonio_i_back(const gonio_i_place *a, const gonio_i_place *b)
 {
-    const double smooth = gonio_i_smooth(a, b);
-    return peak > 0.0 ? smooth + peak * peak * gonio_i_peaked(a, b) : smooth;
+    const double both = a->retro * b->retro;
+    const double far = a->p[0] - b->p[0];
+    return both > 1e-12 ? both * exp(-0.125 * far * far) : 0.0;
+}
+
+double gonio_i_remainder(const gonio_i_place *a, const gonio_i_place *b, double peak, double retro)
+{
+    double k = gonio_i_smooth(a, b);
+    k += peak > 0.0 ? peak * peak * gonio_i_peaked(a, b) : 0.0;
+    k += retro > 0.0 ? retro * retro * gonio_i_back(a, b) : 0.0;
+    return k;
+}
+
+bool gonio_i_place_is_back(const gonio_i_place *place)
+{
+    return place->retro > BACK;
 }
 
 size_t gonio_i_sample_step(size_t rows)

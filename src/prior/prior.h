@@ -36,18 +36,20 @@ void gonio_i_prior_row(const gonio_i_prior *prior, size_t row, double *f);
 
 /* The remainder has covariance alpha^2 k(x, x'),
  *
- *     k = exp(-|p - p'|^2/2) + peak^2 exp(-(theta_h^2 + theta_h'^2)/(2 WIDTH^2)) exp(-2 |p -
- * p'|^2):
+ *     k = exp(-|p - p'|^2/2) + peak^2 q q' exp(-2 |p - p'|^2) + retro^2 b b' exp(-(p_0 -
+ * p_0')^2/8), q = exp(-(theta_h/1 deg)^2/2),   b = exp(-(theta_d/3 deg)^2/2) (1 - exp(-(theta_h/10
+ * deg)^2/2)):
  *
  * The second term allows peaks that are narrower than any in the database, within about a degree
- * (WIDTH) of the mirror direction.
+ * of the mirror direction; the third those of retroreflectors, towards the light.
  *
  * p are half/difference coordinates scaled by the length scales: 10 bins of theta_h (which are
  * dense around the mirror direction) and 20 degrees of theta_d. The distance in phi_d becomes small
  * where phi_d matters little: where h is near the normal, or d near h. */
 typedef struct gonio_i_place {
     double p[4];
-    double peak; /* exp(-theta_h^2/(2 WIDTH^2)) */
+    double peak;  /* q */
+    double retro; /* b */
 } gonio_i_place;
 
 gonio_i_place gonio_i_place_of(gonio_half_difference at);
@@ -55,10 +57,15 @@ gonio_i_place gonio_i_place_of(gonio_half_difference at);
 /* |p - p'|^2. */
 double gonio_i_place_distance(const gonio_i_place *a, const gonio_i_place *b);
 
-/* The two terms of k: k = smooth + peak^2 peaked, for a `peak` of 0 or more. */
+/* The terms of k: k = smooth + peak^2 peaked + retro^2 back, for a `peak` and `retro` of 0 or more.
+ */
 double gonio_i_smooth(const gonio_i_place *a, const gonio_i_place *b);
 double gonio_i_peaked(const gonio_i_place *a, const gonio_i_place *b);
-double gonio_i_remainder(const gonio_i_place *a, const gonio_i_place *b, double peak);
+double gonio_i_back(const gonio_i_place *a, const gonio_i_place *b);
+double gonio_i_remainder(const gonio_i_place *a, const gonio_i_place *b, double peak, double retro);
+
+/* Whether a place is near enough to the light for the third term to count. */
+bool gonio_i_place_is_back(const gonio_i_place *place);
 
 /* The step between rows that gives a sample of some 4,096 rows, evenly of all channels and sectors.
  */

@@ -165,7 +165,7 @@ double covariance(gonio_half_difference a, gonio_half_difference b, double h, do
     for (size_t j = 0; j < fixture.gaussian->components; j++) {
         sum += f[0][j] * f[1][j];
     }
-    return h * h * sum + alpha * alpha * gonio_i_remainder(&x, &y, PEAK);
+    return h * h * sum + alpha * alpha * gonio_i_remainder(&x, &y, PEAK, 0.0);
 }
 
 double mean_at(gonio_half_difference at)

@@ -32,7 +32,7 @@ static void test_albedo_of_equal_readings(void **state)
     (void)state;
     const double s = gonio_log_scale(0);
     const double albedo = 0.4;
-    const gonio_i_model model = {GONIO_I_KERNEL_WIDTH, 2.0, 0.0};
+    const gonio_i_model model = {GONIO_I_KERNEL_WIDTH, 2.0, 0.0, 0.0};
     gonio_i_observation reading[MOST];
     const gonio_i_column column = {MOST, reading};
     gonio_i_sites *sites = NULL;

@@ -14,7 +14,7 @@ static void test_leaving_one_out(void **state)
     gonio_i_fit e = begin_fit(fixture.gaussian, &column, &sites);
     double left[N];
     double variance[N];
-    assert_int_equal(gonio_i_fit_solve(&e, &(gonio_i_model){1.0, ALPHA, PEAK}), GONIO_OK);
+    assert_int_equal(gonio_i_fit_solve(&e, &(gonio_i_model){1.0, ALPHA, PEAK, 0.0}), GONIO_OK);
     assert_int_equal(gonio_i_fit_leave_one_out(&e, left, variance), GONIO_OK);
     end_fit(&e, &sites);
     for (size_t i = 0; i < N; i++) {
@@ -38,7 +38,7 @@ static void test_leaving_one_out_of_a_mixture(void **state)
 {
     (void)state;
     enum { N = 9 };
-    const gonio_i_model model = {GONIO_I_KERNEL_WIDTH, ALPHA, PEAK};
+    const gonio_i_model model = {GONIO_I_KERNEL_WIDTH, ALPHA, PEAK, 0.0};
     drawn d = draw(5, 0.1);
     const gonio_i_column column = {N, d.reading};
     gonio_i_sites *sites = NULL;

@@ -106,7 +106,7 @@ static void test_the_evidence(void **state)
             density += (p == 0 ? 1.0 : fixture.mixture->share[j]) * exp(-0.5 * square);
         }
         const double expected = log(density) - 0.5 * (logarithm + N * log(2.0 * M_PI));
-        const gonio_i_model model = {GONIO_I_KERNEL_WIDTH, ALPHA, 0.0};
+        const gonio_i_model model = {GONIO_I_KERNEL_WIDTH, ALPHA, 0.0, 0.0};
         size_t outlying = 0;
         gonio_i_sites *sites = NULL;
         gonio_i_fit e;
@@ -161,7 +161,8 @@ static void test_the_mean_over_the_models(void **state)
     gonio_i_models models;
     for (size_t i = 0, taken = 0; taken < N; i++) {
         assert_in_range(i, 0, MOST - 1);
-        if (d.reading[i].at.theta_h > 0.1) { /* where a remainder has no peak */
+        const gonio_half_difference at = d.reading[i].at;
+        if (at.theta_h > 0.1 && at.theta_d > 0.15) { /* where a remainder has no peak */
             d.reading[taken++] = d.reading[i];
         }
     }

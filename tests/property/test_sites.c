@@ -74,7 +74,7 @@ static void assert_same_fit(const gonio_i_fit *a, const gonio_i_fit *b)
 static void test_fits_of_shared_sites(void **state)
 {
     (void)state;
-    const gonio_i_model models[] = {{GONIO_I_KERNEL_WIDTH, ALPHA, PEAK}, {1.0, 0.5, 0.0}};
+    const gonio_i_model models[] = {{GONIO_I_KERNEL_WIDTH, ALPHA, PEAK, 0.0}, {1.0, 0.5, 0.0, 0.0}};
     drawn d = draw(7, 0.1);
     shared s;
     share(&d, &s);
