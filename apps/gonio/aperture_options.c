@@ -36,6 +36,13 @@ bool aperture_options_check(const tool *t, aperture_options *o, const char *outp
     return o->instrument == NULL || tool_check_output(t, output, &o->instrument, 1);
 }
 
+int aperture_options_values(const gonio_instrument *instrument)
+{
+    const gonio_value_kind kind =
+        instrument != NULL ? gonio_instrument_describe(instrument)->values : GONIO_VALUE_COUNTS;
+    return kind != GONIO_VALUE_COUNTS ? (int)kind : 0;
+}
+
 gonio_status aperture_options_apply(const tool *t, aperture_options *o,
                                     posterior_options *posterior)
 {
@@ -48,6 +55,7 @@ gonio_status aperture_options_apply(const tool *t, aperture_options *o,
         const gonio_instrument_view *view =
             instrument != NULL ? gonio_instrument_describe(instrument) : NULL;
         posterior_options_settle(posterior, view);
+        o->values = aperture_options_values(instrument);
         if (view != NULL && o->aperture == NULL) {
             o->detector = view->detector_aperture * 180.0 / M_PI;
             o->source = view->source_aperture * 180.0 / M_PI;

@@ -9,7 +9,12 @@ typedef struct aperture_options {
     const char *aperture;   /* "2" or "2,0.2"; NULL: those of the instrument */
     double detector;        /* half angles, degrees: set by aperture_options_apply */
     double source;
+    int values; /* what the instrument's numbers stand for (gonio_value_kind); 0: not known */
 } aperture_options;
+
+/* The kind of values of an instrument, where it is one that readings can be taken as; otherwise 0.
+ */
+int aperture_options_values(const gonio_instrument *instrument);
 
 /* Rows of an option table. */
 #define APERTURE_OPTIONS(o)                                                                        \

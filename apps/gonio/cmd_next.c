@@ -1,4 +1,5 @@
 /* gonio next: where to measure next, given what was read. */
+#include "aperture_options.h"
 #include "builtin_basis.h"
 #include "command_line.h"
 #include "correction_options.h"
@@ -81,8 +82,11 @@ typedef struct next_inputs {
 
 static gonio_status find_next(tool *t, const options *o, const next_inputs *in, answer *a)
 {
-    const gonio_readings_options any = {
-        .size = sizeof any, .values_needed = true, .average_repeats = true};
+    const gonio_readings_options any = {.size = sizeof any,
+                                        .values_needed = true,
+                                        .average_repeats = true,
+                                        .usual_values =
+                                            aperture_options_values(in->planning.instrument)};
     const gonio_reconstruct_options how = how_of(o, in->planning.instrument);
     gonio_readings *readings = NULL;
     gonio_basis *basis = NULL;

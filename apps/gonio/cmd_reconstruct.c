@@ -236,7 +236,8 @@ static int reconstruct_all(tool *t, const options *o, const char *basis_path,
     const gonio_readings_options how = {.size = sizeof how,
                                         .values_needed = true,
                                         .average_repeats = o->average_repeats,
-                                        .negative_to_zero = o->negative_to_zero};
+                                        .negative_to_zero = o->negative_to_zero,
+                                        .usual_values = o->aperture.values};
     gonio_readings **readings = calloc(count, sizeof *readings);
     gonio_basis *basis = NULL;
     gonio_status status = readings == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;

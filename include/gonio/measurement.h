@@ -70,6 +70,8 @@ typedef struct gonio_readings_options {
                             * (least squares averages it), false to refuse */
     bool negative_to_zero; /* a reading below zero: true to take it as 0, false to refuse */
     gonio_convention as;   /* of files: units and conventions other than the stated ones */
+    int usual_values;      /* gonio_value_kind of tables whose names and comments state none, as the
+                            * instrument gives them; 0: the BRDF */
 } gonio_readings_options;
 
 /* Values are needed. Repeats and negative readings are refused. */

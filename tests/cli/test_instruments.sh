@@ -140,6 +140,19 @@ for rig in four-axis wide.json; do
 done
 # shellcheck disable=SC2086
 expect_true 'apertures count' test "$(printf '%s\n' $errors | sort -u | wc -l)" = 2
+
+# Numbers of which a file says nothing are what the instrument gives: two-arms reflectance factors.
+printf 'theta_i,phi_i,theta_o,phi_o,R,G,B\n15,0,30,180,0.5,0.4,0.3\n30,0,30,180,0.9,0.8,0.7\n' >bare.csv
+sed 's/R,G,B/R_per_sr,G_per_sr,B_per_sr/; s/theta_i/incident theta/' bare.csv >stated.csv
+taken_as() { # WORDS COMMAND FILE OPTION...
+    local words=$1
+    expect_ok "$2" b.gonio "$3" --instrument two-arms "${@:4}"
+    expect_true "$* takes them so" grep -qF "$words" "$root/work/stderr"
+}
+taken_as 'reflectance factors (divided by pi)' reconstruct bare.csv --method posterior -o bare.binary
+taken_as 'reflectance factors (divided by pi)' next bare.csv -n 1 -o next.csv
+taken_as 'values in 1/sr' reconstruct bare.csv --method posterior --as values=brdf -o bare.binary
+taken_as 'values in 1/sr' reconstruct stated.csv --method posterior -o bare.binary
 expect_fail 2 '--noise cannot be negative' next b.gonio run.csv --instrument four-axis --noise -1 -o no.csv
 expect_fail 2 "--aperture: 'wide' is not a half angle" reconstruct b.gonio run.csv --aperture wide -o no.binary
 expect_fail 2 "--aperture: '50' is not a half angle" reconstruct b.gonio run.csv --aperture 50 -o no.binary

@@ -281,11 +281,12 @@ static gonio_status take_rows(csv_source *s)
 /* ---- the file as a whole ---- */
 
 /* The convention that holds unless the user gives another. */
-static gonio_convention convention_of(const gonio_i_csv_columns *columns)
+static gonio_convention convention_of(const gonio_i_csv_columns *columns, int usual_values)
 {
+    const int usual = usual_values != 0 ? usual_values : GONIO_VALUE_BRDF;
     gonio_convention stated = columns->stated;
     stated.angles = stated.angles != 0 ? stated.angles : GONIO_DEGREES;
-    stated.values = stated.values != 0 ? stated.values : GONIO_VALUE_BRDF;
+    stated.values = stated.values != 0 ? stated.values : usual;
     return stated;
 }
 
@@ -338,7 +339,7 @@ static size_t expected_rows(const gonio_i_csv_reader *reader)
 
 static void begin_import(csv_source *s, gonio_i_csv_kept *kept, const char *taken_as)
 {
-    const gonio_convention stated = convention_of(s->columns);
+    const gonio_convention stated = convention_of(s->columns, s->readings->options.usual_values);
     gonio_i_import_begin(&s->in, s->context, s->readings, taken_as, &stated);
     s->in.quiet = s->columns->own && !is_convention_given(&s->readings->options.as);
     s->in.keep_unmeasured = true;
