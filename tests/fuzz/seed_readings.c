@@ -14,6 +14,12 @@ static const struct {
     {"csv-factor",
      "# reflectance factor\nincidence angle\tviewing angle\tazimuth\tbrf\tsigma\n30\t40\t180\t0.5\t"
      "0.01\n30\t-40\t0\t0.25\t0.02\n"},
+    {"csv-blanks",
+     "% a lab\n% thetaIn phiIn thetaOut phiOut R550 rotation\n\n20  0 30 180\t0.5 15\n"
+     "% end\n20 0 -30 0 0.25 30\n"},
+    {"csv-strokes",
+     "Instrument, X\n| AOI | scatter angle | brdf |\n|---|:-:|---|\n| 20 | -30 | 0.5 "
+     "|\n| 20 | 30 | 0.25 |\n"},
     {"scattered", "2\n500 600\n0.5 0 1.0 3.14 0.5 0.25\n0.5 0 0.2 0 0.1 0.1\n"},
     {"alta", "#SAMPLE \"x\"\n#DIM 3 1\n#VS 0\n#PARAM_IN ISOTROPIC_TL_TV_PROJ_DPHI\n"
              "0.25 0.3 -0.4 0.7\n0.25 -0.2 0 0.1\n"},

@@ -138,6 +138,45 @@ static void test_repeats_stay(void **state)
     gonio_readings_free(&readings);
 }
 
+/* Channels without wavelengths: an ad-hoc variable or a column, colours or numbers in any words. */
+static void test_channels_of_other_programs(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *column;
+        size_t channels;
+        size_t last; /* the channel of the last value */
+    } cases[] = {
+        {"\"adhoc_variables\":{\"channel\":{\"values\":[\"R\",\"G\",\"B\",\"G\"]}}", 3, 1},
+        {"\"channel\":{\"values\":[\"red\",\"green\",\"blue\",\"Green\"]}", 3, 1},
+        {"\"channel\":[\"1\",\"2\",\"1\",\"2\"]", 2, 1},
+        {"\"channel\":[1.0,2.0,3.0,2.0]", 3, 1},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        char text[1024];
+        snprintf(text, sizeof text, "{\"data\":{%s,%s,\"BRDF\":[0.1,0.2,0.3,0.4]}}",
+                 ANGLES("0.5,0.5,0.5,0.5"), cases[k].column);
+        gonio_readings *readings = read_text(text, NULL);
+        const gonio_readings_view *view = gonio_readings_describe(readings);
+        assert_int_equal(view->channels, cases[k].channels);
+        assert_int_equal(view->count, 2);
+        assert_near(gonio_readings_value(readings, 0, 0), 0.1);
+        assert_near(gonio_readings_value(readings, 1, cases[k].last), 0.4);
+        gonio_readings_free(&readings);
+    }
+    gonio_context *context = support_context();
+    gonio_readings *readings = NULL;
+    char *folder = support_folder();
+    assert_int_equal(made_readings(context, folder, "r.json",
+                                   "{\"data\":{" ANGLES("0.5,0.5,0.5,0.5") ",\"channel\":[1,2,1.5,2"
+                                                                           "],\"BRDF\":[1,2,3,4]}}",
+                                   NULL, &readings),
+                     GONIO_ERROR_FORMAT);
+    assert_non_null(strstr(support_message(), "entry 3: a channel is R, G, B or a number from 1"));
+    support_remove(folder);
+    gonio_context_free(&context);
+}
+
 /* What the user says comes before the units of the file. */
 static void test_conventions_of_json(void **state)
 {
@@ -320,6 +359,7 @@ int main(void)
         cmocka_unit_test(test_a_single_polarisation),
         cmocka_unit_test(test_relative_uncertainties),
         cmocka_unit_test(test_repeats_stay),
+        cmocka_unit_test(test_channels_of_other_programs),
         cmocka_unit_test(test_conventions_of_json),
         cmocka_unit_test(test_json_round_trips),
         cmocka_unit_test(test_json_keeps_to_the_schema),

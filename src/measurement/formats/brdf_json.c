@@ -164,27 +164,48 @@ static gonio_status find_deviation(const gonio_i_readings_file *file, const json
                               file->path, unit);
 }
 
-/* The channel of a row: 0, 1, 2 for R, G, B; numbers count from 1. MOST_CHANNELS for neither. */
+/* The colour that a channel names: 0, 1, 2 for R, G, B; GONIO_CHANNELS for none. */
+static size_t colour_of(const json_t *entry)
+{
+    static const char *const names[GONIO_CHANNELS][2] = {
+        {"R", "red"}, {"G", "green"}, {"B", "blue"}};
+    const char *name = json_string_value(entry);
+    size_t k = 0;
+    while (k < GONIO_CHANNELS && (name == NULL || (strcasecmp(name, names[k][0]) != 0 &&
+                                                   strcasecmp(name, names[k][1]) != 0))) {
+        k++;
+    }
+    return k;
+}
+
+/* The channel of a row, from 0; numbers count from 1. MOST_CHANNELS for neither a colour nor a
+ * number. */
 static size_t channel_at(const columns *c, size_t row)
 {
     const json_t *entry = json_array_get(c->channel, row);
-    const char *name = json_string_value(entry);
-    const char *colour =
-        name != NULL && name[0] != '\0' && name[1] == '\0' ? strchr("RGB", name[0]) : NULL;
-    if (colour != NULL) {
-        return *colour == 'R' ? 0 : *colour == 'G' ? 1 : 2;
+    const size_t colour = colour_of(entry);
+    if (colour < GONIO_CHANNELS) {
+        return colour;
     }
-    const json_int_t number = json_integer_value(entry);
-    return number >= 1 && number <= MOST_CHANNELS ? (size_t)number - 1 : MOST_CHANNELS;
+    const char *text = json_string_value(entry);
+    char *end = NULL;
+    const double number = text != NULL ? strtod(text, &end) : json_number_value(entry);
+    const bool whole = number >= 1.0 && number <= MOST_CHANNELS && number == floor(number);
+    return whole && (text == NULL || *end == '\0') ? (size_t)number - 1 : MOST_CHANNELS;
+}
+
+/* The column of channels: an ad-hoc variable, or beside the others. */
+static const json_t *find_channel_column(const json_t *data)
+{
+    const json_t *channel =
+        gonio_i_json_member(gonio_i_json_member(data, "adhoc_variables"), "channel");
+    return values_of(channel != NULL ? channel : gonio_i_json_member(data, "channel"));
 }
 
 /* Finds the channels of a file without wavelengths, as gonio writes colours and sensors. */
 static gonio_status find_channels(const gonio_i_readings_file *file, const json_t *data, columns *c)
 {
-    c->channel = c->wavelength.values == NULL
-                     ? values_of(gonio_i_json_member(gonio_i_json_member(data, "adhoc_variables"),
-                                                     "channel"))
-                     : NULL;
+    c->channel = c->wavelength.values == NULL ? find_channel_column(data) : NULL;
     c->channels = c->wavelength.values == NULL ? 1 : 0;
     for (size_t k = 0; k < json_array_size(c->channel); k++) {
         const size_t channel = channel_at(c, k);
@@ -193,7 +214,7 @@ static gonio_status find_channels(const gonio_i_readings_file *file, const json_
                                 "%s: entry %zu: a channel is R, G, B or a number from 1",
                                 file->path, k + 1);
         }
-        const bool colour = json_is_string(json_array_get(c->channel, k));
+        const bool colour = colour_of(json_array_get(c->channel, k)) < GONIO_CHANNELS;
         const size_t least = colour ? GONIO_CHANNELS : channel + 1;
         c->channels = least > c->channels ? least : c->channels;
     }

@@ -9,12 +9,13 @@
 #include "../long_table.h"
 #include "../rules.h"
 #include "csv_kept.h"
+#include "csv_layout.h"
 #include "csv_notes.h"
 #include "csv_time.h"
 #include "format.h"
 
-/* Whether the text begins with column names between commas, semicolons or tabs, or is empty. The
- * reader checks the names. */
+/* Whether the text begins with column names between commas, semicolons or tabs, has names of angles
+ * in another layout (csv_layout.h), or is empty. The reader checks the names. */
 static bool recognises(const char *text, size_t size)
 {
     gonio_i_csv_lines lines;
@@ -22,6 +23,9 @@ static bool recognises(const char *text, size_t size)
     size_t length = 0;
     if (memchr(text, '\0', size) != NULL) {
         return false;
+    }
+    if (gonio_i_csv_layout_is_other(text, size)) {
+        return true;
     }
     gonio_i_csv_lines_begin(&lines, text, size, NULL);
     return gonio_i_csv_lines_next(&lines, &line, &length) &&
@@ -41,6 +45,7 @@ typedef struct csv_source {
     double *deviation;         /* [channels] */
     gonio_i_csv_others others; /* columns that are not read */
     double difference;         /* of azimuths, degrees, of a row */
+    double rotation;           /* of the sample, degrees, of a row */
     double off;                /* from the mirror direction, degrees, of a row */
     double wavelength;         /* of a row */
     gonio_i_long_table table;  /* rows of one wavelength each */
@@ -75,6 +80,8 @@ static gonio_status take_angle(csv_source *s, size_t column, size_t index, gonio
     }
     if (index == GONIO_I_AZIMUTH_DIFFERENCE) {
         s->difference = degrees;
+    } else if (index == GONIO_I_SAMPLE_ROTATION) {
+        s->rotation = degrees;
     } else if (index >= GONIO_I_FROM_SPECULAR) {
         s->off = degrees;
     } else {
@@ -243,6 +250,8 @@ static gonio_status take_row(csv_source *s)
     }
     take_difference(s, &row);
     status = status == GONIO_OK ? take_plane(s, &row) : status;
+    row.degrees[1] += s->rotation;
+    row.degrees[3] += s->rotation;
     gonio_i_csv_others_look(&s->others, &s->reader);
     if (status != GONIO_OK) {
         return status;
@@ -419,15 +428,26 @@ static gonio_status read_table(csv_source *s, gonio_i_csv_kept *kept)
     return status;
 }
 
+static gonio_status make_plain(gonio_i_readings_file *file)
+{
+    if (gonio_i_csv_layout_lacks_names(file->text, file->size)) {
+        return gonio_i_fail(file->context, GONIO_ERROR_FORMAT,
+                            "%s: begins with numbers, not with names of columns; put a line of "
+                            "names above, such as theta_i,phi_i,theta_o,phi_o,brdf",
+                            file->path);
+    }
+    return gonio_i_csv_layout_make_plain(file->context, file->path, &file->text, &file->size);
+}
+
 static gonio_status read(gonio_i_readings_file *file, gonio_readings *readings)
 {
     csv_source s = {.context = file->context, .readings = readings};
-    gonio_i_csv_kept *kept = keep(file, readings);
+    gonio_status status = make_plain(file);
+    gonio_i_csv_kept *kept = status == GONIO_OK ? keep(file, readings) : NULL;
     if (kept == NULL) {
-        return GONIO_ERROR_MEMORY;
+        return status != GONIO_OK ? status : GONIO_ERROR_MEMORY;
     }
-    gonio_status status =
-        gonio_i_csv_open(file->context, file->path, kept->text, kept->size, &s.reader);
+    status = gonio_i_csv_open(file->context, file->path, kept->text, kept->size, &s.reader);
     if (status == GONIO_OK) {
         status = read_table(&s, kept);
         gonio_i_csv_close(&s.reader);

@@ -18,7 +18,10 @@ enum {
     FILLER = 1 << 8,
     SPECULAR = 1 << 9,
     FROM = 1 << 10,
-    TOWARDS_NORMAL = 1 << 11
+    TOWARDS_NORMAL = 1 << 11,
+    ROTATION = 1 << 12,
+    SAMPLE = 1 << 13,
+    WORD = 1 << 14 /* an azimuth of both sides, where none is named; phi alone may be any angle */
 };
 
 static const gonio_i_known_word angle_words[] = {
@@ -26,13 +29,13 @@ static const gonio_i_known_word angle_words[] = {
     {"zenith", POLAR, 0},
     {"polar", POLAR, 0},
     {"phi", AZIMUTH, 0},
-    {"azimuth", AZIMUTH, 0},
+    {"azimuth", AZIMUTH | WORD, 0},
     {"azimuthal", AZIMUTH, 0},
     {"azim", AZIMUTH, 0},
     {"az", AZIMUTH, 0},
     {"i", INCIDENT, 0},
     {"in", INCIDENT, 0},
-    {"inc", INCIDENT, 0},
+    {"inc", INCIDENT | ANY_ANGLE, 0},
     {"incident", INCIDENT, 0},
     {"incoming", INCIDENT, 0},
     {"incidence", INCIDENT | ANY_ANGLE, 0},
@@ -56,7 +59,7 @@ static const gonio_i_known_word angle_words[] = {
     {"s", OUTGOING, 0},
     {"sca", OUTGOING, 0},
     {"scat", OUTGOING, 0},
-    {"scatter", OUTGOING, 0},
+    {"scatter", OUTGOING | ANY_ANGLE, 0},
     {"scattered", OUTGOING, 0},
     {"scattering", OUTGOING, 0},
     {"v", OUTGOING, 0},
@@ -91,6 +94,11 @@ static const gonio_i_known_word angle_words[] = {
     {"from", FROM, 0},
     {"off", FROM, 0},
     {"offset", FROM, 0},
+    {"rotation", ROTATION, 0},
+    {"rot", ROTATION, 0},
+    {"turntable", ROTATION, 0},
+    {"sample", SAMPLE, 0},
+    {"stage", SAMPLE, 0},
     {"angle", ANY_ANGLE, 0},
     {"angles", ANY_ANGLE, 0},
     {"direction", FILLER, 0},
@@ -141,6 +149,14 @@ static int angle_from_specular(unsigned bits)
     return (bits & TOWARDS_NORMAL) != 0 ? GONIO_I_ASPECULAR : GONIO_I_FROM_SPECULAR;
 }
 
+/* The rotation of the sample, and not the number of a sample; -1 for none. */
+static int rotation_of(unsigned bits)
+{
+    const bool other = (bits & (INCIDENT | OUTGOING | POLAR | DIFFERENCE)) != 0;
+    const bool turned = (bits & (ROTATION | AZIMUTH | ANY_ANGLE)) != 0;
+    return turned && !other ? GONIO_I_SAMPLE_ROTATION : -1;
+}
+
 /* The number of an angle, 0 to 3, or one of those behind them; -1 for none. */
 static int angle_of(unsigned bits)
 {
@@ -151,11 +167,14 @@ static int angle_of(unsigned bits)
     if ((bits & SPECULAR) != 0) {
         return angle_from_specular(bits);
     }
+    if ((bits & (ROTATION | SAMPLE)) != 0) {
+        return rotation_of(bits);
+    }
     if (polar == azimuth || (bits & FROM) != 0) {
         return -1;
     }
     if (azimuth && in == out) {
-        return in || (bits & DIFFERENCE) != 0 ? GONIO_I_AZIMUTH_DIFFERENCE : -1;
+        return in || (bits & (DIFFERENCE | WORD)) != 0 ? GONIO_I_AZIMUTH_DIFFERENCE : -1;
     }
     if (in == out || (bits & DIFFERENCE) != 0) {
         return -1;
@@ -174,6 +193,15 @@ bool gonio_i_take_angle_name(const gonio_i_words *words, gonio_i_column_name *na
     name->index = (size_t)angle;
     name->unit = unit_of_angle(s.bits);
     return true;
+}
+
+bool gonio_i_names_azimuth(const char *text)
+{
+    gonio_i_words words;
+    gonio_i_meaning s;
+    gonio_i_words_split(text, &words);
+    hear_angle(&words, &s);
+    return (s.bits & AZIMUTH) != 0;
 }
 
 int gonio_i_angle_unit_in(const char *text)

@@ -75,6 +75,16 @@ static gonio_status check_angles(const gonio_i_csv_finder *f,
     return GONIO_OK;
 }
 
+/* Whether a column that is not read names an azimuth, of which it is not known whose it is. */
+static bool is_azimuth_unread(const gonio_i_csv_finder *f)
+{
+    bool any = false;
+    for (size_t k = 0; k < f->r->columns; k++) {
+        any = any || (f->name[k].kind == GONIO_I_OTHER && gonio_i_names_azimuth(f->r->name[k]));
+    }
+    return any;
+}
+
 /* Which column is which angle, and what replaces those that are not there. */
 static gonio_status find_columns(const gonio_i_csv_finder *f, size_t chosen[GONIO_I_ANGLE_COLUMNS])
 {
@@ -90,7 +100,7 @@ static gonio_status find_columns(const gonio_i_csv_finder *f, size_t chosen[GONI
         chosen[GONIO_I_AZIMUTH_DIFFERENCE] = none;
     }
     f->c->in_plane = f->c->from_specular == 0 && f->c->difference_gives == 0 && chosen[1] == none &&
-                     chosen[3] == none;
+                     chosen[3] == none && !is_azimuth_unread(f);
     return status == GONIO_OK ? check_angles(f, chosen) : status;
 }
 
@@ -120,7 +130,8 @@ gonio_status gonio_i_csv_find_angles(const gonio_i_csv_finder *f)
         chosen[angle] = none;
     }
     gonio_status status = find_columns(f, chosen);
-    f->c->own_angles = chosen[1] != none && chosen[3] != none;
+    f->c->own_angles =
+        chosen[1] != none && chosen[3] != none && chosen[GONIO_I_SAMPLE_ROTATION] == none;
     for (size_t angle = 0; angle < GONIO_I_ANGLE_COLUMNS && status == GONIO_OK; angle++) {
         const size_t k = chosen[angle];
         if (k == none) {

@@ -30,11 +30,13 @@ typedef enum gonio_i_strength {
     GONIO_I_CERTAIN   /* with _per_sr */
 } gonio_i_strength;
 
-/* Indices behind theta_i, phi_i, theta_o, phi_o: of phi_o - phi_i, and of the angle between the
+/* Indices behind theta_i, phi_i, theta_o, phi_o: of phi_o - phi_i, of the rotation of the sample,
+ * which is added to both azimuths, and of the angle between the
  * detector and the mirror direction, in the plane of incidence: above zero farther from the normal,
  * or nearer to it. */
 enum {
     GONIO_I_AZIMUTH_DIFFERENCE = 4,
+    GONIO_I_SAMPLE_ROTATION,
     GONIO_I_FROM_SPECULAR,
     GONIO_I_ASPECULAR,
     GONIO_I_ANGLE_COLUMNS
@@ -61,6 +63,9 @@ bool gonio_i_take_value_name(const char *text, gonio_i_words *words, gonio_i_col
 
 /* The meaning of a column's name. Numbers in names have decimal points. */
 gonio_i_column_name gonio_i_column_name_of(const char *name);
+
+/* Whether one of a text's words is of an azimuth. */
+bool gonio_i_names_azimuth(const char *text);
 
 /* The gonio_angle_unit and the gonio_value_kind that a text names, with any other words; 0: none.
  */

@@ -1,0 +1,289 @@
+/* Tables of text made CSV: see csv_layout.h. */
+#include "csv_layout.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../core/csv_lines.h"
+#include "../../core/memory_stream.h"
+#include "csv_names.h"
+
+enum { MOST_LINES = 200, NAME_ROOM = 128, LEAST_ANGLES = 2, LEAST_CELLS = 3 };
+
+static const char *const marks[] = {"#", "%", "//", "!", ";", "*", "--"};
+
+typedef struct line {
+    const char *at;
+    size_t length; /* without its end */
+} line;
+
+static bool is_blank(char c)
+{
+    return c == ' ' || c == '\t' || c == '\r';
+}
+
+/* The next line of a text; false at its end. */
+static bool next_line(const char **at, const char *end, line *l)
+{
+    if (*at >= end) {
+        return false;
+    }
+    const char *stop = memchr(*at, '\n', (size_t)(end - *at));
+    *l = (line){*at, (size_t)((stop != NULL ? stop : end) - *at)};
+    *at = stop != NULL ? stop + 1 : end;
+    return true;
+}
+
+static line trimmed(line l)
+{
+    while (l.length > 0 && is_blank(*l.at)) {
+        l.at++;
+        l.length--;
+    }
+    while (l.length > 0 && is_blank(l.at[l.length - 1])) {
+        l.length--;
+    }
+    return l;
+}
+
+/* The line without the comment mark that begins it. *mark: which, NULL for none. */
+static line without_mark(line l, const char **mark)
+{
+    l = trimmed(l);
+    *mark = NULL;
+    for (size_t k = 0; k < sizeof marks / sizeof *marks && *mark == NULL; k++) {
+        const size_t length = strlen(marks[k]);
+        *mark = l.length >= length && memcmp(l.at, marks[k], length) == 0 ? marks[k] : NULL;
+    }
+    while (*mark != NULL && l.length > 0 && *l.at == **mark) {
+        l.at++;
+        l.length--;
+    }
+    return trimmed(l);
+}
+
+/* ---- cells ---- */
+
+/* A cell of a line whose cells are between separators; ' ' stands for any blanks. */
+static bool next_cell(line *rest, char separator, line *cell)
+{
+    size_t k = 0;
+    if (rest->at == NULL) {
+        return false;
+    }
+    while (k < rest->length &&
+           (separator == ' ' ? !is_blank(rest->at[k]) : rest->at[k] != separator)) {
+        k++;
+    }
+    *cell = trimmed((line){rest->at, k});
+    while (separator == ' ' && k + 1 < rest->length && is_blank(rest->at[k + 1])) {
+        k++;
+    }
+    *rest = k < rest->length ? (line){rest->at + k + 1, rest->length - k - 1} : (line){NULL, 0};
+    return true;
+}
+
+static size_t count_cells(line l, char separator)
+{
+    line cell;
+    size_t count = 0;
+    while (next_cell(&l, separator, &cell)) {
+        count++;
+    }
+    return count;
+}
+
+/* Strokes at both ends belong to the frame of a table. */
+static line without_frame(line l)
+{
+    if (l.length > 1 && *l.at == '|' && l.at[l.length - 1] == '|') {
+        l.at++;
+        l.length -= 2;
+    }
+    return l;
+}
+
+/* How many cells are names of angles. */
+static size_t count_angles(line l, char separator)
+{
+    line cell;
+    size_t count = 0;
+    while (next_cell(&l, separator, &cell)) {
+        char name[NAME_ROOM];
+        if (cell.length < sizeof name) {
+            memcpy(name, cell.at, cell.length);
+            name[cell.length] = '\0';
+            count += gonio_i_column_name_of(name).kind == GONIO_I_ANGLE;
+        }
+    }
+    return count;
+}
+
+/* The separator between names; 0 if these are no names of angles. */
+static char separator_of_names(line l)
+{
+    static const char separators[] = "\t;,| ";
+    for (size_t k = 0; separators[k] != '\0'; k++) {
+        if (count_cells(l, separators[k]) >= LEAST_CELLS &&
+            count_angles(l, separators[k]) >= LEAST_ANGLES) {
+            return separators[k];
+        }
+    }
+    return '\0';
+}
+
+/* ---- where the names are ---- */
+
+typedef struct names {
+    size_t number; /* of the line, from 0 */
+    const char *mark;
+    char separator;
+    size_t cells;
+} names;
+
+/* Whether the reader of CSV takes names from its first line, which is this or begins with sep=. */
+static bool are_plain(const char *text, size_t size)
+{
+    gonio_i_csv_lines lines;
+    const char *at = NULL;
+    size_t length = 0;
+    gonio_i_csv_lines_begin(&lines, text, size, NULL);
+    if (!gonio_i_csv_lines_next(&lines, &at, &length) || length == 0) {
+        return true;
+    }
+    const line first = trimmed((line){at, length - (at[length - 1] == '\n')});
+    const char separator = separator_of_names(first);
+    return gonio_i_csv_stated_separator(at, length) != '\0' ||
+           (separator != '\0' && separator != ' ' && separator != '|') ||
+           memchr(first.at, '"', first.length) != NULL;
+}
+
+static bool find_names(const char *text, size_t size, names *n)
+{
+    const char *at = text;
+    const char *end = text + size;
+    line l;
+    *n = (names){0};
+    if (size == 0 || memchr(text, '\0', size) != NULL || are_plain(text, size)) {
+        return false;
+    }
+    while (n->number < MOST_LINES && next_line(&at, end, &l)) {
+        l = without_frame(without_mark(l, &n->mark));
+        n->separator = separator_of_names(l);
+        if (n->separator != '\0') {
+            n->cells = count_cells(l, n->separator);
+            return at < end;
+        }
+        n->number++;
+    }
+    return false;
+}
+
+bool gonio_i_csv_layout_is_other(const char *text, size_t size)
+{
+    names n;
+    return find_names(text, size, &n);
+}
+
+bool gonio_i_csv_layout_lacks_names(const char *text, size_t size)
+{
+    static const char numbers[] = "0123456789+-.,;eE \t\r\n";
+    gonio_i_csv_lines lines;
+    const char *at = NULL;
+    size_t length = 0;
+    gonio_i_csv_lines_begin(&lines, text, size, NULL);
+    return gonio_i_csv_lines_next(&lines, &at, &length) && length > 0 &&
+           strspn(at, numbers) >= length && count_cells(trimmed((line){at, length}), ' ') > 0;
+}
+
+/* ---- printing ---- */
+
+static void print_comment(FILE *stream, line l)
+{
+    fprintf(stream, "# %.*s\n", (int)l.length, l.at);
+}
+
+/* The separator by which a line has as many cells as there are names: that of the names if it does,
+ * 0 if none does. */
+static char separator_of_row(line l, const names *n)
+{
+    const char separators[] = {n->separator, '\t', ';', ',', ' ', '|'};
+    for (size_t k = 0; k < sizeof separators; k++) {
+        if (count_cells(l, separators[k]) == n->cells) {
+            return separators[k];
+        }
+    }
+    return '\0';
+}
+
+static void print_cells(FILE *stream, line l, char separator)
+{
+    line cell;
+    for (const char *between = ""; next_cell(&l, separator, &cell); between = "\t") {
+        fprintf(stream, "%s%.*s", between, (int)cell.length, cell.at);
+    }
+    fputc('\n', stream);
+}
+
+/* Rows that do not fit the names are for the reader to refuse, by their line. */
+static void print_row(FILE *stream, line l, const names *n)
+{
+    const char *mark = NULL;
+    const line rest = without_mark(l, &mark);
+    const line row = without_frame(trimmed(l));
+    const char separator = separator_of_row(row, n);
+    const bool rule =
+        row.length > 0 && n->separator == '|' && strspn(row.at, "|-:+= ") >= row.length;
+    const bool comment =
+        mark != NULL && (n->mark != NULL || strcmp(mark, "#") == 0) && strcmp(mark, "--") != 0;
+    if (comment || rule) {
+        print_comment(stream, rest);
+    } else if (separator != '\0') {
+        print_cells(stream, row, separator);
+    } else {
+        fprintf(stream, "%.*s\n", (int)row.length, row.at);
+    }
+}
+
+static void print_table(FILE *stream, const char *text, size_t size, const names *n)
+{
+    const char *at = text;
+    const char *mark = NULL;
+    line l;
+    for (size_t number = 0; next_line(&at, text + size, &l); number++) {
+        const line rest = without_mark(l, &mark);
+        if (number > n->number) {
+            print_row(stream, l, n);
+        } else if (number == n->number) {
+            print_cells(stream, without_frame(rest), n->separator);
+        } else if (rest.length > 0) {
+            print_comment(stream, rest);
+        } else {
+            fputc('\n', stream);
+        }
+    }
+}
+
+gonio_status gonio_i_csv_layout_make_plain(gonio_context *context, const char *path, char **text,
+                                           size_t *size)
+{
+    names n;
+    char *plain = NULL;
+    size_t length = 0;
+    if (!find_names(*text, *size, &n)) {
+        return GONIO_OK;
+    }
+    FILE *stream = gonio_i_memory_stream(&plain, &length);
+    if (stream != NULL) {
+        print_table(stream, *text, *size, &n);
+    }
+    if (stream == NULL || fclose(stream) != 0) {
+        free(plain);
+        return gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", path);
+    }
+    free(*text);
+    *text = plain;
+    *size = length;
+    return GONIO_OK;
+}
