@@ -25,6 +25,9 @@ static const double WIDENING = 100.0;
 
 enum { MOST_ROUNDS = 20 };
 
+/* Weights below this do not count among the samples. */
+static const double NEGLIGIBLE = 1e-7;
+
 /* Readings as expected to which the misfit is shrunk. */
 static const double PRIOR_READINGS = 5.0;
 
@@ -221,6 +224,16 @@ gonio_status gonio_i_fit_solve(gonio_i_fit *e, const gonio_i_model *model)
         e->evidence += e->bound[i] != 0 ? 0.5 * log(2.0 * M_PI * gonio_i_fit_noise(e, i)) : 0.0;
     }
     return GONIO_OK;
+}
+
+size_t gonio_i_fit_samples(const gonio_i_fit *e, size_t *listed)
+{
+    size_t count = 0;
+    for (size_t j = 0; j < e->samples; j++) {
+        listed[count] = j;
+        count += e->weight[j] > NEGLIGIBLE;
+    }
+    return count;
 }
 
 void gonio_i_fit_coefficients(const gonio_i_fit *e, double *c)

@@ -60,6 +60,10 @@ gonio_status gonio_i_fit_solve(gonio_i_fit *fit, const gonio_i_model *model);
  */
 void gonio_i_fit_coefficients(const gonio_i_fit *fit, double *c);
 
+/* The samples whose weights are not negligible (above 1e-7) in a solved fit with h below 1:
+ * listed[samples]. Returns how many. */
+size_t gonio_i_fit_samples(const gonio_i_fit *fit, size_t *listed);
+
 /* The variance of a reading in the fit: so large that it has no weight if it is left out. */
 double gonio_i_fit_noise(const gonio_i_fit *fit, size_t reading);
 

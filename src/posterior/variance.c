@@ -13,11 +13,9 @@
 #include <string.h>
 
 #include "../linalg/linalg.h"
+#include "grid_sums.h"
 
 enum { BLOCK = 128 };
-
-/* Weights below this do not count among the samples. */
-static const double NEGLIGIBLE = 1e-7;
 
 /* From the model's variances to those of materials that were left out (docs/experiments.md).
  * Deviations are widened so that 95 % of the true values lie within 1.96 of them, which takes more
@@ -40,15 +38,16 @@ static double calibrated(double variance, const calibration *c)
 
 struct gonio_i_rows {
     const gonio_i_sites *sites;
-    double peak, retro;
-    size_t n;           /* readings whose smoothness counts: none if alpha is 0 */
-    size_t size;        /* of t */
-    size_t count;       /* rows looked at: */
-    const size_t *row;  /* [count]: their numbers; NULL: all of the basis, in order */
-    double *t;          /* [count][size], or NULL: made where it is needed */
-    double *itself;     /* [count]: k(x, x), 0 if alpha is 0 */
-    const double *bins; /* [count]: how much each counts, on the grid the bins of its cell */
-    double *gram;       /* [size][size]: sum of bins t' t, if t is there: see find_sums; or NULL */
+    gonio_i_model model;
+    size_t n;                /* readings whose smoothness counts: none if alpha is 0 */
+    size_t size;             /* of t */
+    size_t count;            /* rows looked at: */
+    const size_t *row;       /* [count]: their numbers; NULL: all of the basis, in order */
+    double *t;               /* [count][size], or NULL: made where it is needed */
+    double *itself;          /* [count]: k(x, x), 0 if alpha is 0 */
+    const double *bins;      /* [count]: how much each counts, on the grid the bins of its cell */
+    double *gram;            /* [size][size]: sum of bins t' t, if t is there; or NULL */
+    gonio_i_grid_sums *grid; /* the same for sums without Q (grid_sums.h); or NULL */
 };
 
 static size_t row_of(const gonio_i_rows *r, size_t number)
@@ -67,7 +66,7 @@ static void fill_t(const gonio_i_rows *r, size_t number, double *t)
             gonio_i_place_of(gonio_i_row_coordinates(prior->view, row, &channel));
         for (size_t i = 0; i < r->n; i++) {
             t[prior->components + i] =
-                gonio_i_remainder(&here, &r->sites->place[i], r->peak, r->retro);
+                gonio_i_remainder(&here, &r->sites->place[i], r->model.peak, r->model.retro);
         }
     }
 }
@@ -79,7 +78,7 @@ static void fill_row(gonio_i_rows *r, size_t number)
     int channel = 0;
     if (r->n > 0) {
         const gonio_i_place here = gonio_i_place_of(gonio_i_row_coordinates(view, row, &channel));
-        r->itself[number] = gonio_i_remainder(&here, &here, r->peak, r->retro);
+        r->itself[number] = gonio_i_remainder(&here, &here, r->model.peak, r->model.retro);
     }
     if (r->t != NULL) {
         fill_t(r, number, r->t + number * r->size);
@@ -111,7 +110,7 @@ gonio_status gonio_i_rows_create(gonio_context *context, const gonio_i_sites *si
     if (r == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    *r = (gonio_i_rows){.sites = sites, .peak = model->peak, .retro = model->retro};
+    *r = (gonio_i_rows){.sites = sites, .model = *model};
     r->n = model->alpha > 0.0 ? sites->n : 0;
     r->size = sites->components + r->n;
     r->count = all ? sites->prior->view->rows : targets->count;
@@ -128,7 +127,10 @@ gonio_status gonio_i_rows_create(gonio_context *context, const gonio_i_sites *si
     for (size_t k = 0; k < r->count; k++) {
         fill_row(r, k);
     }
-    const gonio_status status = all ? GONIO_OK : find_gram(context, r);
+    gonio_status status = all ? GONIO_OK : find_gram(context, r);
+    if (status == GONIO_OK && !all) {
+        status = gonio_i_grid_sums_create(context, sites, &r->model, r->n > 0, r->gram, &r->grid);
+    }
     if (status != GONIO_OK) {
         gonio_i_rows_free(&r);
     }
@@ -144,6 +146,7 @@ void gonio_i_rows_free(gonio_i_rows **rows)
     free((*rows)->t);
     free((*rows)->itself);
     free((*rows)->gram);
+    gonio_i_grid_sums_free(&(*rows)->grid);
     free(*rows);
     *rows = NULL;
 }
@@ -247,11 +250,7 @@ static gonio_status add_samples(const variance *s, double *q)
         return GONIO_OK; /* all at the same place */
     }
     size_t *listed = gonio_i_allocate(e->context, samples, sizeof *listed);
-    size_t count = 0;
-    for (size_t j = 0; listed != NULL && j < samples; j++) {
-        listed[count] = j;
-        count += e->weight[j] > NEGLIGIBLE;
-    }
+    const size_t count = listed != NULL ? gonio_i_fit_samples(e, listed) : 0;
     double *d = gonio_i_allocate(e->context, count * s->size, sizeof *d);
     double *seen = gonio_i_allocate(e->context, count * e->n, sizeof *seen);
     double *move = gonio_i_allocate(e->context, count * e->components, sizeof *move);
@@ -309,13 +308,11 @@ static void find_row(const variance *s, size_t number, const double *t, const do
     sums->square += bins * g * g;
 }
 
-/* Without deviations, only sums over the rows are wanted, in which the variances are linear:
- * the sum of bins t Q t' is that of the elements of Q times those of the rows' gram matrix. */
-static void find_sums(const variance *s, gonio_i_variance_sums *sums)
+/* Without deviations, only sums over the rows are wanted. model: the sum of bins t Q t'. */
+static void find_sums(const variance *s, double model, gonio_i_variance_sums *sums)
 {
     const gonio_i_rows *rows = s->rows;
     const double alpha = s->e->model.alpha;
-    double model = 0.0;
     for (size_t k = 0; k < rows->count; k++) {
         const double *t = rows->t + k * s->size;
         const double g = fmax(value_of(s, row_of(rows, k), t), 0.0);
@@ -323,9 +320,25 @@ static void find_sums(const variance *s, gonio_i_variance_sums *sums)
         sums->bins += rows->bins[k];
         sums->square += rows->bins[k] * g * g;
     }
-    model += dot(s->q, rows->gram, s->size * s->size);
     sums->error = FOR_SQUARES.factor * s->e->misfit * fmax(model, 0.0) +
                   FOR_SQUARES.left_open * FOR_SQUARES.left_open * sums->bins;
+}
+
+/* The variances are linear in Q, so that the sum over the rows is that of the elements of Q times
+ * those of the rows' gram matrix. Where Q is not wanted, it is not made (grid_sums.h). */
+static gonio_status add_sums(const variance *s, gonio_i_variance_sums *sums)
+{
+    double model = 0.0;
+    gonio_status status = GONIO_OK;
+    if (s->q != NULL) {
+        model = dot(s->q, s->rows->gram, s->size * s->size);
+    } else {
+        status = gonio_i_grid_sums_of(s->rows->grid, s->e, &model);
+    }
+    if (status == GONIO_OK) {
+        find_sums(s, model, sums);
+    }
+    return status;
 }
 
 static gonio_status find_block(const variance *s, size_t first, size_t count, const workspace *w,
@@ -394,11 +407,12 @@ gonio_status gonio_i_variance_find(const gonio_i_fit *fit, const gonio_i_rows *r
         .e = fit, .rows = rows, .c = c, .deviation = deviation, .n = rows->n, .size = rows->size};
     const size_t components = fit->components;
     gonio_i_variance_sums found = {0};
-    gonio_status status = find_q(&s);
-    if (status == GONIO_OK && deviation != NULL) {
-        status = find_deviations(&s, &found);
-    } else if (status == GONIO_OK) {
-        find_sums(&s, &found);
+    gonio_status status = GONIO_OK;
+    if (deviation != NULL || covariance != NULL) {
+        status = find_q(&s);
+    }
+    if (status == GONIO_OK) {
+        status = deviation != NULL ? find_deviations(&s, &found) : add_sums(&s, &found);
     }
     for (size_t k = 0; covariance != NULL && k < components * components && status == GONIO_OK;
          k++) {
