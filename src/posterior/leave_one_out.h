@@ -33,6 +33,9 @@ void gonio_i_subset_end(gonio_i_subset *subset);
 /* Reads the values again from the subset's columns. Their directions must be the same. */
 void gonio_i_subset_read(gonio_i_subset *subset, const gonio_i_column *columns);
 
+/* The score that a peak towards the light has to explain: few materials have one. */
+#define GONIO_I_FOR_RETRO 16.0
+
 /* The alpha of the model while wrong readings are searched. If models were chosen first, wrong
  * readings would look like a remainder. */
 static const gonio_i_model GONIO_I_SETTLING = {GONIO_I_KERNEL_WIDTH, 0.12, 0.0, 0.0};

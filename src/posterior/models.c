@@ -49,8 +49,9 @@ static double log_prior(int k)
 {
     const double least = REMAINDERS[1].alpha;
     const double alpha = fmax(REMAINDERS[k % ALL_REMAINDERS].alpha, least);
+    const bool retro = REMAINDERS[k % ALL_REMAINDERS].retro > 0.0;
     return -SHARE * GONIO_I_FOR_REMAINDERS * log(alpha / least) -
-           (k < ALL_REMAINDERS ? 0.0 : FOR_PLAIN);
+           (retro ? SHARE * GONIO_I_FOR_RETRO : 0.0) - (k < ALL_REMAINDERS ? 0.0 : FOR_PLAIN);
 }
 
 /* The gain in score from which outliers are set aside, for each direction's worth of them. Right

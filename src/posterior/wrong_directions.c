@@ -171,7 +171,8 @@ static gonio_status score_column(void *data, gonio_context *context, size_t c)
 /* How well the readings explain each other by model k: reading by reading, in order. */
 static double score_of(const direction_search *d, size_t k)
 {
-    double sum = -GONIO_I_FOR_REMAINDERS * log(REMAINDERS[k].alpha / REMAINDERS[0].alpha);
+    double sum = -GONIO_I_FOR_REMAINDERS * log(REMAINDERS[k].alpha / REMAINDERS[0].alpha) -
+                 (REMAINDERS[k].retro > 0.0 ? GONIO_I_FOR_RETRO : 0.0);
     for (size_t c = 0; c < d->subset->count; c++) {
         const size_t n = d->column[c].n;
         for (size_t i = 0; i < n; i++) {
