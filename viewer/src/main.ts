@@ -16,7 +16,8 @@ import { showFigures } from './figures';
 import { HemisphereSection, type Plan } from './hemisphere';
 import { LobeSection } from './lobes';
 import { SliceSection } from './slice';
-import { SphereRenderer, SphereSection } from './spheres';
+import { SphereRenderer } from './sphere-renderer';
+import { SphereSection } from './spheres';
 import { setTheme } from './theme';
 import { unpack } from './unpack';
 
