@@ -284,7 +284,7 @@ gonio_status gonio_i_progress(gonio_context *context, const char *task, double f
     return cancelled ? GONIO_ERROR_CANCELLED : GONIO_OK;
 }
 
-enum { LARGE = 64 << 20 }; /* bytes */
+enum { LARGE = 4 << 20 }; /* bytes */
 
 /* Asks for large pages for large blocks. A basis of the full grid has a million small pages, and
  * their page faults would take as long as its arithmetic. */
