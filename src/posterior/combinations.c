@@ -75,6 +75,16 @@ static size_t find_few(gonio_context *context, double *vector, size_t vectors, s
     return 0;
 }
 
+/* From rows of `most` weights to rows of `count`: never ahead of what is read. */
+static void move_together(double *weight, size_t vectors, size_t most, size_t count)
+{
+    for (size_t j = 0; j < vectors; j++) {
+        for (size_t k = 0; k < count; k++) {
+            weight[j * count + k] = weight[j * most + k];
+        }
+    }
+}
+
 gonio_status gonio_i_combinations_find(gonio_context *context, double *vector, size_t vectors,
                                        size_t size, double tolerance, size_t most,
                                        gonio_i_combinations *c)
@@ -87,11 +97,7 @@ gonio_status gonio_i_combinations_find(gonio_context *context, double *vector, s
     if (done) {
         c->count =
             find_few(context, vector, vectors, size, tolerance, most, square, c->few, c->weight);
-    }
-    for (size_t j = 0; j < vectors && c->count > 0; j++) {
-        for (size_t k = 0; k < c->count; k++) { /* closer together: never ahead of what is read */
-            c->weight[j * c->count + k] = c->weight[j * most + k];
-        }
+        move_together(c->weight, vectors, most, c->count);
     }
     free(square);
     return done ? GONIO_OK : GONIO_ERROR_MEMORY;
