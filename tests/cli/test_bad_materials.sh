@@ -61,7 +61,7 @@ every_reader 1 'start.binary: not a material that gonio reads' start.binary
 every_reader 1 'text.csv: not a material that gonio reads' text.csv
 every_reader 1 'noise.binary: not a material that gonio reads' noise.binary
 expect_fail 1 "noise.binary: not a basis that gonio reads (gonio basis), nor a material (MERL .binary table, gonio BRDF table .h5, gonio anisotropic table .h5, neural BRDF .h5, \
-RGL .bsdf, KAIST .pbsdf, UTIA .bin, BSDF-XML), nor an image (OpenEXR, Radiance .hdr), nor a mesh (OBJ, PLY), nor readings (" info noise.binary
+RGL .bsdf, KAIST .pbsdf, UTIA .bin, BSDF-XML, Zemax BSDF), nor an image (OpenEXR, Radiance .hdr), nor a mesh (OBJ, PLY), nor readings (" info noise.binary
 # every_table PART FILE: what is said of readings, which will do where the part is.
 every_table() {
     expect_fail 1 "$2: these are readings; 'gonio reconstruct' makes a material" convert "$2" x.binary
