@@ -100,7 +100,7 @@ class Readings:
 
     @classmethod
     def load(cls, path: Path, *, convention: str = "", values_needed: bool = True, average_repeats: bool = False,
-             negative_to_zero: bool = False) -> "Readings":
+             negative_to_zero: bool = False, usual_values: str = "") -> "Readings":
         """Reads a file: CSV, Zemax BSDF, FRED, ALTA, pab-opto, ASTM E1392, TracePro, BRDF JSON and others, told by its
         content. What it was taken for is in `notes`.
 
@@ -113,6 +113,9 @@ class Readings:
             False: a plan will do.
         average_repeats, negative_to_zero : bool
             As of `Readings`.
+        usual_values : str
+            What the numbers of a table stand for that does not say it, as the instrument gives them: ``"factor"``,
+            ``"percent"``, ``"cosine"`` and so on, as in `convention`. The BRDF by default.
 
         Raises
         ------
@@ -125,6 +128,10 @@ class Readings:
                              negative_to_zero=negative_to_zero)
         if convention:
             _calls.run(lib.gonio_convention_parse, convention.encode(), ffi.addressof(how, "as"))
+        if usual_values:
+            usual = ffi.new("gonio_convention *")
+            _calls.run(lib.gonio_convention_parse, f"values={usual_values}".encode(), usual)
+            how.usual_values = usual.values
         return cls._of(_calls.made("readings", lib.gonio_readings_read, _calls.encoded(path), how))
 
     @classmethod
