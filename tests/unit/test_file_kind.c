@@ -127,6 +127,19 @@ static void test_expected_kinds(void **state)
     support_remove(folder);
 }
 
+/* Whether one of the wanted kinds has the format: Zemax files are readings and materials. */
+static bool is_read(unsigned wanted, const char *format)
+{
+    for (int k = 0; k < KINDS; k++) {
+        for (int j = 0; (wanted & kinds[k]) != 0 && gonio_kind_format(kinds[k], j) != NULL; j++) {
+            if (strcmp(gonio_kind_format(kinds[k], j), format) == 0) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
 /* An unknown file is told every format of the kinds that are wanted, and no other. */
 static void test_what_is_read_is_told(void **state)
 {
@@ -141,8 +154,9 @@ static void test_what_is_read_is_told(void **state)
         assert_int_equal(gonio_file_expect(context, path, wanted, &kind), GONIO_ERROR_FORMAT);
         for (int k = 0; k < KINDS; k++) {
             for (int j = 0; gonio_kind_format(kinds[k], j) != NULL; j++) {
-                const bool told = strstr(support_message(), gonio_kind_format(kinds[k], j)) != NULL;
-                assert_int_equal(told, (wanted & kinds[k]) != 0);
+                const char *format = gonio_kind_format(kinds[k], j);
+                const bool told = strstr(support_message(), format) != NULL;
+                assert_int_equal(told, is_read(wanted, format));
             }
         }
     }
