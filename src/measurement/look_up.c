@@ -106,11 +106,13 @@ static bool are_turned(gonio_context *context, const gonio_readings *known, know
     return status == GONIO_OK;
 }
 
-static bool sort_places(gonio_context *context, const gonio_readings *known, known_places *k)
+/* any_rotation: the rotation of the sample does not matter, whatever the readings say. */
+static bool sort_places(gonio_context *context, const gonio_readings *known, bool any_rotation,
+                        known_places *k)
 {
     *k = (known_places){.readings = known,
                         .place = gonio_i_allocate(context, known->count, sizeof *k->place)};
-    if (k->place != NULL && !are_turned(context, known, k)) {
+    if (k->place != NULL && !any_rotation && !are_turned(context, known, k)) {
         free(k->place);
         k->place = NULL;
     }
@@ -191,10 +193,9 @@ gonio_status gonio_i_find_readings(gonio_context *context, const gonio_readings 
                                    size_t *found)
 {
     known_places k;
-    if (!sort_places(context, readings, &k)) {
+    if (!sort_places(context, readings, any_rotation, &k)) {
         return GONIO_ERROR_MEMORY;
     }
-    k.turned = k.turned && !any_rotation;
     for (size_t n = 0; n < count; n++) {
         best b = {NONE, INFINITY, INFINITY, readings->count};
         try_angles(&k, pair[n], pair[n].incident.theta, pair[n].outgoing.theta, &b);
@@ -208,7 +209,7 @@ gonio_status gonio_readings_find(gonio_context *context, const gonio_readings *r
                                  const gonio_readings *others, bool *same)
 {
     known_places k;
-    if (!sort_places(context, others, &k)) {
+    if (!sort_places(context, others, false, &k)) {
         return GONIO_ERROR_MEMORY;
     }
     for (size_t n = 0; n < readings->count; n++) {
@@ -325,7 +326,7 @@ gonio_status gonio_readings_look_up(gonio_context *context, gonio_readings *plan
 {
     known_places k;
     size_t *next = link_repeats(context, known);
-    gonio_status status = sort_places(context, known, &k) && next != NULL
+    gonio_status status = sort_places(context, known, false, &k) && next != NULL
                               ? take_channels(context, plan, known)
                               : GONIO_ERROR_MEMORY;
     if (status == GONIO_OK) {

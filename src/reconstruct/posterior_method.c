@@ -40,52 +40,51 @@ static gonio_status allocate(gonio_context *context, const gonio_basis_view *vie
     return GONIO_OK;
 }
 
-/* Directions this near are the same, rad. */
-static const double SAME = 1e-7;
-
-static bool was_read(const gonio_i_columns *columns, gonio_half_difference at)
+static bool is_measured(const gonio_readings *readings, size_t reading)
 {
-    bool same = false;
-    for (size_t k = 0; k < columns->count && !same; k++) {
-        const gonio_i_column *column = &columns->column[k];
-        for (size_t i = 0; i < column->count && !same; i++) {
-            const gonio_half_difference there = column->observation[i].at;
-            same = fabs(there.theta_h - at.theta_h) < SAME &&
-                   fabs(there.theta_d - at.theta_d) < SAME && fabs(there.phi_d - at.phi_d) < SAME;
-        }
+    bool measured = false;
+    for (size_t c = 0; c < readings->channels; c++) {
+        measured = measured || !isnan(readings->value[reading * readings->channels + c]);
     }
-    return same;
+    return measured;
 }
 
 /* Where the error is expected: of the directions of the options those that were not read, or all if
- * all were. */
-static gonio_status list_expected(gonio_context *context, const gonio_i_columns *columns,
+ * all were. readings: NULL if rows were read. */
+static gonio_status list_expected(gonio_context *context, const gonio_readings *readings,
                                   const gonio_reconstruct_options *options,
                                   gonio_half_difference **at, size_t *count)
 {
     const size_t all = options->expected_at != NULL ? options->expected_count : 0;
+    size_t *read = gonio_i_allocate(context, all + 1, sizeof *read);
     *at = gonio_i_allocate(context, all + 1, sizeof **at);
-    if (*at == NULL) {
-        return GONIO_ERROR_MEMORY;
+    gonio_status status = read != NULL && *at != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
+    if (status == GONIO_OK && readings != NULL && all > 0) {
+        status = gonio_i_find_readings(context, readings, true, options->expected_at, all, read);
     }
-    for (size_t k = 0; k < all; k++) {
-        (*at)[*count] = gonio_half_difference_from_pair(options->expected_at[k]);
-        *count += !was_read(columns, (*at)[*count]);
+    size_t left = 0;
+    for (size_t k = 0; k < all && status == GONIO_OK; k++) {
+        const bool known =
+            readings != NULL && read[k] < readings->count && is_measured(readings, read[k]);
+        (*at)[left] = gonio_half_difference_from_pair(options->expected_at[k]);
+        left += !known;
     }
-    for (size_t k = 0; k < all && *count == 0; k++) {
+    for (size_t k = 0; k < all && left == 0 && status == GONIO_OK; k++) {
         (*at)[k] = gonio_half_difference_from_pair(options->expected_at[k]);
     }
-    *count = *count == 0 ? all : *count;
-    return GONIO_OK;
+    *count = left == 0 ? all : left;
+    free(read);
+    return status;
 }
 
+/* readings: as of list_expected. */
 static gonio_status find(gonio_context *context, const gonio_i_prior *prior,
-                         const gonio_i_columns *columns, const gonio_reconstruct_options *options,
-                         gonio_reconstruction *r)
+                         const gonio_readings *readings, const gonio_i_columns *columns,
+                         const gonio_reconstruct_options *options, gonio_reconstruction *r)
 {
     gonio_half_difference *expected_at = NULL;
     size_t expected = 0;
-    gonio_status status = list_expected(context, columns, options, &expected_at, &expected);
+    gonio_status status = list_expected(context, readings, options, &expected_at, &expected);
     const gonio_i_posterior_options how = {.smoothness = -1.0,
                                            .deviation = options->deviation,
                                            .wavelength = r->wavelength,
@@ -201,7 +200,7 @@ static gonio_status estimate(gonio_context *context, const gonio_i_prior *prior,
     if (status == GONIO_OK) {
         status = find_database_share(context, prior->view, columns, &r->database_share);
     }
-    return status == GONIO_OK ? find(context, prior, columns, options, r) : status;
+    return status == GONIO_OK ? find(context, prior, readings, columns, options, r) : status;
 }
 
 void gonio_i_spread_out(const gonio_i_apertures *apertures, size_t channels,
@@ -300,7 +299,7 @@ static gonio_status from_rows(const gonio_i_reconstruct_task *task, const size_t
         status = allocate(context, view, columns.count, options, &made);
     }
     if (status == GONIO_OK) {
-        status = find(context, prior, &columns, options, made);
+        status = find(context, prior, NULL, &columns, options, made);
     }
     gonio_i_columns_free(&columns);
     gonio_i_prior_free(&prior);
