@@ -13,6 +13,13 @@ typedef struct gonio_i_model {
     double retro; /* the same, towards the light */
 } gonio_i_model;
 
+/* Whether readings at the sites can tell of a model: of peaks towards the light only those near it
+ * can. */
+static inline bool gonio_i_sites_tell_of(const gonio_i_sites *sites, const gonio_i_model *model)
+{
+    return model->retro == 0.0 || sites->back != NULL;
+}
+
 /* An h that does well when nothing is known of it. */
 static const double GONIO_I_KERNEL_WIDTH = 0.7;
 

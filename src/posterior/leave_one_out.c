@@ -84,6 +84,12 @@ gonio_status gonio_i_leave_one_out_differences(gonio_i_fit *e, const gonio_i_mod
 gonio_status gonio_i_leave_one_out_score(gonio_i_fit *e, const gonio_i_model *model, double *score)
 {
     double *difference = NULL;
+    if (!gonio_i_sites_tell_of(e->sites, model)) {
+        for (size_t i = 0; i < e->n; i++) {
+            score[i] = -INFINITY;
+        }
+        return GONIO_OK;
+    }
     const gonio_status status = gonio_i_leave_one_out_differences(e, model, &difference);
     for (size_t i = 0; i < e->n && status == GONIO_OK; i++) {
         score[i] = e->left_out[i]

@@ -53,7 +53,8 @@ gonio_status gonio_i_leave_one_out_differences(gonio_i_fit *fit, const gonio_i_m
 double gonio_i_leave_one_out_density(double difference, double variance);
 
 /* Solves for the model; score[n]: ln of the density of each reading given the others, 0 for those
- * that are left out. Errors: _MEMORY, _NUMERICAL. */
+ * that are left out; -INFINITY if the sites cannot tell of the model. Errors: _MEMORY, _NUMERICAL.
+ */
 gonio_status gonio_i_leave_one_out_score(gonio_i_fit *fit, const gonio_i_model *model,
                                          double *score);
 

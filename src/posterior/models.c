@@ -38,12 +38,6 @@ static gonio_i_model choice(int k, size_t readings)
     return (gonio_i_model){h, remainder.alpha, remainder.peak, remainder.retro};
 }
 
-/* Peaks towards the light are for readings near it: elsewhere nothing would tell of them. */
-static bool is_offered(int k, const gonio_i_sites *sites)
-{
-    return REMAINDERS[k % ALL_REMAINDERS].retro == 0.0 || sites->back != NULL;
-}
-
 /* The log prior of a model, up to a constant. */
 static double log_prior(int k)
 {
@@ -85,9 +79,7 @@ static gonio_status score_models(gonio_i_fit *e, size_t readings, bool judge_out
     }
     for (int k = 0; k < CHOICES && status == GONIO_OK; k++) {
         const gonio_i_model model = choice(k, readings);
-        double *score = s->score + (size_t)k * e->n;
-        score[0] = -INFINITY;
-        status = is_offered(k, e->sites) ? gonio_i_leave_one_out_score(e, &model, score) : GONIO_OK;
+        status = gonio_i_leave_one_out_score(e, &model, s->score + (size_t)k * e->n);
     }
     return status;
 }
@@ -206,8 +198,10 @@ gonio_status gonio_i_models_weigh(gonio_context *context, const gonio_i_prior *p
         judged.outlying == 0 || outliers_are_wrong(prior, subset->count, &judged, &unjudged);
     const subset_scores *chosen = wrong ? &judged : &unjudged;
     for (int k = 0; k < CHOICES; k++) {
-        log_weight[k] =
-            is_offered(k, subset->sites[0]) ? SHARE * chosen->score[k] + log_prior(k) : -INFINITY;
+        const gonio_i_model model = choice(k, subset->readings[0]);
+        log_weight[k] = gonio_i_sites_tell_of(subset->sites[0], &model)
+                            ? SHARE * chosen->score[k] + log_prior(k)
+                            : -INFINITY;
     }
     *models = normalise(log_weight, subset->readings[0]);
     models->judge_outliers = wrong;

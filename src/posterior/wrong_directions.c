@@ -160,10 +160,7 @@ static gonio_status score_column(void *data, gonio_context *context, size_t c)
     gonio_status status = GONIO_OK;
     for (size_t k = 0; k < MODELS && status == GONIO_OK; k++) {
         const gonio_i_model model = model_of(d, c, k);
-        double *score = d->score[c] + k * e->n;
-        const bool offered = model.retro == 0.0 || e->sites->back != NULL;
-        score[0] = -INFINITY;
-        status = offered ? gonio_i_leave_one_out_score(e, &model, score) : GONIO_OK;
+        status = gonio_i_leave_one_out_score(e, &model, d->score[c] + k * e->n);
     }
     return status;
 }
