@@ -7,28 +7,20 @@
 
 #include "../../core/text_numbers.h"
 
-enum {
-    ROTATION = GONIO_I_ZEMAX_ROTATION,
-    INCIDENCE = GONIO_I_ZEMAX_INCIDENCE,
-    AZIMUTH = GONIO_I_ZEMAX_AZIMUTH,
-    RADIAL = GONIO_I_ZEMAX_RADIAL,
-    AXES = GONIO_I_ZEMAX_AXES,
-    MOST_PLANES = GONIO_I_ZEMAX_PLANES,
-    MOST_ANGLES = 100000
-};
+enum { MOST_ANGLES = 100000 };
 
 typedef gonio_i_zemax_grid grid;
 typedef gonio_i_zemax_axis axis;
 
-static const char *const axis_names[AXES] = {"SampleRotation", "AngleOfIncidence", "ScatterAzimuth",
-                                             "ScatterRadial"};
+const char *const gonio_i_zemax_axis_names[GONIO_I_ZEMAX_AXES] = {
+    "SampleRotation", "AngleOfIncidence", "ScatterAzimuth", "ScatterRadial"};
 
 void gonio_i_zemax_free(gonio_i_zemax_grid *g)
 {
-    for (int k = 0; k < AXES; k++) {
+    for (int k = 0; k < GONIO_I_ZEMAX_AXES; k++) {
         free(g->axis[k].degrees);
     }
-    for (int k = 0; k < MOST_PLANES; k++) {
+    for (int k = 0; k < GONIO_I_ZEMAX_PLANES; k++) {
         free(g->value[k]);
     }
     free(g->line);
@@ -37,7 +29,7 @@ void gonio_i_zemax_free(gonio_i_zemax_grid *g)
 size_t gonio_i_zemax_total(const gonio_i_zemax_grid *g)
 {
     size_t count = 1;
-    for (int k = 0; k < AXES; k++) {
+    for (int k = 0; k < GONIO_I_ZEMAX_AXES; k++) {
         count *= g->axis[k].count;
     }
     return count;
@@ -63,7 +55,7 @@ static gonio_status read_count(gonio_i_numbers *n, const char *name, size_t *cou
 
 static gonio_status read_axis(gonio_i_numbers *n, int which, axis *a)
 {
-    gonio_status status = read_count(n, axis_names[which], &a->count);
+    gonio_status status = read_count(n, gonio_i_zemax_axis_names[which], &a->count);
     free(a->degrees);
     a->degrees = status == GONIO_OK ? gonio_i_allocate(n->context, a->count, sizeof(double)) : NULL;
     if (status == GONIO_OK && a->degrees == NULL) {
@@ -91,7 +83,7 @@ static gonio_status make_plane(gonio_i_numbers *n, grid *g)
 {
     const size_t room = (size_t)(n->end - n->at);
     size_t count = 1;
-    for (int k = 0; k < AXES; k++) {
+    for (int k = 0; k < GONIO_I_ZEMAX_AXES; k++) {
         count = g->axis[k].count == 0 || count > room ? 0 : count * g->axis[k].count;
     }
     if (count == 0 || count > room) {
@@ -100,9 +92,9 @@ static gonio_status make_plane(gonio_i_numbers *n, grid *g)
                             "has room for; is it whole?",
                             n->path, n->line);
     }
-    if (g->planes == MOST_PLANES) {
+    if (g->planes == GONIO_I_ZEMAX_PLANES) {
         return gonio_i_fail(n->context, GONIO_ERROR_FORMAT, "%s:%zu: more than %d tables", n->path,
-                            n->line, MOST_PLANES);
+                            n->line, GONIO_I_ZEMAX_PLANES);
     }
     g->value[g->planes] = gonio_i_allocate(n->context, count, sizeof(double));
     if (g->line == NULL) {
@@ -129,7 +121,7 @@ static gonio_status skip_total(gonio_i_numbers *n)
 static gonio_status read_plane(gonio_i_numbers *n, grid *g)
 {
     gonio_status status = make_plane(n, g);
-    const size_t block = g->axis[AZIMUTH].count * g->axis[RADIAL].count;
+    const size_t block = g->axis[GONIO_I_ZEMAX_AZIMUTH].count * g->axis[GONIO_I_ZEMAX_RADIAL].count;
     const size_t count = status == GONIO_OK ? gonio_i_zemax_total(g) : 0;
     for (size_t k = 0; k < count && status == GONIO_OK; k++) {
         if (k % block == 0) {
@@ -146,8 +138,8 @@ static gonio_status read_plane(gonio_i_numbers *n, grid *g)
 
 static gonio_status read_word(gonio_i_numbers *n, const char *word, grid *g)
 {
-    for (int k = 0; k < AXES; k++) {
-        if (strcasecmp(word, axis_names[k]) == 0) {
+    for (int k = 0; k < GONIO_I_ZEMAX_AXES; k++) {
+        if (strcasecmp(word, gonio_i_zemax_axis_names[k]) == 0) {
             return g->planes == 0
                        ? read_axis(n, k, &g->axis[k])
                        : gonio_i_fail(n->context, GONIO_ERROR_FORMAT,
@@ -173,7 +165,7 @@ static gonio_status read_all(gonio_i_numbers *n, grid *g)
         gonio_i_numbers_word(n, word);
         status = read_word(n, word, g);
     }
-    if (status == GONIO_OK && g->planes != 1 && g->planes != MOST_PLANES) {
+    if (status == GONIO_OK && g->planes != 1 && g->planes != GONIO_I_ZEMAX_PLANES) {
         status = gonio_i_fail(n->context, GONIO_ERROR_FORMAT,
                               "%s: %zu tables of values (DataBegin); 1 or 3 are expected", n->path,
                               g->planes);

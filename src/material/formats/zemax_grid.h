@@ -13,6 +13,9 @@ enum {
     GONIO_I_ZEMAX_AXES
 };
 
+/* The words of the file for them. */
+extern const char *const gonio_i_zemax_axis_names[GONIO_I_ZEMAX_AXES];
+
 enum { GONIO_I_ZEMAX_PLANES = 3 };
 
 typedef struct gonio_i_zemax_axis {

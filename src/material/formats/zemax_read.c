@@ -20,15 +20,7 @@
 #include "format.h"
 #include "zemax_grid.h"
 
-enum {
-    ROTATION = GONIO_I_ZEMAX_ROTATION,
-    INCIDENCE = GONIO_I_ZEMAX_INCIDENCE,
-    AZIMUTH = GONIO_I_ZEMAX_AZIMUTH,
-    RADIAL = GONIO_I_ZEMAX_RADIAL,
-    AXES = GONIO_I_ZEMAX_AXES,
-    PLANES = GONIO_I_ZEMAX_PLANES,
-    NEIGHBOURS = 1 << AXES
-};
+enum { NEIGHBOURS = 1 << GONIO_I_ZEMAX_AXES };
 
 static const double SLACK = 0.01; /* degrees */
 static const double LARGEST = 1e9;
@@ -50,7 +42,7 @@ static void release(void *self)
 /* ---- where a pair of directions is in the grid ---- */
 
 typedef struct place {
-    double at[AXES]; /* degrees */
+    double at[GONIO_I_ZEMAX_AXES]; /* degrees */
 } place;
 
 static double degrees(double radians)
@@ -72,7 +64,7 @@ static double wrap(const gonio_i_zemax_axis *axis, double angle, double period)
 /* The rotation of the sample. Returns whether the other side of the plane of incidence is meant. */
 static bool find_rotation(const zemax *z, double phi_i, double *rotation)
 {
-    const gonio_i_zemax_axis *axis = &z->grid.axis[ROTATION];
+    const gonio_i_zemax_axis *axis = &z->grid.axis[GONIO_I_ZEMAX_ROTATION];
     *rotation = axis->degrees[0];
     if (z->mirrored) {
         const double turned = within(phi_i - axis->degrees[0], 180.0);
@@ -96,11 +88,12 @@ static place find_place(const zemax *z, gonio_angles in, gonio_angles out)
     const double height = cos(out.theta);
     const double along = -sin(in.theta) * x + cos(in.theta) * height;
     const double u = cos(in.theta) * x + sin(in.theta) * height;
-    const bool other_side = find_rotation(z, degrees(in.phi), &p.at[ROTATION]);
+    const bool other_side = find_rotation(z, degrees(in.phi), &p.at[GONIO_I_ZEMAX_ROTATION]);
     const double azimuth = degrees(atan2(other_side ? -y : y, u));
-    p.at[INCIDENCE] = degrees(in.theta);
-    p.at[RADIAL] = degrees(atan2(hypot(u, y), along));
-    p.at[AZIMUTH] = z->half ? fabs(azimuth) : wrap(&z->grid.axis[AZIMUTH], azimuth, 360.0);
+    p.at[GONIO_I_ZEMAX_INCIDENCE] = degrees(in.theta);
+    p.at[GONIO_I_ZEMAX_RADIAL] = degrees(atan2(hypot(u, y), along));
+    p.at[GONIO_I_ZEMAX_AZIMUTH] =
+        z->half ? fabs(azimuth) : wrap(&z->grid.axis[GONIO_I_ZEMAX_AZIMUTH], azimuth, 360.0);
     return p;
 }
 
@@ -143,15 +136,16 @@ static double mean_around(const double *value, const size_t *index, const double
 static void find_neighbours(const zemax *z, const place *p, size_t *index, double *weight)
 {
     const gonio_i_zemax_axis *axis = z->grid.axis;
-    const double period[AXES] = {[ROTATION] = z->period, [AZIMUTH] = z->half ? 0.0 : 360.0};
-    around a[AXES];
-    for (int k = 0; k < AXES; k++) {
+    const double period[GONIO_I_ZEMAX_AXES] = {
+        [GONIO_I_ZEMAX_ROTATION] = z->period, [GONIO_I_ZEMAX_AZIMUTH] = z->half ? 0.0 : 360.0};
+    around a[GONIO_I_ZEMAX_AXES];
+    for (int k = 0; k < GONIO_I_ZEMAX_AXES; k++) {
         a[k] = find_around(&axis[k], p->at[k], period[k]);
     }
     for (size_t n = 0; n < NEIGHBOURS; n++) {
         index[n] = 0;
         weight[n] = 1.0;
-        for (int k = 0; k < AXES; k++) {
+        for (int k = 0; k < GONIO_I_ZEMAX_AXES; k++) {
             const size_t side = n >> k & 1;
             index[n] = index[n] * axis[k].count + a[k].index[side];
             weight[n] *= side ? a[k].share : 1.0 - a[k].share;
@@ -165,13 +159,14 @@ static bool is_beyond(const gonio_i_zemax_axis *axis, double at)
 }
 
 /* The values of the planes with light from `in`. Returns whether there are any. */
-static bool look_up(const zemax *z, gonio_angles in, gonio_angles out, double value[PLANES])
+static bool look_up(const zemax *z, gonio_angles in, gonio_angles out,
+                    double value[GONIO_I_ZEMAX_PLANES])
 {
     const place p = find_place(z, in, out);
     size_t index[NEIGHBOURS];
     double weight[NEIGHBOURS];
-    if (is_beyond(&z->grid.axis[INCIDENCE], p.at[INCIDENCE]) ||
-        is_beyond(&z->grid.axis[RADIAL], p.at[RADIAL])) {
+    if (is_beyond(&z->grid.axis[GONIO_I_ZEMAX_INCIDENCE], p.at[GONIO_I_ZEMAX_INCIDENCE]) ||
+        is_beyond(&z->grid.axis[GONIO_I_ZEMAX_RADIAL], p.at[GONIO_I_ZEMAX_RADIAL])) {
         return false;
     }
     find_neighbours(z, &p, index, weight);
@@ -187,12 +182,12 @@ static gonio_status evaluate(void *self, gonio_context *context, const gonio_pai
     const zemax *z = self;
     (void)context;
     for (size_t n = 0; n < count; n++) {
-        double value[PLANES] = {NAN, NAN, NAN};
+        double value[GONIO_I_ZEMAX_PLANES] = {NAN, NAN, NAN};
         double *to = values + n * z->grid.planes;
         if (!look_up(z, pairs[n].incident, pairs[n].outgoing, value)) {
             look_up(z, pairs[n].outgoing, pairs[n].incident, value);
         }
-        if (z->grid.planes == PLANES) {
+        if (z->grid.planes == GONIO_I_ZEMAX_PLANES) {
             gonio_i_xyz_to_rgb(value, to);
         } else {
             to[0] = value[0];
@@ -225,7 +220,7 @@ static double range_of(const gonio_i_zemax_axis *axis)
 /* Finds after which turn of the sample rotations repeat. */
 static gonio_status find_period(gonio_context *context, const char *path, zemax *z)
 {
-    const gonio_i_zemax_axis *axis = &z->grid.axis[ROTATION];
+    const gonio_i_zemax_axis *axis = &z->grid.axis[GONIO_I_ZEMAX_ROTATION];
     const double range = range_of(axis);
     double step = 0.0;
     for (size_t k = 1; k < axis->count; k++) {
@@ -250,14 +245,12 @@ static gonio_status find_period(gonio_context *context, const char *path, zemax 
 
 static gonio_status check_angles(gonio_context *context, const char *path, const zemax *z)
 {
-    static const char *const name[AXES] = {"SampleRotation", "AngleOfIncidence", "ScatterAzimuth",
-                                           "ScatterRadial"};
     gonio_status status = GONIO_OK;
-    for (int k = 0; k < AXES && status == GONIO_OK; k++) {
-        status = check_axis(context, path, &z->grid.axis[k], name[k]);
+    for (int k = 0; k < GONIO_I_ZEMAX_AXES && status == GONIO_OK; k++) {
+        status = check_axis(context, path, &z->grid.axis[k], gonio_i_zemax_axis_names[k]);
     }
-    const gonio_i_zemax_axis *incidence = &z->grid.axis[INCIDENCE];
-    const gonio_i_zemax_axis *radial = &z->grid.axis[RADIAL];
+    const gonio_i_zemax_axis *incidence = &z->grid.axis[GONIO_I_ZEMAX_INCIDENCE];
+    const gonio_i_zemax_axis *radial = &z->grid.axis[GONIO_I_ZEMAX_RADIAL];
     if (status == GONIO_OK && !(incidence->degrees[0] >= 0.0 && radial->degrees[0] >= 0.0 &&
                                 incidence->degrees[incidence->count - 1] < 90.0)) {
         status = gonio_i_fail(context, GONIO_ERROR_DATA,
@@ -301,7 +294,7 @@ static gonio_status prepare(gonio_context *context, const char *path, zemax *z)
     if (status == GONIO_OK) {
         status = find_period(context, path, z);
     }
-    z->half = range_of(&z->grid.axis[AZIMUTH]) <= 180.0 + SLACK;
+    z->half = range_of(&z->grid.axis[GONIO_I_ZEMAX_AZIMUTH]) <= 180.0 + SLACK;
     return status == GONIO_OK ? take_logarithms(context, path, z) : status;
 }
 
@@ -330,8 +323,9 @@ static char *describe(const zemax *z)
     char text[160];
     const gonio_i_zemax_axis *axis = z->grid.axis;
     snprintf(text, sizeof text, "Zemax BSDF, %zu rotation%s x %zu incidences x %zu azimuths x %zu",
-             axis[ROTATION].count, axis[ROTATION].count == 1 ? "" : "s", axis[INCIDENCE].count,
-             axis[AZIMUTH].count, axis[RADIAL].count);
+             axis[GONIO_I_ZEMAX_ROTATION].count, axis[GONIO_I_ZEMAX_ROTATION].count == 1 ? "" : "s",
+             axis[GONIO_I_ZEMAX_INCIDENCE].count, axis[GONIO_I_ZEMAX_AZIMUTH].count,
+             axis[GONIO_I_ZEMAX_RADIAL].count);
     return strdup(text);
 }
 
@@ -350,11 +344,12 @@ static gonio_status open_zemax(gonio_context *context, const gonio_i_file *file,
         return status;
     }
     *description = describe(z);
-    *source = (gonio_material_source){.evaluate = evaluate,
-                                      .release = release,
-                                      .self = z,
-                                      .channels = z->grid.planes,
-                                      .anisotropic = z->grid.axis[ROTATION].count > 1};
+    *source =
+        (gonio_material_source){.evaluate = evaluate,
+                                .release = release,
+                                .self = z,
+                                .channels = z->grid.planes,
+                                .anisotropic = z->grid.axis[GONIO_I_ZEMAX_ROTATION].count > 1};
     return GONIO_OK;
 }
 

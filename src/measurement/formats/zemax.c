@@ -5,22 +5,13 @@
 #include "../import.h"
 #include "format.h"
 
-enum {
-    ROTATION = GONIO_I_ZEMAX_ROTATION,
-    INCIDENCE = GONIO_I_ZEMAX_INCIDENCE,
-    AZIMUTH = GONIO_I_ZEMAX_AZIMUTH,
-    RADIAL = GONIO_I_ZEMAX_RADIAL,
-    AXES = GONIO_I_ZEMAX_AXES,
-    MOST_PLANES = GONIO_I_ZEMAX_PLANES
-};
-
-static void take_values(const gonio_i_zemax_grid *g, size_t k, double value[MOST_PLANES])
+static void take_values(const gonio_i_zemax_grid *g, size_t k, double value[GONIO_I_ZEMAX_PLANES])
 {
-    double xyz[MOST_PLANES] = {0.0};
+    double xyz[GONIO_I_ZEMAX_PLANES] = {0.0};
     for (size_t p = 0; p < g->planes; p++) {
         xyz[p] = g->value[p][k];
     }
-    if (g->planes == MOST_PLANES) {
+    if (g->planes == GONIO_I_ZEMAX_PLANES) {
         gonio_i_xyz_to_rgb(xyz, value);
     } else {
         value[0] = xyz[0];
@@ -28,9 +19,9 @@ static void take_values(const gonio_i_zemax_grid *g, size_t k, double value[MOST
 }
 
 /* The angles of value k, radial fastest. */
-static void find_angles(const gonio_i_zemax_grid *g, size_t k, double angle[AXES])
+static void find_angles(const gonio_i_zemax_grid *g, size_t k, double angle[GONIO_I_ZEMAX_AXES])
 {
-    for (int a = AXES - 1; a >= 0; a--) {
+    for (int a = GONIO_I_ZEMAX_AXES - 1; a >= 0; a--) {
         angle[a] = g->axis[a].degrees[k % g->axis[a].count];
         k /= g->axis[a].count;
     }
@@ -41,17 +32,17 @@ static gonio_status import_grid(const gonio_i_zemax_grid *g, gonio_i_import *in)
     gonio_status status = gonio_i_import_channels(in, g->planes, NULL);
     const size_t count = g->line != NULL ? gonio_i_zemax_total(g) : 0;
     for (size_t k = 0; k < count && status == GONIO_OK; k++) {
-        double angle[AXES];
-        double value[MOST_PLANES];
+        double angle[GONIO_I_ZEMAX_AXES];
+        double value[GONIO_I_ZEMAX_PLANES];
         double difference = 0.0;
         gonio_i_row row = {.planned = GONIO_ALL_CHANNELS, .line = g->line[k], .value = value};
         find_angles(g, k, angle);
         take_values(g, k, value);
-        row.degrees[0] = angle[INCIDENCE];
-        row.degrees[1] = angle[ROTATION];
-        gonio_i_from_mirror(angle[INCIDENCE], angle[RADIAL], angle[AZIMUTH], &row.degrees[2],
-                            &difference);
-        row.degrees[3] = angle[ROTATION] + difference;
+        row.degrees[0] = angle[GONIO_I_ZEMAX_INCIDENCE];
+        row.degrees[1] = angle[GONIO_I_ZEMAX_ROTATION];
+        gonio_i_from_mirror(angle[GONIO_I_ZEMAX_INCIDENCE], angle[GONIO_I_ZEMAX_RADIAL],
+                            angle[GONIO_I_ZEMAX_AZIMUTH], &row.degrees[2], &difference);
+        row.degrees[3] = angle[GONIO_I_ZEMAX_ROTATION] + difference;
         status = gonio_i_import_add(in, &row);
     }
     return status;
