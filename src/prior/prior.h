@@ -36,9 +36,11 @@ void gonio_i_prior_row(const gonio_i_prior *prior, size_t row, double *f);
 
 /* The remainder has covariance alpha^2 k(x, x'),
  *
- *     k = exp(-|p - p'|^2/2) + peak^2 q q' exp(-2 |p - p'|^2) + retro^2 b b' exp(-(p_0 -
- * p_0')^2/8), q = exp(-(theta_h/1 deg)^2/2),   b = exp(-(theta_d/3 deg)^2/2) (1 - exp(-(theta_h/10
- * deg)^2/2)):
+ *     k = exp(-|p - p'|^2/2) + peak^2 q q' exp(-2 |p - p'|^2) + retro^2 b b' r,
+ *
+ *     q = exp(-(theta_h/1 deg)^2/2),   r = exp(-(p_0 - p_0')^2/8),
+ *
+ *     b = exp(-(theta_d/3 deg)^2/2) (1 - exp(-(theta_h/10 deg)^2/2)):
  *
  * The second term allows peaks that are narrower than any in the database, within about a degree
  * of the mirror direction; the third those of retroreflectors, towards the light.

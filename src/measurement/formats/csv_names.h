@@ -31,9 +31,8 @@ typedef enum gonio_i_strength {
 } gonio_i_strength;
 
 /* Indices behind theta_i, phi_i, theta_o, phi_o: of phi_o - phi_i, of the rotation of the sample,
- * which is added to both azimuths, and of the angle between the
- * detector and the mirror direction, in the plane of incidence: above zero farther from the normal,
- * or nearer to it. */
+ * which is added to both azimuths, and of the angle between the detector and the mirror direction,
+ * in the plane of incidence: above zero farther from the normal, or nearer to it. */
 enum {
     GONIO_I_AZIMUTH_DIFFERENCE = 4,
     GONIO_I_SAMPLE_ROTATION,
