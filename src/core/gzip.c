@@ -33,10 +33,10 @@ size_t gonio_i_gzip_head(const void *bytes, size_t size, char *text, size_t room
     return room - stream.avail_out;
 }
 
-/* Tables compress to a tenth or so. A file that grows more than a hundredfold, beyond what costs
- * little, was made to fill the memory. */
-static const size_t MOST_FREE = (size_t)64 << 20;
-static const size_t MOST_COMPRESSION = 100;
+/* Tables compress to a tenth or so. A file that grows more than twentyfold, beyond what costs
+ * little, was made to fill the memory: readings of short lines take fifteen times their text. */
+static const size_t MOST_FREE = (size_t)32 << 20;
+static const size_t MOST_COMPRESSION = 20;
 
 /* A growing block of text. */
 typedef struct growing {
@@ -119,7 +119,9 @@ gonio_status gonio_i_gzip_text(gonio_context *context, const char *path, const v
         return gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", path);
     }
     if (g.length > most) {
-        return gonio_i_fail(context, GONIO_ERROR_FORMAT, "%s: more than %zu MiB once decompressed",
+        return gonio_i_fail(context, GONIO_ERROR_FORMAT,
+                            "%s: more than %zu MiB once decompressed, far more than its kind has; "
+                            "decompress it first if you trust it",
                             path, most >> 20);
     }
     return gonio_i_fail(context, GONIO_ERROR_FORMAT,
