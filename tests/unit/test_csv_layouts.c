@@ -60,6 +60,8 @@ static void test_layouts(void **state)
         "thetaIn,phiIn,thetaOut,phiOut,R550\n20,0,30,180,0.5\n",
         "inc,azimuth,scatter,value\n20,180,30,0.5\n",
         "AOI,scatter angle,BRDF\n20,30,0.5\n",
+        "th_i,ph_i,th_r,ph_r,fr\n20,0,30,180,0.5\n",
+        "theta_l,phi_l,theta_v,phi_v,brdf\n20,0,30,180,0.5\n",
         "AOI (deg);scatter angle (deg);BRDF (1/sr)\r\n20;30;0,5\r\n",
     };
     static const double expected[4] = {20, 0, 30, 180};

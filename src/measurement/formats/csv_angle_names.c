@@ -26,9 +26,11 @@ enum {
 
 static const gonio_i_known_word angle_words[] = {
     {"theta", POLAR, 0},
+    {"th", POLAR, 0},
     {"zenith", POLAR, 0},
     {"polar", POLAR, 0},
     {"phi", AZIMUTH, 0},
+    {"ph", AZIMUTH, 0},
     {"azimuth", AZIMUTH | WORD, 0},
     {"azimuthal", AZIMUTH, 0},
     {"azim", AZIMUTH, 0},
@@ -40,6 +42,7 @@ static const gonio_i_known_word angle_words[] = {
     {"incoming", INCIDENT, 0},
     {"incidence", INCIDENT | ANY_ANGLE, 0},
     {"aoi", INCIDENT | ANY_ANGLE, 0},
+    {"l", INCIDENT, 0},
     {"light", INCIDENT, 0},
     {"lamp", INCIDENT, 0},
     {"source", INCIDENT, 0},
