@@ -60,6 +60,22 @@ expect_true 'as many directions as asked for' test "$(grep -vc '^[#t]' at.csv)" 
 expect_output '40 readings compared' compare all.csv at.csv
 expect_output '30 readings compared' compare all.csv at.csv --leave-out p.csv
 expect_true 'predictions are within 15 per cent' test "$(error all.csv at.csv --leave-out p.csv)" -lt 15
+# The error is expected where nothing was read; a reading without values is none.
+expected_at() { # READINGS DIRECTIONS
+    expect_ok reconstruct b.gonio "$1" --predict-at "$2" -o expected.csv
+    sed -n 's/.*expected error (E6) \([0-9.]*\) %.*/\1/p' "$root/work/stdout"
+}
+directions all.csv 1 >unread.csv
+directions all.csv 41 | tail -n 30 >>unread.csv
+directions all.csv 1 >without-one.csv
+directions all.csv 41 | tail -n 31 >>without-one.csv
+directions r.csv 11 | awk -F, -v OFS=, '{ for (k = 1; k <= NF; k++) { if (NR == 1 && $k ~ /_per_sr/) value[k] = 1 }
+    for (k in value) { if (NR == 11) $k = "" } } 1' >gap.csv
+expect_true 'an error' test -n "$(expected_at r.csv all.csv)"
+expect_true 'what was read does not count' test "$(expected_at r.csv all.csv)" = "$(expected_at r.csv unread.csv)"
+expect_true 'the whole is another' test "$(expected_at r.csv all.csv)" != "$(expected_at r.csv r.csv)"
+expect_true 'a gap counts' test "$(expected_at gap.csv all.csv)" = "$(expected_at gap.csv without-one.csv)"
+expect_true 'a gap is no reading' test "$(expected_at gap.csv all.csv)" != "$(expected_at gap.csv unread.csv)"
 expect_ok measure p.csv all.csv -o looked-up.csv
 expect_output '0.000     0.000    0.0000' compare r.csv looked-up.csv
 expect_ok reconstruct b.gonio r.csv --deviation deviation.binary -o again.binary
