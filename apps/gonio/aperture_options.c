@@ -36,31 +36,26 @@ bool aperture_options_check(const tool *t, aperture_options *o, const char *outp
     return o->instrument == NULL || tool_check_output(t, output, &o->instrument, 1);
 }
 
-int aperture_options_values(const gonio_instrument *instrument)
-{
-    const gonio_value_kind kind =
-        instrument != NULL ? gonio_instrument_describe(instrument)->values : GONIO_VALUE_COUNTS;
-    return kind != GONIO_VALUE_COUNTS ? (int)kind : 0;
-}
-
 gonio_status aperture_options_apply(const tool *t, aperture_options *o,
                                     posterior_options *posterior)
 {
-    gonio_instrument *instrument = NULL;
     gonio_status status = GONIO_OK;
     if (o->instrument != NULL) {
-        status = gonio_instrument_read(t->context, o->instrument, &instrument);
+        status = gonio_instrument_read(t->context, o->instrument, &o->made);
     }
     if (status == GONIO_OK) {
         const gonio_instrument_view *view =
-            instrument != NULL ? gonio_instrument_describe(instrument) : NULL;
+            o->made != NULL ? gonio_instrument_describe(o->made) : NULL;
         posterior_options_settle(posterior, view);
-        o->values = aperture_options_values(instrument);
         if (view != NULL && o->aperture == NULL) {
             o->detector = view->detector_aperture * 180.0 / M_PI;
             o->source = view->source_aperture * 180.0 / M_PI;
         }
     }
-    gonio_instrument_free(&instrument);
     return status;
+}
+
+void aperture_options_end(aperture_options *o)
+{
+    gonio_instrument_free(&o->made);
 }

@@ -9,12 +9,8 @@ typedef struct aperture_options {
     const char *aperture;   /* "2" or "2,0.2"; NULL: those of the instrument */
     double detector;        /* half angles, degrees: set by aperture_options_apply */
     double source;
-    int values; /* what the instrument's numbers stand for (gonio_value_kind); 0: not known */
+    gonio_instrument *made; /* the instrument, from aperture_options_apply on; NULL: none */
 } aperture_options;
-
-/* The kind of values of an instrument, where it is one that readings can be taken as; otherwise 0.
- */
-int aperture_options_values(const gonio_instrument *instrument);
 
 /* Rows of an option table. */
 #define APERTURE_OPTIONS(o)                                                                        \
@@ -37,8 +33,9 @@ int aperture_options_values(const gonio_instrument *instrument);
 bool aperture_options_check(const tool *t, aperture_options *o, const char *output);
 
 /* Reads the instrument, and sets the half angles and what is not given of its noise. Errors: those
- * of gonio_instrument_read. */
+ * of gonio_instrument_read. aperture_options_end releases the instrument. */
 gonio_status aperture_options_apply(const tool *t, aperture_options *o,
                                     posterior_options *posterior);
+void aperture_options_end(aperture_options *o);
 
 #endif

@@ -1,5 +1,4 @@
 /* gonio next: where to measure next, given what was read. */
-#include "aperture_options.h"
 #include "builtin_basis.h"
 #include "command_line.h"
 #include "correction_options.h"
@@ -85,8 +84,7 @@ static gonio_status find_next(tool *t, const options *o, const next_inputs *in, 
     const gonio_readings_options any = {.size = sizeof any,
                                         .values_needed = true,
                                         .average_repeats = true,
-                                        .usual_values =
-                                            aperture_options_values(in->planning.instrument)};
+                                        .instrument = in->planning.instrument};
     const gonio_reconstruct_options how = how_of(o, in->planning.instrument);
     gonio_readings *readings = NULL;
     gonio_basis *basis = NULL;

@@ -59,8 +59,10 @@ static gonio_reconstruct_options settings(const options *o)
 /* Reads where the BRDF is to be predicted. */
 static gonio_status read_directions(tool *t, const options *o, gonio_readings **at)
 {
-    const gonio_readings_options any = {
-        .size = sizeof any, .average_repeats = true, .negative_to_zero = true};
+    const gonio_readings_options any = {.size = sizeof any,
+                                        .average_repeats = true,
+                                        .negative_to_zero = true,
+                                        .instrument = o->aperture.made};
     return tool_read_readings(t, o->predict_at, &any, at);
 }
 
@@ -237,7 +239,7 @@ static int reconstruct_all(tool *t, const options *o, const char *basis_path,
                                         .values_needed = true,
                                         .average_repeats = o->average_repeats,
                                         .negative_to_zero = o->negative_to_zero,
-                                        .usual_values = o->aperture.values};
+                                        .instrument = o->aperture.made};
     gonio_readings **readings = calloc(count, sizeof *readings);
     gonio_basis *basis = NULL;
     gonio_status status = readings == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
@@ -375,18 +377,11 @@ static int print_results(const tool *t, json_t *results)
                                   : json_incref(json_array_get(results, 0)));
 }
 
-static int run(tool *t, void *given)
+/* Works by the instrument's noise, once it is known. */
+static int run_settled(tool *t, options *o)
 {
-    options *o = given;
     size_t count = 0;
     const char **arguments = tool_arguments(t, &count);
-    if (!aperture_options_check(t, &o->aperture, o->output)) {
-        return EXIT_USAGE;
-    }
-    const gonio_status status = aperture_options_apply(t, &o->aperture, &o->posterior);
-    if (status != GONIO_OK) {
-        return tool_exit_code(status);
-    }
     if (!check(t, o, arguments, count) ||
         !tool_check_albedo_at(t, o->albedo_at, &o->reflectances) ||
         !write_options_check(t, &o->write, &o->how)) {
@@ -412,6 +407,18 @@ static int run(tool *t, void *given)
         free(outputs[k]);
     }
     free(outputs);
+    return code;
+}
+
+static int run(tool *t, void *given)
+{
+    options *o = given;
+    if (!aperture_options_check(t, &o->aperture, o->output)) {
+        return EXIT_USAGE;
+    }
+    const gonio_status status = aperture_options_apply(t, &o->aperture, &o->posterior);
+    const int code = status == GONIO_OK ? run_settled(t, o) : tool_exit_code(status);
+    aperture_options_end(&o->aperture);
     return code;
 }
 

@@ -32,7 +32,10 @@ static gonio_status read_one(const tool *t, const char *path, const gonio_readin
                              const correction_options *o, gonio_readings **readings)
 {
     gonio_readings_options how = *options;
-    how.as.values = o->reference != NULL ? GONIO_VALUE_RELATIVE : how.as.values;
+    if (o->reference != NULL) { /* in place of the instrument's */
+        how.as.values = GONIO_VALUE_RELATIVE;
+        how.instrument = NULL;
+    }
     return tool_read_readings(t, path, &how, readings);
 }
 

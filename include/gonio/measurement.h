@@ -52,7 +52,7 @@ typedef struct gonio_convention {
 } gonio_convention;
 
 /* Reads a convention from text: "angles=radians,values=factor,mirror=0". Keys and words:
- * angles=degrees, radians; values=brdf, factor, percent, cosine, factor-cosine, relative;
+ * angles=degrees, radians; values=brdf, factor, percent, cosine, factor-cosine, relative, counts;
  * mirror=180, 0; wavelengths=nm, um, m; zeros=missing, dark; sample=NUMBER; format=WORD. Fields
  * that the text does not name stay. Errors: _ARGUMENT for an unknown key or word; the message lists
  * the known ones. */
@@ -70,8 +70,10 @@ typedef struct gonio_readings_options {
                             * (least squares averages it), false to refuse */
     bool negative_to_zero; /* a reading below zero: true to take it as 0, false to refuse */
     gonio_convention as;   /* of files: units and conventions other than the stated ones */
-    int usual_values;      /* gonio_value_kind of tables whose names and comments state none, as the
-                            * instrument gives them; 0: the BRDF */
+    /* Of files: the instrument that made them, needed until they are read; NULL: not known. Where
+     * names and comments of a table state no kind of values, its kind holds. Its reference_factors
+     * and counts_of_1_per_sr are those of relative values and counts. */
+    const gonio_instrument *instrument;
 } gonio_readings_options;
 
 /* Values are needed. Repeats and negative readings are refused. */

@@ -70,7 +70,7 @@ def test_readings_and_files(plan, values, tmp_path):
     assert np.allclose(np.pi * factor.values, values, rtol=1e-8)
     (tmp_path / "bare.csv").write_text("theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,value\n30,0,30,180,0.5\n")
     assert gonio.Readings.load(tmp_path / "bare.csv").values[0, 0] == pytest.approx(0.5)
-    bare = gonio.Readings.load(tmp_path / "bare.csv", usual_values="factor")
+    bare = gonio.Readings.load(tmp_path / "bare.csv", instrument=gonio.Goniometer("two-arms"))
     assert bare.values[0, 0] == pytest.approx(0.5 / np.pi)
     with pytest.raises(gonio.ArgumentError, match="angles"):
         gonio.Readings.load(tmp_path / "r.csv", convention="angels=radians")

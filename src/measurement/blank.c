@@ -7,7 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "convention.h"
 #include "readings.h"
 
 /* From a median of absolute differences to a standard deviation. */
@@ -38,7 +37,7 @@ typedef struct blank {
 
 static double unit_of(const gonio_readings *r, size_t reading)
 {
-    return gonio_i_value_divisor(r->values, r->pair[reading].outgoing.theta);
+    return gonio_i_value_factor(&r->unit, r->pair[reading].outgoing.theta);
 }
 
 static int compare_numbers(const void *a, const void *b)

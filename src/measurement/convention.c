@@ -1,7 +1,6 @@
 /* Conventions as words and sentences: see convention.h. */
 #include "convention.h"
 
-#include <math.h>
 #include <stddef.h>
 
 const gonio_i_convention_key gonio_i_convention_keys[GONIO_I_CONVENTION_KEYS] = {
@@ -21,7 +20,8 @@ const gonio_i_convention_key gonio_i_convention_keys[GONIO_I_CONVENTION_KEYS] = 
       {"cosine", GONIO_VALUE_COSINE, "values with cos theta_o (divided by it)"},
       {"factor-cosine", GONIO_VALUE_FACTOR_COSINE,
        "reflectance factors with cos theta_o (divided by pi cos theta_o)"},
-      {"relative", GONIO_VALUE_RELATIVE, "values relative to a reference (divided by pi)"}}},
+      {"relative", GONIO_VALUE_RELATIVE, "values relative to a reference (divided by pi)"},
+      {"counts", GONIO_VALUE_COUNTS, "counts (divided by those of 1/sr and cos theta_o)"}}},
     {"wavelengths",
      offsetof(gonio_convention, wavelengths),
      {{"nm", GONIO_NANOMETRES, NULL},
@@ -69,22 +69,5 @@ void gonio_i_convention_print(const gonio_convention *convention, FILE *stream)
                 between = ", ";
             }
         }
-    }
-}
-
-double gonio_i_value_divisor(int kind, double theta_o)
-{
-    switch (kind) {
-    case GONIO_VALUE_FACTOR:
-    case GONIO_VALUE_RELATIVE:
-        return M_PI;
-    case GONIO_VALUE_PERCENT:
-        return 100.0 * M_PI;
-    case GONIO_VALUE_COSINE:
-        return cos(theta_o);
-    case GONIO_VALUE_FACTOR_COSINE:
-        return M_PI * cos(theta_o);
-    default:
-        return 1.0;
     }
 }

@@ -33,8 +33,4 @@ gonio_convention gonio_i_convention_of(const gonio_convention *stated,
  * factors". */
 void gonio_i_convention_print(const gonio_convention *convention, FILE *stream);
 
-/* The number by which a value of a gonio_value_kind is divided at theta_o, radians, to be a BRDF.
- */
-double gonio_i_value_divisor(int kind, double theta_o);
-
 #endif

@@ -25,7 +25,7 @@ void gonio_i_import_begin(gonio_i_import *import, gonio_context *context, gonio_
                                .how = gonio_i_convention_of(stated, &readings->options.as),
                                .taken_as = taken_as};
     readings->keep_angles = true;
-    readings->values = import->how.values;
+    readings->unit.kind = import->how.values;
     import->latest = NAN;
 }
 
@@ -86,6 +86,18 @@ static gonio_status take_wavelengths(const gonio_i_import *in, size_t channels,
     return gonio_i_readings_begin(in->context, in->readings, channels, nm);
 }
 
+static gonio_status check_counts(const gonio_i_import *in)
+{
+    return in->how.values != GONIO_VALUE_COUNTS || in->readings->unit.counts > 0.0
+               ? GONIO_OK
+               : gonio_i_fail(
+                     in->context, GONIO_ERROR_ARGUMENT,
+                     "%s: its values are counts: how many of them are 1/sr is said by "
+                     "counts_of_1_per_sr of an instrument file (--instrument); or take them as "
+                     "they are by --as values=brdf",
+                     in->readings->path);
+}
+
 gonio_status gonio_i_import_channels(gonio_i_import *import, size_t channels,
                                      const double *wavelength)
 {
@@ -94,6 +106,9 @@ gonio_status gonio_i_import_channels(gonio_i_import *import, size_t channels,
     double *nm = gonio_i_allocate(import->context, channels, sizeof *nm);
     gonio_status status = GONIO_ERROR_MEMORY;
     if (import->value != NULL && import->deviation != NULL && nm != NULL) {
+        status = check_counts(import);
+    }
+    if (status == GONIO_OK) {
         status = wavelength != NULL
                      ? take_wavelengths(import, channels, wavelength, nm)
                      : gonio_i_readings_begin(import->context, import->readings, channels, NULL);
@@ -192,7 +207,7 @@ static gonio_status check_angles(const gonio_i_import *in, const gonio_i_row *ro
 /* Converts the values of a row to a BRDF. Returns whether there is a value. */
 static bool take_values(gonio_i_import *in, const gonio_i_row *row, const double degrees[4])
 {
-    const double by = gonio_i_value_divisor(in->how.values, degrees[2] * M_PI / 180.0);
+    const double by = gonio_i_value_factor(&in->readings->unit, degrees[2] * M_PI / 180.0);
     bool any = false;
     for (size_t k = 0; k < in->readings->channels; k++) {
         const bool missing = row->value[k] == 0.0 && in->how.zeros == GONIO_ZEROS_MISSING;
@@ -378,6 +393,21 @@ static bool anything_changed(const gonio_i_import *in)
     return changed > 0;
 }
 
+/* Prints what the instrument says of relative values: ", times its reflectance factor, 0.91 to
+ * 1.07". */
+static void print_reference(const gonio_i_value_unit *unit, FILE *stream)
+{
+    double least = INFINITY;
+    double most = 0.0;
+    for (size_t k = 0; k < unit->rows; k++) {
+        least = fmin(least, unit->row[k].factor);
+        most = fmax(most, unit->row[k].factor);
+    }
+    if (unit->kind == GONIO_VALUE_RELATIVE && unit->rows > 0) {
+        fprintf(stream, ", times its reflectance factor, %.4g to %.4g", least, most);
+    }
+}
+
 /* Writes the note: "taken as Zemax BSDF: angles in degrees, values in 1/sr; 812 readings; left out:
  * ...". */
 static gonio_status write_note(gonio_i_import *in)
@@ -391,6 +421,7 @@ static gonio_status write_note(gonio_i_import *in)
     }
     fprintf(stream, "taken as %s: ", in->taken_as);
     gonio_i_convention_print(&in->how, stream);
+    print_reference(&in->readings->unit, stream);
     fprintf(stream, "; %zu reading%s", in->readings->count, in->readings->count > 1 ? "s" : "");
     print_left_out(in, stream);
     const gonio_status status = fclose(stream) == 0

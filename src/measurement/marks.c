@@ -6,8 +6,6 @@
 #include <string.h>
 #include <strings.h>
 
-#include "convention.h"
-
 enum { FIRST_ROOM = 8 };
 
 static const double SAME_DIRECTION = 0.01; /* degrees */
@@ -210,7 +208,7 @@ static void correct_reading(corrector *c, size_t reading)
     const size_t channels = r->channels;
     const double at = c->timed ? r->time[reading] : (double)r->line[reading];
     const double by =
-        gonio_i_value_divisor(r->values, gonio_i_readings_degrees(r, reading, 2) * M_PI / 180.0);
+        gonio_i_value_factor(&r->unit, gonio_i_readings_degrees(r, reading, 2) * M_PI / 180.0);
     for (size_t j = 0; j < channels; j++) {
         const size_t k = reading * channels + j;
         const double gain = c->reference.count > 0 ? level_at(&c->reference, at, j, channels) : 1.0;

@@ -16,6 +16,29 @@ void gonio_readings_options_default_of(gonio_readings_options *options, size_t s
     gonio_i_give(&usual, sizeof usual, options, size);
 }
 
+/* Copies what the readings need of the instrument that made them. False when out of memory. */
+static bool take_instrument(gonio_readings *r)
+{
+    const gonio_instrument *instrument = r->options.instrument;
+    r->options.instrument = NULL;
+    if (instrument == NULL) {
+        return true;
+    }
+    r->unit = gonio_i_value_unit_of(instrument);
+    r->usual_values = r->unit.kind;
+    r->unit.kind = 0;
+    if (r->unit.rows == 0) {
+        return true;
+    }
+    const size_t bytes = r->unit.rows * sizeof *r->reference;
+    r->reference = malloc(bytes);
+    if (r->reference != NULL) {
+        memcpy(r->reference, r->unit.row, bytes);
+    }
+    r->unit.row = r->reference;
+    return r->reference != NULL;
+}
+
 gonio_status gonio_i_readings_new(gonio_context *context, const char *path,
                                   const gonio_readings_options *options, gonio_readings **readings)
 {
@@ -28,7 +51,7 @@ gonio_status gonio_i_readings_new(gonio_context *context, const char *path,
     made->options = how;
     made->method = "";
     made->path = strdup(path);
-    if (made->path == NULL) {
+    if (made->path == NULL || !take_instrument(made)) {
         gonio_readings_free(&made);
         gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", path);
         return GONIO_ERROR_MEMORY;
@@ -58,6 +81,7 @@ void gonio_readings_free(gonio_readings **readings)
     free(old->wavelength);
     free(old->given);
     free(old->first_same);
+    free(old->reference);
     free(old);
     *readings = NULL;
 }

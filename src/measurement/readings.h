@@ -6,6 +6,7 @@
 
 #include "../core/comments.h"
 #include "../core/core.h"
+#include "../instrument/value_unit.h"
 
 /* What a format keeps of a file besides readings, to write it again. */
 typedef struct gonio_i_attachment {
@@ -23,12 +24,14 @@ struct gonio_readings {
     gonio_pair *pair;
     int *planned;
     size_t *line;
-    double *value;      /* [count][channels] */
-    double *deviation;  /* [count][channels]; NULL: none is known */
-    double *time;       /* [count], seconds, NaN where not known; NULL: none is known */
-    int values;         /* gonio_value_kind of their file; 0: BRDF */
-    double *wavelength; /* [channels]; NULL: colours or unnamed channels */
-    bool keep_angles;   /* angles are written as they were given: */
+    double *value;                  /* [count][channels] */
+    double *deviation;              /* [count][channels]; NULL: none is known */
+    double *time;                   /* [count], seconds, NaN where not known; NULL: none is known */
+    int usual_values;               /* gonio_value_kind of the instrument; 0: not known */
+    gonio_i_value_unit unit;        /* of the numbers of their file */
+    gonio_reference_row *reference; /* [unit.rows]; NULL: none */
+    double *wavelength;             /* [channels]; NULL: colours or unnamed channels */
+    bool keep_angles;               /* angles are written as they were given: */
     double (*given)[4]; /* [count], theta_i, phi_i, theta_o, phi_o in degrees; or NULL */
     size_t below_zero;  /* values below zero that were taken as 0 */
     size_t *first_same; /* [count]: the first reading with the same directions */

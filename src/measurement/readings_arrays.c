@@ -192,13 +192,15 @@ gonio_status gonio_readings_copy(gonio_context *context, const gonio_readings *r
     made->time = copy_array(context, r->time, r->count, sizeof *r->time, &done);
     made->wavelength =
         copy_array(context, r->wavelength, r->channels, sizeof *r->wavelength, &done);
+    made->reference = copy_array(context, r->reference, r->unit.rows, sizeof *r->reference, &done);
     made->first_same = copy_array(context, r->first_same, r->count, sizeof *r->first_same, &done);
     if (!done) {
         gonio_readings_free(&made);
         return GONIO_ERROR_MEMORY;
     }
     made->below_zero = r->below_zero;
-    made->values = r->values;
+    made->unit = r->unit;
+    made->unit.row = made->reference;
     made->basis = r->basis;
     made->components = r->components;
     gonio_i_readings_update_view(made);

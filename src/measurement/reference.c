@@ -144,20 +144,6 @@ gonio_status gonio_reference_read(gonio_context *context, const char *path,
 
 /* ---- readings relative to it ---- */
 
-/* Linear between the rows, constant outside. */
-static double factor_at(const gonio_reference_row *row, size_t rows, double theta)
-{
-    size_t above = 0;
-    while (above < rows && row[above].theta <= theta) {
-        above++;
-    }
-    if (above == 0 || above == rows) {
-        return row[above == 0 ? 0 : rows - 1].factor;
-    }
-    const double part = (theta - row[above - 1].theta) / (row[above].theta - row[above - 1].theta);
-    return (1.0 - part) * row[above - 1].factor + part * row[above].factor;
-}
-
 gonio_status gonio_readings_times_reference(gonio_context *context, gonio_readings *readings,
                                             const gonio_reference_row *row, size_t rows)
 {
@@ -167,7 +153,7 @@ gonio_status gonio_readings_times_reference(gonio_context *context, gonio_readin
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT, "a reference has no rows");
     }
     for (size_t k = 0; k < readings->count; k++) {
-        const double factor = factor_at(row, rows, readings->pair[k].outgoing.theta);
+        const double factor = gonio_i_reference_factor(row, rows, readings->pair[k].outgoing.theta);
         least = fmin(least, factor);
         most = fmax(most, factor);
         for (size_t c = 0; c < readings->channels; c++) {

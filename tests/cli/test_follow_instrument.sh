@@ -111,9 +111,17 @@ awk -F, -v OFS=, '/^[0-9]/ { t = 86390 + 2 * n++; $5 = sprintf("%02d:%02d:%02d",
     { print }' run.csv >robot.csv
 follows
 not_said 'the time is before'
+sed 's/^# values.*/# values: percent/' run.csv >robot.csv
+follows
+said "taken as 'percent', but the instrument states 'factor'"
+# What a file does not say is what the instrument gives.
+cp run.csv robot.csv
+follows
+lines out.csv >stated.csv
 grep -v '^# values' run.csv >robot.csv
 follows
-said "taken as 'brdf', but the instrument states 'factor'"
+not_said 'but the instrument states'
+expect_same stated.csv <(lines out.csv)
 iconv -t UTF-16 run.csv >robot.csv
 rm -f out.csv*
 expect_true 'UTF-16 is refused' eval '! gonio measure --follow robot.csv plan.csv --no-basis -o out.csv >"$root/work/stdout" \

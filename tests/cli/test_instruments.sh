@@ -152,6 +152,14 @@ taken_as() { # WORDS COMMAND FILE OPTION...
 taken_as 'reflectance factors (divided by pi)' reconstruct bare.csv --method posterior -o bare.binary
 taken_as 'reflectance factors (divided by pi)' next bare.csv -n 1 -o next.csv
 taken_as 'values in 1/sr' reconstruct bare.csv --method posterior --as values=brdf -o bare.binary
+printf '%s, "values": {"kind": "counts", "counts_of_1_per_sr": 5e5}}' \
+    '{"gonio_instrument": 1, "kinematics": "direct", "axes": {"theta_i": {"from_deg": 0, "to_deg": 80},
+    "theta_o": {"from_deg": -80, "to_deg": 80}}' >counter.json
+printf 'theta_i,phi_i,theta_o,phi_o,counts\n15,0,0,0,50000\n30,0,60,180,50000\n' >counts.csv
+taken_as 'counts (divided by those of 1/sr and cos theta_o)' reconstruct bare.csv --instrument counter.json \
+    --method posterior -o bare.binary
+expect_fail 2 'counts_of_1_per_sr of an instrument file' info -q counts.csv
+expect_ok info counts.csv --as values=brdf
 taken_as 'values in 1/sr' reconstruct stated.csv --method posterior -o bare.binary
 expect_fail 2 '--noise cannot be negative' next b.gonio run.csv --instrument four-axis --noise -1 -o no.csv
 expect_fail 2 "--aperture: 'wide' is not a half angle" reconstruct b.gonio run.csv --aperture wide -o no.binary

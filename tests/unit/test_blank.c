@@ -23,6 +23,30 @@ static gonio_readings *read_text(const char *text)
     return readings;
 }
 
+/* Reads a text as readings of an instrument with these values. */
+static gonio_status read_of(const char *values, const char *text, gonio_readings **readings)
+{
+    gonio_readings_options how = {
+        .size = sizeof how, .values_needed = true, .average_repeats = true};
+    gonio_context *context = support_context();
+    gonio_instrument *instrument = NULL;
+    char rig[512];
+    snprintf(rig, sizeof rig,
+             "{\"gonio_instrument\": 1, \"kinematics\": \"direct\", \"values\": %s,"
+             "\"axes\": {\"theta_i\": {\"from_deg\": 0, \"to_deg\": 80},"
+             "\"theta_o\": {\"from_deg\": 0, \"to_deg\": 80}}}",
+             values);
+    if (gonio_instrument_parse(context, rig, "rig", &instrument) != GONIO_OK) {
+        fail_msg("%s", support_message());
+    }
+    how.instrument = instrument;
+    const gonio_status status =
+        gonio_readings_read_text(context, "run", text, strlen(text), &how, readings);
+    gonio_instrument_free(&instrument);
+    gonio_context_free(&context);
+    return status;
+}
+
 static void assert_note(const gonio_readings *readings, const char *part)
 {
     const gonio_readings_view *view = gonio_readings_describe(readings);
@@ -169,10 +193,76 @@ static void test_bad_references(void **state)
     gonio_context_free(&context);
 }
 
+#define RELATIVE                                                                                   \
+    "{\"kind\": \"relative\", \"reference\": \"tile\", \"reference_factors\": [[0, 1], [80, "      \
+    "0.6]]}"
+#define COUNTS "{\"kind\": \"counts\", \"counts_of_1_per_sr\": 5e4}"
+
+static double value_of(const char *values, const char *text)
+{
+    gonio_readings *r = NULL;
+    if (read_of(values, text, &r) != GONIO_OK) {
+        fail_msg("%s", support_message());
+    }
+    const double value = gonio_readings_describe(r)->value[0];
+    gonio_readings_free(&r);
+    return value;
+}
+
+/* Numbers of which a table says nothing are the instrument's; what it says comes first. */
+static void test_numbers_of_an_instrument(void **state)
+{
+    (void)state;
+    const double cosine = cos(40.0 * M_PI / 180.0);
+    assert_near(value_of(RELATIVE, NAMES "value\n30,0,40,180,0.5\n"), 0.5 * 0.8 / M_PI);
+    assert_near(value_of(COUNTS, NAMES "value\n30,0,40,180,5000\n"), 0.1 / cosine);
+    assert_near(value_of(COUNTS, NAMES "counts\n30,0,40,180,5000\n"), 0.1 / cosine);
+    assert_near(value_of("\"factor\"", NAMES "value\n30,0,40,180,0.5\n"), 0.5 / M_PI);
+    assert_near(value_of(COUNTS, NAMES "value_per_sr\n30,0,40,180,0.5\n"), 0.5);
+    assert_near(value_of(RELATIVE, "# values: cosine\n" NAMES "value\n30,0,40,180,0.5\n"),
+                0.5 / cosine);
+    assert_near(value_of(COUNTS, NAMES "value_per_sr,counts\n30,0,40,180,0.5,7\n"), 0.5);
+}
+
+static void test_counts_need_an_instrument(void **state)
+{
+    (void)state;
+    gonio_readings *r = NULL;
+    assert_int_equal(read_of("\"brdf\"", NAMES "counts\n30,0,40,180,5000\n", &r),
+                     GONIO_ERROR_ARGUMENT);
+    assert_non_null(strstr(support_message(), "counts_of_1_per_sr"));
+    assert_null(r);
+}
+
+/* Dark counts are the same at all directions, and drift is that of a reference of counts. */
+static void test_counts_and_blanks(void **state)
+{
+    (void)state;
+    gonio_readings *r = NULL;
+    gonio_readings *dark = NULL;
+    assert_int_equal(read_of(COUNTS, NAMES "value\n30,0,0,0,5100\n30,0,60,180,5100\n", &r),
+                     GONIO_OK);
+    assert_int_equal(read_of(COUNTS, NAMES "value\n0,0,20,0,100\n0,0,40,0,100\n", &dark), GONIO_OK);
+    assert_int_equal(gonio_readings_subtract_blank(NULL, r, dark, 0.01, 0.0), GONIO_OK);
+    const double *value = gonio_readings_describe(r)->value;
+    assert_near(value[0], 0.1);
+    assert_near(value[1], 0.2);
+    gonio_readings *copy = NULL;
+    assert_int_equal(gonio_readings_copy(NULL, r, &copy), GONIO_OK);
+    gonio_readings_free(&r);
+    assert_int_equal(gonio_readings_subtract_blank(NULL, copy, dark, 0.01, 0.0), GONIO_OK);
+    assert_near(gonio_readings_describe(copy)->value[0], 0.098);
+    gonio_readings_free(&copy);
+    gonio_readings_free(&dark);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_levels),
+        cmocka_unit_test(test_numbers_of_an_instrument),
+        cmocka_unit_test(test_counts_need_an_instrument),
+        cmocka_unit_test(test_counts_and_blanks),
         cmocka_unit_test(test_units),
         cmocka_unit_test(test_brighter_than_the_sample),
         cmocka_unit_test(test_other_channels),

@@ -48,8 +48,8 @@ void follow_check_values(follower *f, const gonio_readings *readings)
     }
     const gonio_value_kind stated = gonio_instrument_describe(f->inputs.instrument)->values;
     const gonio_value_kind taken =
-        readings->values != 0 ? (gonio_value_kind)readings->values : GONIO_VALUE_BRDF;
-    /* Relative values and counts are followed as what a program makes of them. */
+        readings->unit.kind != 0 ? (gonio_value_kind)readings->unit.kind : GONIO_VALUE_BRDF;
+    /* The program of an instrument may have converted relative values and counts already. */
     if (stated != taken && stated < GONIO_VALUE_RELATIVE) {
         follow_say(f, GONIO_MESSAGE_WARNING,
                    "%s: values were taken as '%s', but the instrument states '%s': if it is right, "

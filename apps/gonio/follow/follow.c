@@ -171,6 +171,7 @@ static gonio_status begin(follower *f, const char *path)
     }
     if (status == GONIO_OK) {
         status = begin_judge(f);
+        f->run.how.instrument = f->inputs.instrument;
     }
     if (status == GONIO_OK) {
         follow_note_instrument(f, plan);

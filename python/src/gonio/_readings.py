@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Optional, Union
+from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +13,9 @@ from ._directions import Array, from_pairs, numbers, pairs
 from ._exceptions import ArgumentError
 from ._materials import as_material, causes
 from ._plans import Plan
+
+if TYPE_CHECKING:
+    from ._goniometers import Goniometer
 
 Path = Union[str, "os.PathLike[str]"]
 
@@ -100,7 +103,7 @@ class Readings:
 
     @classmethod
     def load(cls, path: Path, *, convention: str = "", values_needed: bool = True, average_repeats: bool = False,
-             negative_to_zero: bool = False, usual_values: str = "") -> "Readings":
+             negative_to_zero: bool = False, instrument: Optional[Goniometer] = None) -> "Readings":
         """Reads a file: CSV, Zemax BSDF, FRED, ALTA, pab-opto, ASTM E1392, TracePro, BRDF JSON and others, told by its
         content. What it was taken for is in `notes`.
 
@@ -113,9 +116,9 @@ class Readings:
             False: a plan will do.
         average_repeats, negative_to_zero : bool
             As of `Readings`.
-        usual_values : str
-            What the numbers of a table stand for that does not say it, as the instrument gives them: ``"factor"``,
-            ``"percent"``, ``"cosine"`` and so on, as in `convention`. The BRDF by default.
+        instrument : Goniometer, optional
+            What made the readings. Numbers of a table that does not say what they stand for are its kind of values,
+            otherwise the BRDF. Relative values and counts are converted by its reference factors and counts.
 
         Raises
         ------
@@ -128,10 +131,8 @@ class Readings:
                              negative_to_zero=negative_to_zero)
         if convention:
             _calls.run(lib.gonio_convention_parse, convention.encode(), ffi.addressof(how, "as"))
-        if usual_values:
-            usual = ffi.new("gonio_convention *")
-            _calls.run(lib.gonio_convention_parse, f"values={usual_values}".encode(), usual)
-            how.usual_values = usual.values
+        if instrument is not None:
+            how.instrument = instrument._goniometer
         return cls._of(_calls.made("readings", lib.gonio_readings_read, _calls.encoded(path), how))
 
     @classmethod

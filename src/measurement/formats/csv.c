@@ -348,7 +348,7 @@ static size_t expected_rows(const gonio_i_csv_reader *reader)
 
 static void begin_import(csv_source *s, gonio_i_csv_kept *kept, const char *taken_as)
 {
-    const gonio_convention stated = convention_of(s->columns, s->readings->options.usual_values);
+    const gonio_convention stated = convention_of(s->columns, s->readings->usual_values);
     gonio_i_import_begin(&s->in, s->context, s->readings, taken_as, &stated);
     s->in.quiet = s->columns->own && !is_convention_given(&s->readings->options.as);
     s->in.keep_unmeasured = true;

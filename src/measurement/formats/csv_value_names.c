@@ -24,7 +24,7 @@ enum {
     FILL = 1 << 13
 };
 
-enum { NO_QUANTITY, BRDF, FACTORS, VALUE, RHO, REFLECTANCE, F };
+enum { NO_QUANTITY, BRDF, FACTORS, VALUE, RHO, REFLECTANCE, F, COUNTS };
 
 static const gonio_i_known_word value_words[] = {
     {"r", COLOUR, 0},
@@ -41,6 +41,7 @@ static const gonio_i_known_word value_words[] = {
     {"value", QUANTITY, VALUE},
     {"values", QUANTITY, VALUE},
     {"val", QUANTITY, VALUE},
+    {"counts", QUANTITY, COUNTS},
     {"rho", QUANTITY, RHO},
     {"f", QUANTITY, F},
     {"reflectance", QUANTITY, REFLECTANCE},
@@ -144,7 +145,8 @@ static int unit_of_value(const gonio_i_meaning *s)
            : factor                        ? GONIO_VALUE_FACTOR
            : (bits & STERADIAN) != 0       ? GONIO_VALUE_BRDF
            : value_of(s, QUANTITY) == BRDF ? GONIO_VALUE_BRDF
-                                           : 0;
+           : value_of(s, QUANTITY) == COUNTS ? GONIO_VALUE_COUNTS
+                                             : 0;
 }
 
 int gonio_i_value_kind_in(const char *text)
@@ -218,7 +220,8 @@ static bool take_channel(const gonio_i_meaning *s, double number, gonio_i_column
 
 static gonio_i_strength strength_of(const gonio_i_meaning *s, const gonio_i_column_name *name)
 {
-    const bool unit = name->unit != 0 || (s->bits & SURE) != 0;
+    const bool unit =
+        (name->unit != 0 && name->unit != GONIO_VALUE_COUNTS) || (s->bits & SURE) != 0;
     const bool likely = name->family == GONIO_I_WAVELENGTH
                             ? name->wavelength_unit != 0 || name->quantity != 0 || unit
                         : name->family == GONIO_I_COLOUR ? name->quantity != 0 || unit
