@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any, Optional, Union
+from typing import Any, Optional, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -13,9 +13,6 @@ from ._directions import Array, from_pairs, numbers, pairs
 from ._exceptions import ArgumentError
 from ._materials import as_material, causes
 from ._plans import Plan
-
-if TYPE_CHECKING:
-    from ._goniometers import Goniometer
 
 Path = Union[str, "os.PathLike[str]"]
 
@@ -103,7 +100,7 @@ class Readings:
 
     @classmethod
     def load(cls, path: Path, *, convention: str = "", values_needed: bool = True, average_repeats: bool = False,
-             negative_to_zero: bool = False, instrument: Optional[Goniometer] = None) -> "Readings":
+             negative_to_zero: bool = False, instrument: Any = None) -> "Readings":
         """Reads a file: CSV, Zemax BSDF, FRED, ALTA, pab-opto, ASTM E1392, TracePro, BRDF JSON and others, told by its
         content. What it was taken for is in `notes`.
 
