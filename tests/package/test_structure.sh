@@ -26,7 +26,8 @@ for stage in $stages; do
 done
 
 while IFS=: read -r file line; do
-    stage=$(echo "$file" | cut -d/ -f2)
+    stage=${file#src/}
+    stage=${stage%%/*}
     if [[ $line =~ \<gonio/([a-z_]+)\.h\> ]]; then
         used=${stage_of[${BASH_REMATCH[1]}]:-${BASH_REMATCH[1]}}
     elif [[ $line =~ \"(\.\./)+([a-z]+)/ ]]; then
@@ -45,7 +46,7 @@ done < <(grep -rn '#include' src --include='*.[ch]' | sed 's/:[0-9]*:/:/')
 ties() {
     awk '{
         file = $1
-        sub(/^.*gonio-objects\.dir\//, "", file)
+        sub(/^.*CMakeFiles\//, "", file)
         sub(/\.o:$/, "", file)
         if ($3 ~ /^[TDBRC]$/)
             owner[$2] = file

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "core/core.h"
+#include "logs.h"
 
 /* Distances are Euclidean in (sqrt theta_h, theta_d, s cos 2 phi_d, s sin 2 phi_d), thetas in units
  * of 90 degrees. s = AZIMUTH sqrt theta_h theta_d, so that phi_d counts for nothing where it means

@@ -14,6 +14,7 @@
 #include <stdlib.h>
 
 #include "core/core.h"
+#include "logs.h"
 
 enum { PARAMETERS = 3, DIFFUSE = 0, FRESNEL = 1, WIDTH = 2 };
 

@@ -56,8 +56,4 @@ int benchmark_method_find(const char *name);
 
 void benchmark_completion_free(benchmark_completion *completion);
 
-/* Values of readings in log space: logs[count][channels], NaN where nothing was read. Errors:
- * _MEMORY. */
-gonio_status benchmark_logs(gonio_context *context, const gonio_readings *readings, double **logs);
-
 #endif

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "measurement/readings.h"
-#include "progress.h"
+#include "say.h"
 #include "requests.h"
 
 /* A saturated value may be rounded in the file. */

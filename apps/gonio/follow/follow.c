@@ -13,21 +13,13 @@
 #include "follower.h"
 #include "outputs.h"
 #include "progress.h"
+#include "say.h"
 #include "records.h"
 #include "requests.h"
 #include "settings.h"
 #include "sources.h"
 
-/* Seconds that repeats are waited for, at least, and in times of a reading. */
-static const double LEAST_PATIENCE = 60.0;
-static const double PATIENCE = 10.0;
-
 /* ---- the run ---- */
-
-double follow_elapsed(const follower *f)
-{
-    return f->before + tool_seconds() - f->began;
-}
 
 /* Does what new readings ask for. They are on the disk before anything else. */
 static void act(follower *f)
@@ -62,15 +54,6 @@ static bool is_time_up(follower *f)
             ? 0.0
             : fmax(f->inputs.instrument != NULL ? follow_time_of_next(f) : usual, usual);
     return follow_elapsed(f) + (isnan(next) ? 0.0 : next) > f->budget;
-}
-
-double follow_patience(const follower *f)
-{
-    if (f->idle > 0.0) {
-        return f->idle;
-    }
-    return run_unread(&f->run) == 0 ? fmax(LEAST_PATIENCE, PATIENCE * run_reading_time(&f->run))
-                                    : (double)INFINITY;
 }
 
 static bool is_idle(const follower *f)

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 #include "flags.h"
-#include "progress.h"
+#include "say.h"
 #include "settings.h"
 
 /* Writes the readings that count. */

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "progress.h"
+#include "say.h"
 #include "records.h"
 #include "settings.h"
 

@@ -7,7 +7,7 @@
 
 #include "../nearest_setting.h"
 #include "measurement/readings.h"
-#include "progress.h"
+#include "say.h"
 
 static const double DEGREE = M_PI / 180.0;
 

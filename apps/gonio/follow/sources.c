@@ -10,7 +10,7 @@
 #include "../duration.h"
 #include "command_source.h"
 #include "flags.h"
-#include "progress.h"
+#include "say.h"
 #include "records.h"
 #include "settings.h"
 
