@@ -229,6 +229,35 @@ gonio_status gonio_i_inverse_diagonal(gonio_context *context, const double *l, s
     return GONIO_OK;
 }
 
+gonio_status gonio_i_inverse_of_factor(gonio_context *context, const double *l, size_t n,
+                                       double *inverse)
+{
+    const gonio_status status = check_size(context, n, n);
+    if (status != GONIO_OK) {
+        return status;
+    }
+    memcpy(inverse, l, n * n * sizeof *inverse);
+    return check_info(context, "dpotri",
+                      LAPACKE_dpotri(LAPACK_COL_MAJOR, 'U', (int)n, inverse, (int)n));
+}
+
+gonio_status gonio_i_subtract_gram(gonio_context *context, const double *a, size_t n, size_t k,
+                                   double *c)
+{
+    const gonio_status status = check_size(context, n, k);
+    if (status == GONIO_OK) {
+        cblas_dsyrk(CblasRowMajor, CblasLower, CblasNoTrans, (int)n, (int)k, -1.0, a, (int)k, 1.0,
+                    c, (int)n);
+    }
+    return status;
+}
+
+void gonio_i_multiply_symmetric(const double *c, size_t n, const double *x, double *y)
+{
+    gonio_i_keep_blas_on_one_thread();
+    cblas_dsymv(CblasRowMajor, CblasLower, (int)n, 1.0, c, (int)n, x, 1, 0.0, y, 1);
+}
+
 void gonio_i_multiply_lower(double *a, size_t rows, size_t n, const double *l)
 {
     gonio_i_keep_blas_on_one_thread();

@@ -72,6 +72,17 @@ void gonio_i_divide_triangle(double *a, size_t rows, size_t n, const double *l);
 gonio_status gonio_i_inverse_diagonal(gonio_context *context, const double *l, size_t n,
                                       double *diagonal);
 
+/* The lower triangle of (L L')^-1, inverse[n][n]. */
+gonio_status gonio_i_inverse_of_factor(gonio_context *context, const double *l, size_t n,
+                                       double *inverse);
+
+/* A A' for A (n x k, row-major) subtracted from the lower triangle of C (n x n). */
+gonio_status gonio_i_subtract_gram(gonio_context *context, const double *a, size_t n, size_t k,
+                                   double *c);
+
+/* y = C x for a symmetric C (n x n, what is above its diagonal is not read). */
+void gonio_i_multiply_symmetric(const double *c, size_t n, const double *x, double *y);
+
 /* A (rows x n, row-major) becomes A L for a lower triangular L (n x n, what is above its diagonal
  * is not read), of a matrix that fits BLAS' integers. Half the work of a product. */
 void gonio_i_multiply_lower(double *a, size_t rows, size_t n, const double *l);

@@ -6,24 +6,7 @@
 #include <string.h>
 
 #include "../linalg/linalg.h"
-
-/* A reading is an outlier if its prediction error exceeds this number of standard deviations. The
- * unit is the median error of the readings, or the model's standard deviation if that is larger.
- * One in 16,000 of a Gaussian exceeds it. With many readings, more right ones have large errors,
- * and wrong ones stand out more. So the threshold grows with the sixth root of their number. */
-static const double OUTLYING = 4.0;
-static const double MOST_OUTLYING = 6.0;
-static const double FEW = 40.0;
-
-static double outlying_from(size_t n)
-{
-    return fmin(OUTLYING * pow(fmax((double)n / FEW, 1.0), 1.0 / 6.0), MOST_OUTLYING);
-}
-
-/* The variance of an outlier, in squares of its difference: it has hardly any weight. */
-static const double WIDENING = 100.0;
-
-enum { MOST_ROUNDS = 20 };
+#include "fit_inverse.h"
 
 /* Weights below this do not count among the samples. */
 static const double NEGLIGIBLE = 1e-7;
@@ -73,6 +56,9 @@ void gonio_i_fit_end(gonio_i_fit *e)
     free(e->bound);
     free(e->left_out);
     free(e->lower);
+    free(e->inverse);
+    free(e->inverted);
+    free(e->diagonal);
     free(e->white);
     free(e->weight);
     free(e->centre);
@@ -91,6 +77,7 @@ void gonio_i_fit_read(gonio_i_fit *e, const gonio_i_column *column)
         e->left_out[i] = false;
     }
     e->misfit = 1.0;
+    e->is_inverted = false;
 }
 
 gonio_status gonio_i_fit_begin(gonio_context *context, const gonio_i_sites *sites, bool plain,
@@ -109,17 +96,23 @@ gonio_status gonio_i_fit_begin(gonio_context *context, const gonio_i_sites *site
     return status;
 }
 
+/* S between two readings, without noise; at: where they are in the matrices of the sites. */
+static inline double covariance(const gonio_i_sites *s, const gonio_i_model *m, size_t at)
+{
+    double k = s->smooth[at] + m->peak * m->peak * s->peaked[at];
+    k += m->retro > 0.0 && s->back != NULL ? m->retro * m->retro * s->back[at] : 0.0;
+    return m->h * m->h * s->gram[at] + m->alpha * m->alpha * k;
+}
+
 /* L of S; the sum of the logarithms of its diagonal goes to `logarithm`. */
 static gonio_status factorise(gonio_i_fit *e, double *logarithm)
 {
     const size_t n = e->n;
-    const gonio_i_model m = e->model;
-    for (size_t i = 0; i < n * n; i++) {
-        double k = e->sites->smooth[i] + m.peak * m.peak * e->sites->peaked[i];
-        k += m.retro > 0.0 && e->sites->back != NULL ? m.retro * m.retro * e->sites->back[i] : 0.0;
-        e->lower[i] = m.h * m.h * e->sites->gram[i] + m.alpha * m.alpha * k;
-    }
+    e->is_inverted = false;
     for (size_t i = 0; i < n; i++) {
+        for (size_t at = i * n; at <= i * n + i; at++) {
+            e->lower[at] = covariance(e->sites, &e->model, at);
+        }
         e->lower[i * n + i] += gonio_i_fit_noise(e, i);
     }
     const gonio_status status = gonio_i_cholesky(e->context, e->lower, n);
@@ -226,6 +219,55 @@ gonio_status gonio_i_fit_solve(gonio_i_fit *e, const gonio_i_model *model)
     return GONIO_OK;
 }
 
+/* The readings that are not left out: kept[n]. Returns how many. */
+static size_t list_kept(const gonio_i_fit *e, size_t *kept)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < e->n; i++) {
+        kept[count] = i;
+        count += !e->left_out[i];
+    }
+    return count;
+}
+
+/* S of the readings that are kept in place of L, and what they solve. value: [count]. */
+static gonio_status solve_kept(gonio_i_fit *e, const size_t *kept, size_t count, double *value)
+{
+    for (size_t i = 0; i < count; i++) {
+        for (size_t j = 0; j <= i; j++) {
+            e->lower[i * count + j] = covariance(e->sites, &e->model, kept[i] * e->n + kept[j]);
+        }
+        e->lower[i * count + i] += e->variance[kept[i]];
+        value[i] = e->y[kept[i]];
+    }
+    const gonio_status status = gonio_i_cholesky(e->context, e->lower, count);
+    if (status == GONIO_OK) {
+        gonio_i_divide_triangle(value, 1, count, e->lower);
+        gonio_i_divide_lower(value, 1, count, e->lower);
+    }
+    return status;
+}
+
+gonio_status gonio_i_fit_solve_kept(gonio_i_fit *e, const gonio_i_model *model)
+{
+    size_t *kept = gonio_i_allocate(e->context, e->n, sizeof *kept);
+    double *value = gonio_i_allocate(e->context, e->n, sizeof *value);
+    gonio_status status = kept == NULL || value == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    e->model = *model;
+    e->is_inverted = false;
+    if (status == GONIO_OK) {
+        const size_t count = list_kept(e, kept);
+        status = solve_kept(e, kept, count, value);
+        memset(e->solved, 0, e->n * sizeof *e->solved);
+        for (size_t i = 0; i < count; i++) {
+            e->solved[kept[i]] = value[i];
+        }
+    }
+    free(kept);
+    free(value);
+    return status;
+}
+
 size_t gonio_i_fit_samples(const gonio_i_fit *e, size_t *listed)
 {
     size_t count = 0;
@@ -288,112 +330,17 @@ static gonio_status mix_differences(const gonio_i_fit *e, double *difference, do
 
 /* Of a Gaussian without one of its values: the difference (S^-1 r)_i / (S^-1)_ii of variance
  * 1/(S^-1)_ii (Sundararajan and Keerthi 2001). */
-gonio_status gonio_i_fit_leave_one_out(const gonio_i_fit *e, double *difference, double *variance)
+gonio_status gonio_i_fit_leave_one_out(gonio_i_fit *e, double *difference, double *variance)
 {
-    const gonio_status status = gonio_i_inverse_diagonal(e->context, e->lower, e->n, variance);
+    const gonio_status status =
+        e->inverse != NULL ? gonio_i_fit_inverse_diagonal(e, variance)
+                           : gonio_i_inverse_diagonal(e->context, e->lower, e->n, variance);
     for (size_t i = 0; i < e->n && status == GONIO_OK; i++) {
         variance[i] = 1.0 / variance[i];
         difference[i] = e->solved[i] * variance[i];
     }
     return status == GONIO_OK && e->model.h < 1.0 ? mix_differences(e, difference, variance)
                                                   : status;
-}
-
-/* Prediction errors of the readings, for gonio_i_fit_settle. */
-typedef struct judgement {
-    double *difference; /* [n] */
-    double *variance;   /* [n] */
-    double *deviations; /* [n]: scratch */
-    bool *outlying;     /* [n] */
-} judgement;
-
-static int compare_numbers(const void *a, const void *b)
-{
-    const double x = *(const double *)a;
-    const double y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-/* The standard deviation of a Gaussian with the median of the prediction errors, at least 1. A
- * material that the prior describes badly is predicted badly everywhere. That is no reason to set
- * all its readings aside. */
-static double usual_deviation(const gonio_i_fit *e, const judgement *j)
-{
-    for (size_t i = 0; i < e->n; i++) {
-        j->deviations[i] = fabs(j->difference[i]) / sqrt(j->variance[i]);
-    }
-    qsort(j->deviations, e->n, sizeof *j->deviations, compare_numbers);
-    return fmax(1.0, j->deviations[e->n / 2] / 0.6745);
-}
-
-/* A bound that the prediction from the other readings satisfies has no information. */
-static bool judge_bounds(gonio_i_fit *e, const judgement *j)
-{
-    bool changed = false;
-    for (size_t i = 0; i < e->n; i++) {
-        /* difference: reading less its leave-one-out prediction; for one left out, less the
-         * prediction of the model. */
-        const bool kept = e->bound[i] != 0 && e->bound[i] * j->difference[i] < 0.0;
-        changed = changed || kept != e->left_out[i];
-        e->left_out[i] = kept;
-    }
-    return changed;
-}
-
-/* The worst outliers get a variance to match. Only a few are changed at a time, because a wrong
- * reading makes its neighbours look wrong. */
-static bool judge_readings(gonio_i_fit *e, const judgement *j)
-{
-    const size_t most = 1 + e->n / 40;
-    const double usual = usual_deviation(e, j);
-    size_t found = 0;
-    for (; found < most; found++) {
-        size_t worst = e->n;
-        double largest = outlying_from(e->n) * usual;
-        for (size_t i = 0; i < e->n; i++) {
-            const double deviations = fabs(j->difference[i]) / sqrt(j->variance[i]);
-            if (!j->outlying[i] && !e->left_out[i] && deviations > largest) {
-                largest = deviations;
-                worst = i;
-            }
-        }
-        if (worst == e->n) {
-            break;
-        }
-        j->outlying[worst] = true;
-        e->variance[worst] = WIDENING * j->difference[worst] * j->difference[worst];
-    }
-    return found > 0;
-}
-
-gonio_status gonio_i_fit_settle(gonio_i_fit *e, bool judge_outliers, size_t *outlying)
-{
-    judgement j = {gonio_i_allocate(e->context, e->n, sizeof *j.difference),
-                   gonio_i_allocate(e->context, e->n, sizeof *j.variance),
-                   gonio_i_allocate(e->context, e->n, sizeof *j.deviations),
-                   gonio_i_allocate(e->context, e->n, sizeof *j.outlying)};
-    gonio_status status =
-        j.difference == NULL || j.variance == NULL || j.deviations == NULL || j.outlying == NULL
-            ? GONIO_ERROR_MEMORY
-            : GONIO_OK;
-    bool changed = true;
-    for (int round = 0; round < MOST_ROUNDS && changed && status == GONIO_OK; round++) {
-        status = gonio_i_fit_leave_one_out(e, j.difference, j.variance);
-        if (status == GONIO_OK) {
-            const bool bounds = judge_bounds(e, &j);
-            changed = (judge_outliers && judge_readings(e, &j)) || bounds;
-            status = changed ? gonio_i_fit_solve(e, &e->model) : GONIO_OK;
-        }
-    }
-    *outlying = 0;
-    for (size_t i = 0; i < e->n && status == GONIO_OK; i++) {
-        *outlying += j.outlying[i];
-    }
-    free(j.difference);
-    free(j.variance);
-    free(j.deviations);
-    free(j.outlying);
-    return status;
 }
 
 gonio_status gonio_i_fit_surprise(gonio_i_fit *e, double *sum)

@@ -13,6 +13,11 @@ typedef struct gonio_i_model {
     double retro; /* the same, towards the light */
 } gonio_i_model;
 
+static inline bool gonio_i_model_is_same(const gonio_i_model *a, const gonio_i_model *b)
+{
+    return a->h == b->h && a->alpha == b->alpha && a->peak == b->peak && a->retro == b->retro;
+}
+
 /* Whether readings at the sites can tell of a model: of peaks towards the light only those near it
  * can. */
 static inline bool gonio_i_sites_tell_of(const gonio_i_sites *sites, const gonio_i_model *model)
@@ -35,14 +40,19 @@ typedef struct gonio_i_fit {
     int *bound;       /* [n] */
     bool *left_out;   /* [n]: a bound that the prediction satisfies anyway: without information */
     gonio_i_model model;
-    double *lower;   /* [n][n]: L of S */
-    double *white;   /* [samples][n]: L^-1 (y - a F z_j); not made where h is 1 */
-    double *weight;  /* [samples]: q; the same */
-    double *centre;  /* [K]: z */
-    double *rest;    /* [n]: y - F z */
-    double *solved;  /* [n]: S^-1 rest */
-    double evidence; /* ln p(y) */
-    double misfit;   /* what the variances are multiplied by, see below */
+    double *lower; /* [n][n]: L of S */
+    /* Where it is kept (fit_inverse.h), otherwise NULL: */
+    double *inverse;  /* [n][n]: of S when its variances were those of `inverted`, lower triangle */
+    double *inverted; /* [n] */
+    double *diagonal; /* [n]: of S^-1 as it is now */
+    bool is_inverted; /* it is there, of this model */
+    double *white;    /* [samples][n]: L^-1 (y - a F z_j); not made where h is 1 */
+    double *weight;   /* [samples]: q; the same */
+    double *centre;   /* [K]: z */
+    double *rest;     /* [n]: y - F z */
+    double *solved;   /* [n]: S^-1 rest */
+    double evidence;  /* ln p(y) */
+    double misfit;    /* what the variances are multiplied by, see below */
 } gonio_i_fit;
 
 /* h of a mixture for a column of n readings: (n/(n + 5))^(1/2). Narrow kernels help less with more
@@ -62,6 +72,11 @@ void gonio_i_fit_end(gonio_i_fit *fit);
 /* Solves the fit for a model. Errors: _NUMERICAL, _MEMORY. */
 gonio_status gonio_i_fit_solve(gonio_i_fit *fit, const gonio_i_model *model);
 
+/* Solves for a model without samples (h is 1) over the readings that are not left out, which have
+ * next to no say: less work where they are many. Only the mean is found: `solved`, 0 for those left
+ * out. L, the evidence and the inverse are those of no model then. Errors: _NUMERICAL, _MEMORY. */
+gonio_status gonio_i_fit_solve_kept(gonio_i_fit *fit, const gonio_i_model *model);
+
 /* The mean of the coefficients of a solved fit, in units of the prior: c[K] = z + h^2 F' S^-1 (y -
  * F z).
  */
@@ -77,11 +92,11 @@ double gonio_i_fit_noise(const gonio_i_fit *fit, size_t reading);
 /* Leave-one-out prediction: the difference of each reading to its prediction from the others,
  * difference[n], and the variance of that, noise included, variance[n]. Exact: samples are weighted
  * by the other readings only. */
-gonio_status gonio_i_fit_leave_one_out(const gonio_i_fit *fit, double *difference,
-                                       double *variance);
+gonio_status gonio_i_fit_leave_one_out(gonio_i_fit *fit, double *difference, double *variance);
 
 /* Leaves out bounds that the prediction satisfies. If judge_outliers is set, gives outliers a
- * variance to match, until nothing changes. outlying: the number of outliers. */
+ * variance to match, until nothing changes. outlying: the number of outliers. Where the inverse is
+ * kept, L and the evidence are then those from before; gonio_i_fit_solve makes them. */
 gonio_status gonio_i_fit_settle(gonio_i_fit *fit, bool judge_outliers, size_t *outlying);
 
 /* Sum over the readings of the squared leave-one-out error over its variance. Sets misfit to its

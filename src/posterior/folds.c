@@ -76,6 +76,8 @@ void gonio_i_learned_error_free(gonio_i_learned_error **learned)
         return;
     }
     free((*learned)->metric);
+    free((*learned)->means);
+    free((*learned)->covariances);
     free(*learned);
     *learned = NULL;
 }
@@ -130,6 +132,46 @@ static void centre(const double *from, const double *share, size_t samples, size
     }
 }
 
+gonio_status gonio_i_learned_error_prepare(gonio_context *context, gonio_i_learned_error *x)
+{
+    const size_t k = x->components;
+    const size_t samples = x->prior->samples;
+    const size_t folds = GONIO_I_FOLDS + 1;
+    double *share = gonio_i_allocate(context, samples, sizeof *share);
+    double *z = gonio_i_allocate(context, samples * k, sizeof *z);
+    x->means = gonio_i_allocate(context, folds * k, sizeof *x->means);
+    x->covariances = gonio_i_allocate(context, folds * k * k, sizeof *x->covariances);
+    const bool done = share != NULL && z != NULL && x->means != NULL && x->covariances != NULL;
+    gonio_status status = done ? GONIO_OK : GONIO_ERROR_MEMORY;
+    for (size_t f = 0; f < folds && status == GONIO_OK; f++) {
+        share_out(x, f, share);
+        centre(x->prior->sample, share, samples, k, x->means + f * k, z);
+        status = gonio_i_gram_rows(context, z, samples, k, k, x->covariances + f * k * k);
+    }
+    free(share);
+    free(z);
+    return status;
+}
+
+/* A fold from the mean and covariance of z: what is seen of z is F z. */
+static gonio_status see_fold(gonio_context *context, const gonio_i_folds *folds, size_t number,
+                             gonio_i_fold *f)
+{
+    const gonio_i_learned_error *x = folds->of;
+    const gonio_i_sites *sites = folds->sites;
+    const size_t k = x->components;
+    const size_t n = sites->n;
+    memcpy(f->mean, x->means + number * k, k * sizeof *f->mean);
+    for (size_t i = 0; i < n; i++) {
+        f->mean_seen[i] = gonio_i_dot(sites->f + i * k, f->mean, k);
+    }
+    const gonio_status status =
+        gonio_i_product(context, sites->f, n, k, x->covariances + number * k * k, k, f->cross);
+    return status == GONIO_OK
+               ? gonio_i_product_transposed(context, f->cross, n, k, sites->f, n, f->covariance, n)
+               : status;
+}
+
 /* What folds are made with: every column, centred. */
 typedef struct fold_scratch {
     double *share; /* [samples] */
@@ -151,6 +193,9 @@ static gonio_status fill_fold(gonio_context *context, gonio_i_folds *folds, size
     f->cross = gonio_i_allocate(context, n * x->components, sizeof *f->cross);
     if (f->mean_seen == NULL || f->mean == NULL || f->covariance == NULL || f->cross == NULL) {
         return GONIO_ERROR_MEMORY;
+    }
+    if (x->means != NULL) {
+        return see_fold(context, folds, k, f);
     }
     share_out(x, k, s->share);
     centre(sites->seen, s->share, samples, n, f->mean_seen, s->seen);

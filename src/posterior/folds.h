@@ -24,9 +24,11 @@ typedef struct gonio_i_fold {
 struct gonio_i_learned_error {
     const gonio_i_prior *prior;
     size_t components;
-    size_t measured; /* columns of materials */
-    size_t each;     /* columns of a material */
-    double *metric;  /* [K][K]: mean over the targets of f' f */
+    size_t measured;     /* columns of materials */
+    size_t each;         /* columns of a material */
+    double *means;       /* [GONIO_I_FOLDS + 1][K]: of z in each fold; or NULL, if not prepared */
+    double *covariances; /* [GONIO_I_FOLDS + 1][K][K]: the same */
+    double *metric;      /* [K][K]: mean over the targets of f' f */
 };
 
 struct gonio_i_folds {

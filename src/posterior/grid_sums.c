@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "../linalg/linalg.h"
+#include "fit_inverse.h"
 
 struct gonio_i_grid_sums {
     size_t n;
@@ -147,6 +148,10 @@ gonio_status gonio_i_grid_sums_create(gonio_context *context, const gonio_i_site
 static gonio_status taken_out(const gonio_i_grid_sums *s, const gonio_i_fit *e, double *sum)
 {
     const size_t n = s->n;
+    if (e->is_inverted) {
+        *sum = gonio_i_fit_inverse_trace(e, s->seen);
+        return GONIO_OK;
+    }
     double *m = gonio_i_allocate(e->context, n * n, sizeof *m);
     if (m == NULL) {
         return GONIO_ERROR_MEMORY;

@@ -24,6 +24,10 @@ gonio_status gonio_i_learned_error_create(gonio_context *context, const gonio_i_
                                           gonio_i_learned_error **learned);
 void gonio_i_learned_error_free(gonio_i_learned_error **learned);
 
+/* Prepares for many folds at many sites: their covariances are then made of those of z, in place of
+ * every column of the database. Errors: _MEMORY. */
+gonio_status gonio_i_learned_error_prepare(gonio_context *context, gonio_i_learned_error *learned);
+
 /* Readings of a column from which on _find takes long; fewer can be had by merging (merge.h). */
 enum { GONIO_I_LEARNED_ERROR_MOST = 400 };
 

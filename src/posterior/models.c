@@ -150,6 +150,24 @@ gonio_i_models gonio_i_models_of(gonio_i_model model)
         .count = 1, .model = {model}, .weight = {1.0}, .best = model, .judge_outliers = true};
 }
 
+void gonio_i_models_make_plain(gonio_i_models *models)
+{
+    const gonio_i_models given = *models;
+    models->count = 0;
+    models->best.h = 1.0;
+    for (size_t k = 0; k < given.count; k++) {
+        gonio_i_model plain = given.model[k];
+        plain.h = 1.0;
+        size_t j = 0;
+        while (j < models->count && !gonio_i_model_is_same(&models->model[j], &plain)) {
+            j++;
+        }
+        models->model[j] = plain;
+        models->weight[j] = given.weight[k] + (j < models->count ? models->weight[j] : 0.0);
+        models->count += j == models->count;
+    }
+}
+
 /* log_weight[CHOICES], but for a constant, as shares of those that are not negligible. */
 static gonio_i_models normalise(const double log_weight[CHOICES], size_t readings)
 {

@@ -26,6 +26,10 @@ typedef struct gonio_i_models {
 /* One model alone. */
 gonio_i_models gonio_i_models_of(gonio_i_model model);
 
+/* The same models without the columns of the database as centres: h is 1. The weights of models
+ * that are then the same are added. */
+void gonio_i_models_make_plain(gonio_i_models *models);
+
 /* Weighs the models by leave-one-out prediction, all columns together.
  * Errors: _MEMORY, _NUMERICAL. */
 gonio_status gonio_i_models_weigh(gonio_context *context, const gonio_i_prior *prior,

@@ -6,12 +6,16 @@
 #include <string.h>
 
 #include "../linalg/linalg.h"
+#include "expected_of_fewer.h"
 #include "merge.h"
 #include "solve_columns.h"
 #include "wrong_directions.h"
 
 /* Readings of a column that are not merged. */
 enum { MOST_READINGS = 3000 };
+
+/* From so many of every column on, fits are plain. */
+enum { MANY_READINGS = 1000 };
 
 /* ---- all columns ---- */
 
@@ -145,6 +149,18 @@ static gonio_status copy_columns(gonio_context *context, const gonio_i_column *c
     return status;
 }
 
+/* Whether the readings are so many that the columns of the database need not be centres: of a
+ * thousand, h^2 is 0.995, and what the centres add to a Gaussian is below the noise
+ * (docs/performance.md). */
+static bool are_many(const gonio_i_finding *all, const gonio_i_column *columns)
+{
+    bool many = true;
+    for (size_t k = 0; k < all->count && many; k++) {
+        many = columns[k].count >= MANY_READINGS;
+    }
+    return many;
+}
+
 /* Sets wrong directions aside in the columns and weighs models without them, over the same sites.
  */
 static gonio_status weigh_models(gonio_i_finding *all, gonio_i_column *columns, size_t *wrong)
@@ -158,6 +174,10 @@ static gonio_status weigh_models(gonio_i_finding *all, gonio_i_column *columns, 
     if (status == GONIO_OK) {
         gonio_i_subset_read(&subset, columns);
         status = gonio_i_models_weigh(all->context, all->prior, &subset, &all->models);
+    }
+    if (status == GONIO_OK && are_many(all, columns)) {
+        all->plain = true;
+        gonio_i_models_make_plain(&all->models);
     }
     gonio_i_subset_end(&subset);
     return status;

@@ -17,7 +17,7 @@
  * (models.h). Standard deviations are those of the most likely model. The expected error is the
  * geometric mean of that of its variance and that learned from the database (learned_error.h). A
  * reading that the others contradict by more than `OUTLYING` standard deviations gets a variance to
- * match. */
+ * match. From a thousand readings on, h is 1. */
 #ifndef GONIO_POSTERIOR_H
 #define GONIO_POSTERIOR_H
 

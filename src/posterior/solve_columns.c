@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "merge.h"
+#include "fit_inverse.h"
 
 /* Columns whose covariances are held at the same time. */
 enum { MOST_COVARIANCES = 64 };
@@ -22,6 +22,25 @@ typedef struct group {
 } group;
 
 /* ---- one column ---- */
+
+gonio_status gonio_i_column_begin(const gonio_i_finding *all, gonio_context *context,
+                                  const gonio_i_sites *sites, size_t column, gonio_i_fit *e)
+{
+    const gonio_status status =
+        gonio_i_fit_begin(context, sites, all->plain, &all->column[column], e);
+    return status == GONIO_OK && all->plain ? gonio_i_fit_inverse_keep(e) : status;
+}
+
+gonio_status gonio_i_column_settle(const gonio_i_finding *all, gonio_i_fit *e, double *outlying)
+{
+    size_t count = 0;
+    gonio_status status = gonio_i_fit_solve(e, &all->models.best);
+    if (status == GONIO_OK) {
+        status = gonio_i_fit_settle(e, all->models.judge_outliers, &count);
+    }
+    *outlying = (double)count;
+    return status;
+}
 
 /* The sum of squared residuals of the field at the readings: D S^-1 (y - F z). */
 static double square_left(const gonio_i_fit *e)
@@ -104,6 +123,17 @@ static gonio_status add_followers(const group *g, const gonio_i_fit *e, size_t f
     return status;
 }
 
+/* Solves a settled fit for what its mean needs; of many readings, less work where no followers need
+ * the factor of S. */
+static gonio_status solve_for_mean(gonio_i_fit *e, const gonio_i_model *model, bool followed)
+{
+    if (e->inverse == NULL || followed) {
+        return gonio_i_fit_solve(e, model);
+    }
+    const bool solved = e->is_inverted && gonio_i_model_is_same(&e->model, model);
+    return solved ? GONIO_OK : gonio_i_fit_solve_kept(e, model);
+}
+
 /* The mean over the models, with the readings judged as they are. */
 static gonio_status mix_models(const group *g, gonio_i_fit *e, size_t fit)
 {
@@ -112,7 +142,7 @@ static gonio_status mix_models(const group *g, gonio_i_fit *e, size_t fit)
     double *c = gonio_i_allocate(e->context, e->components, sizeof *c);
     gonio_status status = c == NULL ? GONIO_ERROR_MEMORY : list_followers(g, e, fit, &others);
     for (size_t k = 0; k < models->count && status == GONIO_OK; k++) {
-        status = gonio_i_fit_solve(e, &models->model[k]);
+        status = solve_for_mean(e, &models->model[k], others.count > 0);
         if (status == GONIO_OK) {
             gonio_i_fit_coefficients(e, c);
             add_terms(e, models->weight[k], c, e->solved, g->all->found[fit].terms);
@@ -124,16 +154,10 @@ static gonio_status mix_models(const group *g, gonio_i_fit *e, size_t fit)
     return status;
 }
 
-/* The best model, with outliers set aside if the models were weighed without them. */
-static gonio_status settle(const gonio_i_finding *all, gonio_i_fit *e, double *outlying)
+/* Whether Q is wanted (variance.h). */
+static bool needs_factor(const gonio_i_finding *all)
 {
-    size_t count = 0;
-    gonio_status status = gonio_i_fit_solve(e, &all->models.best);
-    if (status == GONIO_OK) {
-        status = gonio_i_fit_settle(e, all->models.judge_outliers, &count);
-    }
-    *outlying = (double)count;
-    return status;
+    return all->p->deviation != NULL || all->p->covariance != NULL;
 }
 
 /* The variance, of the best model, which e is solved for. c: scratch of K. */
@@ -168,10 +192,14 @@ static gonio_status solve_fit(const group *g, gonio_i_fit *e, size_t k)
     const size_t number = g->member[k];
     gonio_i_found_column *found = &all->found[number];
     double *c = all->p->coefficients + number * e->components;
-    gonio_status status = settle(all, e, &found->outlying);
+    gonio_status status = gonio_i_column_settle(all, e, &found->outlying);
     if (status == GONIO_OK) {
         mark_contradicted(all, e, &all->column[number]);
         status = gonio_i_fit_surprise(e, &found->surprise);
+    }
+    if (status == GONIO_OK && e->inverse != NULL) {
+        status = needs_factor(all) ? gonio_i_fit_solve(e, &all->models.best)
+                                   : gonio_i_fit_inverse_complete(e);
     }
     if (status == GONIO_OK) {
         found->residual = square_left(e);
@@ -191,8 +219,7 @@ static gonio_status solve_column(void *data, gonio_context *context, size_t k)
         return GONIO_OK;
     }
     gonio_i_fit e = {0};
-    gonio_status status =
-        gonio_i_fit_begin(context, g->sites, false, &g->all->column[g->member[member]], &e);
+    gonio_status status = gonio_i_column_begin(g->all, context, g->sites, g->member[member], &e);
     if (status == GONIO_OK) {
         status = solve_fit(g, &e, member);
     }
@@ -395,8 +422,7 @@ static gonio_status solve_group(group *g)
     return status;
 }
 
-/* Calls solve for the columns of each group in turn. */
-static gonio_status solve_groups(gonio_i_finding *all, gonio_status (*solve)(group *g))
+gonio_status gonio_i_solve_columns(gonio_i_finding *all)
 {
     size_t *number = gonio_i_allocate(all->context, all->count, sizeof *number);
     size_t *member = gonio_i_allocate(all->context, all->count, sizeof *member);
@@ -410,88 +436,9 @@ static gonio_status solve_groups(gonio_i_finding *all, gonio_status (*solve)(gro
                 member[g.count++] = c;
             }
         }
-        status = solve(&g);
+        status = solve_group(&g);
     }
     free(number);
     free(member);
     return status;
-}
-
-/* ---- the error to expect of many readings ---- */
-
-static gonio_status expect_column(void *data, gonio_context *context, size_t k)
-{
-    const group *g = data;
-    const size_t number = g->member[k];
-    double outlying = 0.0;
-    gonio_i_fit e = {0};
-    if (!gonio_i_is_fitted(g->all->neighbours, number)) {
-        return GONIO_OK;
-    }
-    gonio_status status = gonio_i_fit_begin(context, g->sites, false, &g->all->column[number], &e);
-    if (status == GONIO_OK) {
-        status = settle(g->all, &e, &outlying);
-    }
-    if (status == GONIO_OK) {
-        status = gonio_i_learned_error_find(g->folds, &e, &g->all->found[number].expected);
-    }
-    gonio_i_fit_end(&e);
-    return status;
-}
-
-static gonio_status expect_group(group *g)
-{
-    gonio_i_finding *all = g->all;
-    gonio_i_steps steps = {.task = NULL};
-    const gonio_i_column *column = &all->column[g->member[0]];
-    if (column->count == 0) {
-        return GONIO_OK; /* not one of many readings */
-    }
-    gonio_status status = gonio_i_sites_create(all->context, all->prior, column, &g->sites);
-    if (status == GONIO_OK) {
-        status = gonio_i_folds_create(all->context, all->learned, g->sites, &g->folds);
-    }
-    if (status == GONIO_OK) {
-        status = gonio_i_parallel_for(all->context, &steps, g->count, expect_column, g);
-    }
-    end_group(g);
-    return status;
-}
-
-static void follow_expected(const gonio_i_finding *all)
-{
-    for (size_t k = 0; k < all->count; k++) {
-        const gonio_i_neighbours *n = &all->neighbours[k];
-        all->found[k].expected = n->weight[0] * all->found[n->fit[0]].expected +
-                                 n->weight[1] * all->found[n->fit[1]].expected;
-    }
-}
-
-gonio_status gonio_i_expect_of_fewer(gonio_i_finding *all, const gonio_i_column *columns)
-{
-    gonio_i_finding fewer = *all;
-    bool any = false;
-    fewer.column = gonio_i_allocate(all->context, all->count, sizeof *fewer.column);
-    gonio_status status = fewer.column == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
-    for (size_t k = 0; k < all->count && status == GONIO_OK; k++) {
-        if (all->column[k].count > GONIO_I_LEARNED_ERROR_MOST) {
-            any = true;
-            status = gonio_i_merge(all->context, &columns[k], GONIO_I_LEARNED_ERROR_MOST,
-                                   &fewer.column[k]);
-        }
-    }
-    if (status == GONIO_OK && any) {
-        status = solve_groups(&fewer, expect_group);
-        follow_expected(&fewer);
-    }
-    for (size_t k = 0; fewer.column != NULL && k < all->count; k++) {
-        free(fewer.column[k].observation);
-    }
-    free(fewer.column);
-    return status;
-}
-
-gonio_status gonio_i_solve_columns(gonio_i_finding *all)
-{
-    return solve_groups(all, solve_group);
 }

@@ -26,6 +26,7 @@ typedef struct gonio_i_finding {
     const gonio_i_prior *prior;
     const gonio_i_posterior_options *options;
     gonio_i_models models;
+    bool plain; /* of many readings: all of them are without samples */
     gonio_i_targets targets;
     gonio_i_learned_error *learned; /* NULL: the Gaussian's own */
     gonio_i_posterior *p;
@@ -40,8 +41,13 @@ typedef struct gonio_i_finding {
  * does the sum of the covariances. Errors: _MEMORY, _NUMERICAL, _CANCELLED. */
 gonio_status gonio_i_solve_columns(gonio_i_finding *all);
 
-/* The error to expect of columns of so many readings that learning takes long: from fewer, which
- * neighbours are merged to. columns: as they were given, before merging. The same errors. */
-gonio_status gonio_i_expect_of_fewer(gonio_i_finding *all, const gonio_i_column *columns);
+/* Begins a fit of a column over its sites, without samples if the finding is plain; then the
+ * inverse is kept (fit_inverse.h). To be ended in any case. Errors: _MEMORY. */
+gonio_status gonio_i_column_begin(const gonio_i_finding *all, gonio_context *context,
+                                  const gonio_i_sites *sites, size_t column, gonio_i_fit *fit);
+
+/* Solves for the best model, with outliers set aside if the models were weighed without them.
+ * Errors: _MEMORY, _NUMERICAL. */
+gonio_status gonio_i_column_settle(const gonio_i_finding *all, gonio_i_fit *fit, double *outlying);
 
 #endif

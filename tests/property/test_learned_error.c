@@ -107,6 +107,19 @@ static void read_values(const double *g, gonio_i_observation *o)
     }
 }
 
+/* From covariances of z, which are made once for many sites, the same is found. */
+static void assert_prepared_is_same(gonio_i_learned_error *learned, const gonio_i_fit *fit,
+                                    double expected)
+{
+    gonio_i_folds *folds = NULL;
+    double square = 0.0;
+    assert_int_equal(gonio_i_learned_error_prepare(context, learned), GONIO_OK);
+    assert_int_equal(gonio_i_folds_create(context, learned, fit->sites, &folds), GONIO_OK);
+    assert_int_equal(gonio_i_learned_error_find(folds, fit, &square), GONIO_OK);
+    assert_true(fabs(square - expected) <= 1e-7 * expected);
+    gonio_i_folds_free(&folds);
+}
+
 static double expected_of(const gonio_i_prior *with, gonio_i_observation *o, size_t count)
 {
     const gonio_i_column column = {count, o};
@@ -124,6 +137,7 @@ static double expected_of(const gonio_i_prior *with, gonio_i_observation *o, siz
     assert_int_equal(gonio_i_folds_create(context, learned, sites, &folds), GONIO_OK);
     assert_int_equal(gonio_i_fit_begin(context, sites, false, &column, &gaussian), GONIO_OK);
     assert_int_equal(gonio_i_learned_error_find(folds, &gaussian, &square), GONIO_OK);
+    assert_prepared_is_same(learned, &gaussian, square);
     gonio_i_fit_end(&gaussian);
     gonio_i_folds_free(&folds);
     gonio_i_sites_free(&sites);

@@ -1,0 +1,33 @@
+/* S^-1 of a fit, kept while it settles.
+ *
+ * Without a kept inverse, each round of gonio_i_fit_settle factorises S and inverts the factor. Of
+ * many readings that takes most of the time, though only variances change, and of few readings.
+ * With A the inverse of the first S, T its columns of the readings whose variances have grown
+ * since, and D by how much,
+ *
+ *     S^-1 = A - T (D^-1 + A_changed)^-1 T'
+ *
+ * (Woodbury 1950). The rounds need its diagonal and the solution only. */
+#ifndef GONIO_FIT_INVERSE_H
+#define GONIO_FIT_INVERSE_H
+
+#include "fit.h"
+
+/* From now on the inverse is kept. For a fit without samples, before it is solved. Errors: _MEMORY.
+ */
+gonio_status gonio_i_fit_inverse_keep(gonio_i_fit *fit);
+
+/* The diagonal of S^-1, diagonal[n], of a solved fit that keeps the inverse. Errors: _NUMERICAL. */
+gonio_status gonio_i_fit_inverse_diagonal(gonio_i_fit *fit, double *diagonal);
+
+/* Solves the fit again after variances have changed, but for L and the evidence: by the inverse if
+ * they are not smaller than when that was made. Errors: _MEMORY, _NUMERICAL. */
+gonio_status gonio_i_fit_inverse_solve(gonio_i_fit *fit);
+
+/* Puts the changes into the inverse: it is then that of S. Errors: _MEMORY, _NUMERICAL. */
+gonio_status gonio_i_fit_inverse_complete(gonio_i_fit *fit);
+
+/* tr(S^-1 m) for a symmetric m[n][n], of a fit whose inverse is complete. */
+double gonio_i_fit_inverse_trace(const gonio_i_fit *fit, const double *m);
+
+#endif
