@@ -229,6 +229,20 @@ gonio_status gonio_i_inverse_diagonal(gonio_context *context, const double *l, s
     return GONIO_OK;
 }
 
+/* Copies the lower triangle to the upper one, square after square: columns of large matrices lie in
+ * as many pages of memory as they have elements. */
+static void mirror_lower(double *a, size_t n)
+{
+    enum { SQUARE = 32 };
+    for (size_t k = 0; k < n * ((n + SQUARE - 1) / SQUARE); k++) {
+        const size_t i = k % n;
+        const size_t left = k / n * SQUARE;
+        for (size_t j = left; j < i && j < left + SQUARE; j++) {
+            a[j * n + i] = a[i * n + j];
+        }
+    }
+}
+
 gonio_status gonio_i_inverse_of_factor(gonio_context *context, const double *l, size_t n,
                                        double *inverse)
 {
@@ -237,8 +251,9 @@ gonio_status gonio_i_inverse_of_factor(gonio_context *context, const double *l, 
         return status;
     }
     memcpy(inverse, l, n * n * sizeof *inverse);
-    return check_info(context, "dpotri",
-                      LAPACKE_dpotri(LAPACK_COL_MAJOR, 'U', (int)n, inverse, (int)n));
+    const lapack_int info = LAPACKE_dpotri(LAPACK_COL_MAJOR, 'U', (int)n, inverse, (int)n);
+    mirror_lower(inverse, n);
+    return check_info(context, "dpotri", info);
 }
 
 gonio_status gonio_i_subtract_gram(gonio_context *context, const double *a, size_t n, size_t k,

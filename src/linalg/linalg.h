@@ -72,7 +72,7 @@ void gonio_i_divide_triangle(double *a, size_t rows, size_t n, const double *l);
 gonio_status gonio_i_inverse_diagonal(gonio_context *context, const double *l, size_t n,
                                       double *diagonal);
 
-/* The lower triangle of (L L')^-1, inverse[n][n]. */
+/* inverse[n][n]: (L L')^-1. */
 gonio_status gonio_i_inverse_of_factor(gonio_context *context, const double *l, size_t n,
                                        double *inverse);
 

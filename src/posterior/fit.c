@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "../linalg/linalg.h"
-#include "fit_inverse.h"
 
 /* Weights below this do not count among the samples. */
 static const double NEGLIGIBLE = 1e-7;
@@ -328,12 +327,28 @@ static gonio_status mix_differences(const gonio_i_fit *e, double *difference, do
     return done ? GONIO_OK : GONIO_ERROR_MEMORY;
 }
 
+/* Of a fit that keeps its inverse, which is made of L unless it is there. */
+static gonio_status find_kept_diagonal(gonio_i_fit *e, double *diagonal)
+{
+    gonio_status status = GONIO_OK;
+    if (!e->is_inverted) {
+        status = gonio_i_inverse_of_factor(e->context, e->lower, e->n, e->inverse);
+    }
+    for (size_t i = 0; i < e->n && !e->is_inverted && status == GONIO_OK; i++) {
+        e->inverted[i] = gonio_i_fit_noise(e, i);
+        e->diagonal[i] = e->inverse[i * e->n + i];
+    }
+    e->is_inverted = status == GONIO_OK;
+    memcpy(diagonal, e->diagonal, e->n * sizeof *diagonal);
+    return status;
+}
+
 /* Of a Gaussian without one of its values: the difference (S^-1 r)_i / (S^-1)_ii of variance
  * 1/(S^-1)_ii (Sundararajan and Keerthi 2001). */
 gonio_status gonio_i_fit_leave_one_out(gonio_i_fit *e, double *difference, double *variance)
 {
     const gonio_status status =
-        e->inverse != NULL ? gonio_i_fit_inverse_diagonal(e, variance)
+        e->inverse != NULL ? find_kept_diagonal(e, variance)
                            : gonio_i_inverse_diagonal(e->context, e->lower, e->n, variance);
     for (size_t i = 0; i < e->n && status == GONIO_OK; i++) {
         variance[i] = 1.0 / variance[i];

@@ -42,7 +42,7 @@ typedef struct gonio_i_fit {
     gonio_i_model model;
     double *lower; /* [n][n]: L of S */
     /* Where it is kept (fit_inverse.h), otherwise NULL: */
-    double *inverse;  /* [n][n]: of S when its variances were those of `inverted`, lower triangle */
+    double *inverse;  /* [n][n]: of S when its variances were those of `inverted` */
     double *inverted; /* [n] */
     double *diagonal; /* [n]: of S^-1 as it is now */
     bool is_inverted; /* it is there, of this model */

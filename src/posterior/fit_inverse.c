@@ -14,39 +14,6 @@ gonio_status gonio_i_fit_inverse_keep(gonio_i_fit *e)
     return e->inverse && e->diagonal && e->inverted ? GONIO_OK : GONIO_ERROR_MEMORY;
 }
 
-/* The inverse is that of S as it is. */
-static void set_inverted(gonio_i_fit *e)
-{
-    for (size_t i = 0; i < e->n; i++) {
-        e->inverted[i] = gonio_i_fit_noise(e, i);
-        e->diagonal[i] = e->inverse[i * e->n + i];
-    }
-    e->is_inverted = true;
-}
-
-static gonio_status invert(gonio_i_fit *e)
-{
-    gonio_status status = GONIO_OK;
-    if (!e->is_inverted) {
-        status = gonio_i_inverse_of_factor(e->context, e->lower, e->n, e->inverse);
-    }
-    if (!e->is_inverted && status == GONIO_OK) {
-        set_inverted(e);
-    }
-    return status;
-}
-
-gonio_status gonio_i_fit_inverse_diagonal(gonio_i_fit *e, double *diagonal)
-{
-    const gonio_status status = invert(e);
-    if (status == GONIO_OK) {
-        memcpy(diagonal, e->diagonal, e->n * sizeof *diagonal);
-    }
-    return status;
-}
-
-/* ---- changes ---- */
-
 /* Readings whose variances have grown since S was inverted. */
 typedef struct changes {
     size_t count;
@@ -55,17 +22,11 @@ typedef struct changes {
     double *core;    /* [count][count]: L of D^-1 + A_changed */
 } changes;
 
-/* An element of the inverse: the lower triangle is there. */
-static double element(const gonio_i_fit *e, size_t i, size_t j)
-{
-    return i > j ? e->inverse[i * e->n + j] : e->inverse[j * e->n + i];
-}
-
 static void fill_changes(const gonio_i_fit *e, const changes *c)
 {
     for (size_t i = 0; i < e->n; i++) {
         for (size_t k = 0; k < c->count; k++) {
-            c->column[i * c->count + k] = element(e, i, c->reading[k]);
+            c->column[i * c->count + k] = e->inverse[i * e->n + c->reading[k]];
         }
     }
     for (size_t k = 0; k < c->count; k++) {
@@ -148,13 +109,9 @@ gonio_status gonio_i_fit_inverse_solve(gonio_i_fit *e)
 gonio_status gonio_i_fit_inverse_complete(gonio_i_fit *e)
 {
     changes c = {0};
-    gonio_status status = invert(e);
-    if (status == GONIO_OK) {
-        status = find_changes(e, &c);
-    }
+    gonio_status status = find_changes(e, &c);
     if (status == GONIO_OK && c.count > 0) {
         status = gonio_i_subtract_gram(e->context, c.column, e->n, c.count, e->inverse);
-        set_inverted(e);
     }
     free_changes(&c);
     return status;

@@ -17,17 +17,16 @@
  */
 gonio_status gonio_i_fit_inverse_keep(gonio_i_fit *fit);
 
-/* The diagonal of S^-1, diagonal[n], of a solved fit that keeps the inverse. Errors: _NUMERICAL. */
-gonio_status gonio_i_fit_inverse_diagonal(gonio_i_fit *fit, double *diagonal);
-
 /* Solves the fit again after variances have changed, but for L and the evidence: by the inverse if
  * they are not smaller than when that was made. Errors: _MEMORY, _NUMERICAL. */
 gonio_status gonio_i_fit_inverse_solve(gonio_i_fit *fit);
 
-/* Puts the changes into the inverse: it is then that of S. Errors: _MEMORY, _NUMERICAL. */
+/* Of a fit that was predicted from: puts the changes into the lower triangle of the inverse, which
+ * is then that of S. Errors: _MEMORY, _NUMERICAL. */
 gonio_status gonio_i_fit_inverse_complete(gonio_i_fit *fit);
 
-/* tr(S^-1 m) for a symmetric m[n][n], of a fit whose inverse is complete. */
+/* tr(S^-1 m) for a symmetric m[n][n], of a fit whose inverse was completed, after which its
+ * variances do not change. */
 double gonio_i_fit_inverse_trace(const gonio_i_fit *fit, const double *m);
 
 #endif
