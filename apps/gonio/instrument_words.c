@@ -144,11 +144,22 @@ static void print_times(FILE *stream, const gonio_instrument_view *view)
     fprintf(stream, "; axes move %s\n", view->in_turn ? "one after another" : "together");
 }
 
+static bool has_lists(const gonio_instrument_view *view)
+{
+    bool any = false;
+    for (size_t k = 0; k < view->axes; k++) {
+        any = any || view->axis[k].positions > 0;
+    }
+    return any;
+}
+
 static void print_reach(FILE *stream, const gonio_instrument_view *view, const gonio_reach *reach)
 {
-    if (reach->share > 0.0) {
-        fprintf(stream, "reach: %.1f %% of all pairs of directions of an isotropic sample",
-                100.0 * reach->share);
+    const bool region = reach->share > 0.0 && view->directions == 0;
+    if (region) {
+        fprintf(stream, "reach: %.1f %% of all pairs of directions of an isotropic sample%s",
+                100.0 * reach->share,
+                has_lists(view) ? ", with what is between listed positions" : "");
     } else {
         fputs("reach: single directions or a plane", stream);
     }
@@ -159,11 +170,11 @@ static void print_reach(FILE *stream, const gonio_instrument_view *view, const g
             degrees(reach->least_separation), degrees(reach->least_from_specular));
     fprintf(stream, "; light and detector are %s\n",
             view->reciprocal ? "exchanged where that helps" : "not exchanged");
-    for (size_t k = 0; k < reach->obstacles && reach->share > 0.0; k++) {
+    for (size_t k = 0; k < reach->obstacles && region; k++) {
         fprintf(stream, "%s%s %.1f %%", k == 0 ? "out of reach: " : ", ", reach->obstacle[k],
                 100.0 * reach->kept_out[k]);
     }
-    fputs(reach->obstacles > 0 && reach->share > 0.0 ? "\n" : "", stream);
+    fputs(reach->obstacles > 0 && region ? "\n" : "", stream);
 }
 
 void instrument_print(FILE *stream, const gonio_instrument_view *view, const gonio_reach *reach)

@@ -125,7 +125,7 @@ static void fill_panel(picture *p, double theta, panel *made)
         const gonio_pair pair = {
             {theta, 0.0},
             {(ring + 0.5) * 90.0 / RINGS * DEGREE, k % SPOKES * 360.0 / SPOKES * DEGREE}};
-        const char *obstacle = gonio_instrument_pair_obstacle(p->instrument, pair, freedom);
+        const char *obstacle = gonio_instrument_region_obstacle(p->instrument, pair, freedom);
         made->region[k] = region_of(p, obstacle != NULL ? obstacle : "");
     }
 }

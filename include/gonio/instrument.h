@@ -177,11 +177,17 @@ GONIO_API size_t gonio_instrument_settings(const gonio_instrument *instrument, g
 GONIO_API const char *gonio_instrument_pair_obstacle(const gonio_instrument *instrument,
                                                      gonio_pair pair, gonio_freedom freedom);
 
-/* The readings to choose a plan from: pairs that can be read, on levels of theta_i and with half
- * vectors that crowd around the mirror direction, no two the same; with full freedom at most a few
- * ten thousand. At most `most`: the levels then are further apart. The arrays are the caller's and
- * freed by free(). Errors: _DATA if nothing can be reached; the message says what keeps most
- * settings out. */
+/* The same of a region of pairs: what is between the positions of a list counts as reached. */
+GONIO_API const char *gonio_instrument_region_obstacle(const gonio_instrument *instrument,
+                                                       gonio_pair pair, gonio_freedom freedom);
+
+/* The readings to choose a plan from: pairs that can be read, no two the same. They are on levels
+ * of theta_i, with half vectors that crowd around the mirror direction. If another axis than that
+ * of theta_i has a list of positions, they are what a grid of the axes' positions reads, with the
+ * light at phi = 0 if the sample is isotropic. With full freedom at most a few ten thousand. At
+ * most `most`: the levels, or the positions of axes without a list, then are further apart. The
+ * arrays are the caller's and freed by free(). Errors: _DATA if nothing can be reached; the message
+ * says what keeps most settings out. */
 GONIO_API gonio_status gonio_instrument_candidates(gonio_context *context,
                                                    const gonio_instrument *instrument,
                                                    gonio_freedom freedom, size_t most,
@@ -192,8 +198,9 @@ enum { GONIO_MOST_OBSTACLES = 64 };
 /* What an instrument reaches of all pairs of directions. Shares are by projected solid angle of
  * both directions. */
 typedef struct gonio_reach {
-    double share;                  /* of the pairs that can be read, 0 to 1; 0 also where
-                                    * only a plane or single directions can */
+    double share;                  /* of the pairs that can be read, or are between listed
+                                    * positions, 0 to 1; 0 also where only a plane or single
+                                    * directions can */
     double theta_i[2], theta_o[2]; /* the lowest and highest that can be read, rad */
     double least_separation;       /* of light and detector, rad */
     double least_from_specular;    /* distance from the mirror direction, rad */

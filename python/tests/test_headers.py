@@ -45,7 +45,7 @@ UNBOUND = {
         gonio_check_isotropy""",
     "of the C interface alone": """gonio_material_create gonio_fingerprint_create gonio_fingerprint_add
         gonio_fingerprint_value gonio_fingerprint_free gonio_kind_format gonio_material_writer_extension
-        gonio_material_writer_summary gonio_material_writer_averages gonio_instrument_pair_obstacle
+        gonio_material_writer_summary gonio_material_writer_averages gonio_instrument_pair_obstacle gonio_instrument_region_obstacle
         gonio_plan_method_summary gonio_plan_method_reconstruction
         gonio_plan_method_basis gonio_plan_start_name gonio_plan_start_summary gonio_reconstruct_method_summary
         gonio_reconstruct_method_suits_mixtures gonio_readings_format_word gonio_reference_read gonio_reflectance_directions

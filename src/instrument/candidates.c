@@ -2,7 +2,10 @@
  *
  * Candidates lie on levels of theta_i, so that a run changes the incidence as few times as
  * possible. On each level half vectors crowd around the normal, where a peak is. With the freedom
- * of an isotropic sample the light is at phi = 0, and mirror images are left out. */
+ * of an isotropic sample the light is at phi = 0, and mirror images are left out.
+ *
+ * Where another axis than that of theta_i has a list of positions, such pairs would hardly meet
+ * them. Candidates then are what the positions of the axes read. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,6 +17,7 @@ enum {
     HALF_BINS = 90, /* of theta_h, as in the grid (direction.h) */
     TURNS = 12,     /* of phi_h in half a turn */
     COARSEST = 6,   /* times that the search is made coarser */
+    MOST_TRIES = 1000000,
     MOST_OBSTACLES = 64
 };
 
@@ -181,6 +185,96 @@ static void try_rows(search *s)
     }
 }
 
+/* ---- positions of the axes ---- */
+
+static bool has_listed_axes(const gonio_instrument *instrument)
+{
+    bool any = false;
+    for (size_t k = 0; k < instrument->view.axes; k++) {
+        any = any ||
+              (instrument->axis[k].positions > 0 && (int)k != instrument->kinematics->incidence);
+    }
+    return any;
+}
+
+/* How far apart positions are that are tried on an axis without a list. */
+static double between_positions(const gonio_axis *axis, double apart)
+{
+    return axis->step > 0.0 ? axis->step * fmax(1.0, round(apart / axis->step)) : apart;
+}
+
+/* How many positions of an axis are tried. */
+static size_t positions_of(const gonio_axis *axis, double apart)
+{
+    return axis->positions > 0
+               ? axis->positions
+               : (size_t)ceil((axis->high - axis->low) / between_positions(axis, apart) -
+                              GONIO_I_EDGE) +
+                     1;
+}
+
+static double position_at(const gonio_axis *axis, double apart, size_t k)
+{
+    return axis->positions > 0
+               ? axis->position[k]
+               : fmin(axis->low + (double)k * between_positions(axis, apart), axis->high);
+}
+
+/* How many settings that makes. */
+static double settings_apart(const gonio_instrument *instrument, double apart)
+{
+    double count = 1.0;
+    for (size_t k = 0; k < instrument->view.axes; k++) {
+        count *= (double)positions_of(&instrument->axis[k], apart);
+    }
+    return count;
+}
+
+/* The pair of which a plan knows by the freedom: the light at phi = 0, no mirror image. */
+static gonio_pair standing_for(gonio_pair pair, gonio_freedom freedom)
+{
+    if (!freedom.isotropic) {
+        return pair;
+    }
+    const double difference = gonio_i_azimuth_difference(&pair);
+    const double smallest = fmin(difference, 2.0 * M_PI - difference);
+    return (gonio_pair){{pair.incident.theta, 0.0},
+                        {pair.outgoing.theta, freedom.bilateral ? smallest : difference}};
+}
+
+/* Setting `number` of the grid, counted axis by axis. Returns whether the search goes on. */
+static bool try_setting(search *s, double apart, size_t number)
+{
+    gonio_setting one = {0};
+    for (size_t k = 0; k < s->instrument->view.axes; k++) {
+        const gonio_axis *axis = &s->instrument->axis[k];
+        const size_t positions = positions_of(axis, apart);
+        one.axis[k] = position_at(axis, apart, number % positions);
+        number /= positions;
+    }
+    const char *obstacle = gonio_i_take_position(s->instrument, &one);
+    if (obstacle != NULL) {
+        count_obstacle(&s->obstacles, obstacle);
+        return true;
+    }
+    one.pair = standing_for(one.pair, s->freedom);
+    return append(s, &one);
+}
+
+static double apart_of(int coarser)
+{
+    return FINEST_LEVELS * (double)(1 << coarser);
+}
+
+static void try_positions(search *s, int coarser)
+{
+    const double settings = settings_apart(s->instrument, apart_of(coarser));
+    bool more = true;
+    for (size_t k = 0; (double)k < settings && k < MOST_TRIES && more; k++) {
+        more = try_setting(s, apart_of(coarser), k);
+    }
+}
+
 /* ---- the same candidates ---- */
 
 static int compare_settings(const void *a, const void *b)
@@ -234,10 +328,18 @@ static void run(search *s, int coarser)
     s->count = 0;
     if (s->instrument->view.directions > 0) {
         try_rows(s);
+    } else if (has_listed_axes(s->instrument)) {
+        try_positions(s, coarser);
     } else {
         search_directions(s, coarser);
     }
     leave_out_repeats(s);
+}
+
+static bool takes_too_long(const search *s, int coarser)
+{
+    return has_listed_axes(s->instrument) &&
+           settings_apart(s->instrument, apart_of(coarser)) > MOST_TRIES;
 }
 
 /* Ever more finely while there is room for twice as many. */
@@ -245,7 +347,8 @@ static void search_as_finely(search *s, size_t most)
 {
     int coarser = s->instrument->view.directions > 0 ? 0 : COARSEST;
     run(s, coarser);
-    while (coarser > 0 && !s->out_of_memory && s->count <= most / 2) {
+    while (coarser > 0 && !s->out_of_memory && s->count <= most / 2 &&
+           !takes_too_long(s, coarser - 1)) {
         run(s, --coarser);
     }
     if (coarser < COARSEST && s->count > most && s->instrument->view.directions == 0) {
@@ -306,7 +409,11 @@ gonio_status gonio_i_check_reach(gonio_context *context, const gonio_instrument 
 {
     search s = {
         .context = context, .instrument = instrument, .freedom = GONIO_ALL_FREEDOM, .most = 1};
-    run(&s, 0);
+    int coarser = 0;
+    while (coarser < COARSEST && takes_too_long(&s, coarser)) {
+        coarser++;
+    }
+    run(&s, coarser);
     free(s.found);
     if (s.out_of_memory) {
         return gonio_i_fail(context, GONIO_ERROR_MEMORY, "out of memory for directions");

@@ -81,6 +81,16 @@ size_t gonio_instrument_settings(const gonio_instrument *instrument, gonio_pair 
     return s.count;
 }
 
+const char *gonio_instrument_region_obstacle(const gonio_instrument *instrument, gonio_pair pair,
+                                             gonio_freedom freedom)
+{
+    gonio_instrument between = *instrument;
+    for (size_t k = 0; k < between.view.axes; k++) {
+        between.axis[k].positions = 0;
+    }
+    return gonio_instrument_pair_obstacle(&between, pair, freedom);
+}
+
 const char *gonio_instrument_pair_obstacle(const gonio_instrument *instrument, gonio_pair pair,
                                            gonio_freedom freedom)
 {

@@ -50,7 +50,7 @@ static void survey_pairs(const gonio_instrument *instrument, gonio_freedom freed
             for (int k = 0; k < AZIMUTHS; k++) {
                 const gonio_pair pair = {{ring(i), 0.0},
                                          {ring(o), 2.0 * M_PI * (k + 0.5) / AZIMUTHS}};
-                const char *obstacle = gonio_instrument_pair_obstacle(instrument, pair, freedom);
+                const char *obstacle = gonio_instrument_region_obstacle(instrument, pair, freedom);
                 if (obstacle == NULL) {
                     reach->share += share;
                 } else {

@@ -209,7 +209,7 @@ gonio_status gonio_i_find_parts(gonio_context *context, const gonio_instrument *
         const gonio_pair pair = {{ring(k % POLAR), 0.0},
                                  {ring(k / POLAR % POLAR), M_PI * (azimuth + 0.5) / AZIMUTHS}};
         const char *obstacle =
-            gonio_instrument_pair_obstacle(instrument, pair, gonio_i_planned_freedom);
+            gonio_instrument_region_obstacle(instrument, pair, gonio_i_planned_freedom);
         gonio_plan_part *part = part_of(run, obstacle != NULL ? obstacle : "");
         part->share += share;
         part->deviation += share * variance_at(prior, covariance, pair, f);

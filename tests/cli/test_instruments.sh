@@ -17,6 +17,11 @@ cat >rig.json <<'END'
  "axes": {"incidence": {"positions_deg": [20]}, "detector": {"from_deg": -60, "to_deg": 60, "step_deg": 5}}}
 END
 expect_output 'single directions or a plane, theta_i 20 to 20 and theta_o 0 to 60' check rig.json
+cat >ring.json <<'END'
+{"gonio_instrument": 1, "kinematics": "direct", "axes": {"theta_i": {"positions_deg": [0, 30, 60]},
+ "theta_o": {"positions_deg": [5, 25, 45, 65]}, "phi_o": {"from_deg": 0, "to_deg": 345, "step_deg": 15}}}
+END
+expect_output 'with what is between listed positions, theta_i 0 to 60 and theta_o 5 to 65' check ring.json
 sed 's/"from_deg"/"form_deg"/' rig.json >wrong.json
 expect_fail 1 'wrong.json: axes.detector.form_deg: unknown key; known are from_deg, to_deg' check wrong.json
 sed 's/^ "axes"/ "limits": {"theta_o_deg": [70, 80]}, "axes"/' rig.json >blind.json
@@ -39,6 +44,8 @@ expect_fail 1 'tables/rows.csv:2: no number in column theta_o_deg' check tables/
 
 expect_ok learn --grid bivariate --mixtures 0 atlas:oak-sawn atlas:gold-polished atlas:plaster-cast -o b.gonio
 plan() { expect_ok plan b.gonio --method expected-error --instrument "$@"; }
+plan ring.json -n 30 -o ring.csv
+expect_output 'ring.csv: 30 readings in ' check ring.json ring.csv
 plan rig.json -n 5 -o plan.csv
 expect_true 'the columns' grep -q 'axis_incidence_deg,axis_detector_deg,time_s' plan.csv
 expect_true 'the light stands' test "$(grep -c '^20.0000.*,20.0000,' plan.csv)" = 5

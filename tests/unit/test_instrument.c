@@ -374,6 +374,49 @@ static void test_candidates_of_a_table_are_thinned_evenly(void **state)
     gonio_context_free(&context);
 }
 
+/* Where light and detectors stand at listed angles, every pair of them is offered once. */
+static void test_candidates_of_listed_positions(void **state)
+{
+    (void)state;
+    static const double lights[] = {0, 15, 30, 45, 60};
+    static const double detectors[] = {5, 15, 25, 35, 45, 55, 65};
+    static const char text[] = "{\"gonio_instrument\": 1, \"kinematics\": \"direct\", \"axes\": {"
+                               "\"theta_i\": {\"positions_deg\": [0, 15, 30, 45, 60]},"
+                               "\"theta_o\": {\"positions_deg\": [5, 15, 25, 35, 45, 55, 65]},"
+                               "\"phi_o\": {\"from_deg\": 0, \"to_deg\": 350, \"step_deg\": 10}},"
+                               "\"forbidden\": [{\"separation_deg\": [0, 7]}]}";
+    size_t expected = 0;
+    for (int i = 0; i < 5; i++) {
+        for (int o = 0; o < 7; o++) {
+            for (int turn = 0; turn <= (lights[i] > 0 ? 180 : 0); turn += 10) {
+                const double a = lights[i] * DEGREE;
+                const double b = detectors[o] * DEGREE;
+                expected +=
+                    cos(a) * cos(b) + sin(a) * sin(b) * cos(turn * DEGREE) < cos(7.0 * DEGREE);
+            }
+        }
+    }
+    gonio_context *context = support_context();
+    gonio_instrument *rig = parse(context, text);
+    const gonio_freedom all = GONIO_ALL_FREEDOM;
+    gonio_setting *offered = NULL;
+    size_t count = 0;
+    assert_int_equal(gonio_instrument_candidates(context, rig, all, 5000, &offered, &count),
+                     GONIO_OK);
+    assert_int_equal(count, expected);
+    for (size_t k = 0; k < count; k++) {
+        gonio_setting found[GONIO_MOST_SETTINGS];
+        assert_true(
+            gonio_instrument_settings(rig, offered[k].pair, all, found, GONIO_MOST_SETTINGS) > 0);
+    }
+    assert_non_null(gonio_instrument_pair_obstacle(rig, pair_of(20, 0, 30, 90), all));
+    assert_null(gonio_instrument_region_obstacle(rig, pair_of(20, 0, 30, 90), all));
+    assert_non_null(gonio_instrument_region_obstacle(rig, pair_of(20, 0, 70, 90), all));
+    free(offered);
+    gonio_instrument_free(&rig);
+    gonio_context_free(&context);
+}
+
 static void test_candidates_can_be_read(void **state)
 {
     (void)state;
@@ -505,6 +548,7 @@ int main(void)
         cmocka_unit_test(test_in_plane_goniometer),
         cmocka_unit_test(test_footprint_and_limits),
         cmocka_unit_test(test_table_of_directions),
+        cmocka_unit_test(test_candidates_of_listed_positions),
         cmocka_unit_test(test_candidates_can_be_read),
         cmocka_unit_test(test_candidates_of_a_table_are_thinned_evenly),
         cmocka_unit_test(test_survey),
