@@ -118,6 +118,29 @@ bool gonio_readings_are_colours(const gonio_readings *readings)
     return readings->wavelength == NULL && readings->channels == GONIO_CHANNELS;
 }
 
+/* Levels are whole numbers up to 255; a bright BRDF of whole numbers only has not been seen. */
+static const double LARGEST_LEVEL = 255.0;
+static const double BRIGHT_LEVEL = 100.0;
+enum { FEW_LEVELS = 5 };
+
+bool gonio_i_readings_are_levels(const gonio_readings *readings)
+{
+    size_t count = 0;
+    double largest = 0.0;
+    for (size_t k = 0; k < readings->count * readings->channels; k++) {
+        const double value = readings->value[k];
+        if (isnan(value)) {
+            continue;
+        }
+        if (value != floor(value) || value > LARGEST_LEVEL) {
+            return false;
+        }
+        largest = fmax(largest, value);
+        count++;
+    }
+    return readings->wavelength == NULL && count >= FEW_LEVELS && largest > BRIGHT_LEVEL;
+}
+
 double gonio_readings_value(const gonio_readings *readings, size_t reading, size_t channel)
 {
     const bool held = reading < readings->count && channel < readings->channels;

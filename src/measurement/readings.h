@@ -86,6 +86,9 @@ double *gonio_i_make_values(gonio_context *context, const gonio_readings *readin
 gonio_status gonio_i_readings_set_channels(gonio_context *context, gonio_readings *readings,
                                            size_t channels, const double *wavelength);
 
+/* Whether the values are those of an image of 8 bits in place of 1/sr. */
+bool gonio_i_readings_are_levels(const gonio_readings *readings);
+
 /* Adds a note on the file ("taken as reflectance factor") and tells it to the context. */
 gonio_status gonio_i_readings_note(gonio_context *context, gonio_readings *readings,
                                    const char *format, ...) GONIO_I_PRINTF(3, 4);

@@ -132,6 +132,12 @@ gonio_status gonio_i_readings_finish(gonio_context *context, gonio_readings *rea
     if (status == GONIO_OK) {
         status = note_poles(context, readings);
     }
+    if (status == GONIO_OK && gonio_i_readings_are_levels(readings)) {
+        status = gonio_i_readings_note(
+            context, readings,
+            "the values are whole numbers up to 255, as levels of an image are, and taken as 1/sr; "
+            "if they are in proportion to light, and 255 is white, divide them by 255 pi");
+    }
     return status == GONIO_OK && !readings->options.average_repeats
                ? gonio_i_readings_refuse_repeats(context, readings, measured)
                : status;

@@ -10,6 +10,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "../measurement/readings.h"
 #include "transform_trial.h"
 
 /* What a mistake in angles has to explain, in ln of the density of a column, over the readings as
@@ -76,6 +77,7 @@ typedef struct hypothesis {
     double in_units;   /* and over the readings in any unit; */
     bool certain;      /* whatever the units and the albedo are */
     bool colours;      /* only of R, G, B */
+    bool levels;       /* only of whole numbers up to 255; before all others then */
 } hypothesis;
 
 static const hypothesis UNITS[] = {
@@ -87,6 +89,11 @@ static const hypothesis UNITS[] = {
     {.transform = {.factor = 1.0, .merl = true},
      .name = "the values are numbers of a MERL file; multiply them by (1, 1.15, 1.66)/1500",
      .colours = true},
+    {.transform = {.factor = 1.0 / (255.0 * M_PI)},
+     .name =
+         "the values are levels of an image; if they are in proportion to light, divide them by "
+         "255 pi",
+     .levels = true},
 };
 
 static const hypothesis ANGLES[] = {
@@ -153,8 +160,9 @@ static gonio_status try_one(search *s, const hypothesis *h, tried *t)
 {
     const bool colours = gonio_readings_are_colours(s->trial.readings);
     t->hypothesis = h;
-    t->possible =
-        (colours || !h->colours) && gonio_i_transform_trial_is_possible(&s->trial, &h->transform);
+    t->possible = (colours || !h->colours) &&
+                  (!h->levels || gonio_i_readings_are_levels(s->trial.readings)) &&
+                  gonio_i_transform_trial_is_possible(&s->trial, &h->transform);
     gonio_status status = t->possible
                               ? gonio_i_transform_trial_judge(&s->trial, &h->transform, &t->verdict)
                               : GONIO_OK;
@@ -299,7 +307,7 @@ static gonio_status value_unit(search *s, tried *t, double best)
     const bool explains = t->possible && t->verdict.sum >= best - similar;
     const gonio_status status = explains ? find_albedo(s, t) : GONIO_OK;
     t->worth = explains && t->mean > DARKEST && t->mean < BRIGHTEST
-                   ? -fabs(log(t->mean / USUAL_ALBEDO))
+                   ? (t->hypothesis->levels ? 1.0 : -fabs(log(t->mean / USUAL_ALBEDO)))
                    : -INFINITY;
     return status;
 }

@@ -53,6 +53,15 @@ said factor.csv 'whose albedo is 2' 'reflectance factors; divide them by pi (alb
 said percent.csv 'in per cent; divide them by 100 (albedo 0.'
 said factor-percent.csv 'reflectance factors in per cent; divide them by 100 pi (albedo 0.'
 said merl.csv 'numbers of a MERL file; multiply them by (1, 1.15, 1.66)/1500 (albedo 0.'
+
+# Levels of an image are whole numbers. They are noted wherever readings are read; right readings, some of which may be
+# whole numbers, are not.
+changed right.csv 'for (k = 5; k <= 7; k++) { $k = int(800 * $k + 0.5); if ($k > 255) $k = 255 }' >levels.csv
+said levels.csv 'far better if the values are levels of an image; .* divide them by 255 pi (albedo 0.'
+expect_output 'the values are whole numbers up to 255' info levels.csv
+changed levels.csv 'if (NR == 20) $6 += 0.5' >nearly.csv
+expect_ok info nearly.csv
+expect_true 'no levels' test "$(grep -c 'whole numbers' "$root/work/stdout" "$root/work/stderr" | grep -c ':0$')" -eq 2
 expect_output '"albedo": 0.' reconstruct b.gonio percent.csv --json -o out.binary
 expect_also '"mistake": "the values are in per cent; divide them by 100"'
 
