@@ -34,7 +34,9 @@ static gonio_status evaluate_blocks(gonio_context *context, const gonio_material
     const gonio_material_view *view = gonio_material_describe(material);
     gonio_context *shared = gonio_i_shared_context_begin(context);
     gonio_status status = GONIO_OK;
-#pragma omp parallel for schedule(dynamic) num_threads(gonio_context_threads(context))
+/* A single block is left to what the source does in parallel. */
+#pragma omp parallel for schedule(dynamic) if (count > BLOCK)                                      \
+    num_threads(gonio_context_threads(context))
     for (size_t first = 0; first < count; first += BLOCK) {
         const size_t here = count - first < BLOCK ? count - first : BLOCK;
         double *block = values + first * view->channels;

@@ -10,16 +10,21 @@
 #include "../posterior/observations.h"
 #include "field.h"
 
-double gonio_i_field_at(const gonio_basis *basis, const double *field, int channel,
-                        gonio_half_difference at)
+/* A field at the rows around a direction. */
+static double add_up(const double *field, const gonio_i_row_weight *around, int points)
 {
-    gonio_i_row_weight around[GONIO_I_MOST_POINTS];
-    const int points = gonio_i_rows_around(basis, at, channel, around);
     double value = 0.0;
     for (int k = 0; k < points; k++) {
         value += around[k].weight * field[around[k].row];
     }
     return value;
+}
+
+double gonio_i_field_at(const gonio_basis *basis, const double *field, int channel,
+                        gonio_half_difference at)
+{
+    gonio_i_row_weight around[GONIO_I_MOST_POINTS];
+    return add_up(field, around, gonio_i_rows_around(basis, at, channel, around));
 }
 
 /* ---- predicting ---- */
@@ -65,6 +70,49 @@ bool gonio_reconstruction_predict(const gonio_basis *basis, const gonio_reconstr
         }
     }
     return true;
+}
+
+/* Directions that are predicted at a time, and their rows. */
+typedef struct directions {
+    size_t count;
+    int points[GONIO_I_PREDICTED];
+    gonio_i_row_weight around[GONIO_I_PREDICTED][GONIO_I_MOST_POINTS];
+} directions;
+
+/* Channels are outside: the rows of all directions of one stay in the cache. */
+static void predict_channels(gonio_context *context, const gonio_basis *basis,
+                             const gonio_reconstruction *r, const directions *d, double *value)
+{
+    const size_t channels = r->columns;
+#pragma omp parallel for schedule(static) num_threads(gonio_context_threads(context))
+    for (size_t c = 0; c < channels; c++) {
+        const double *field = rows_of(basis, r->field, c);
+        const double scale = scale_of(basis, r, c);
+        for (size_t k = 0; k < d->count; k++) {
+            const double g = add_up(field, d->around[k], d->points[k]);
+            value[k * channels + c] = scale * expm1(fmin(fmax(g, 0.0), GONIO_I_LARGEST_LOG));
+        }
+    }
+}
+
+gonio_status gonio_i_predict_many(gonio_context *context, const gonio_basis *basis,
+                                  const gonio_reconstruction *r, const gonio_pair *pairs,
+                                  size_t count, double *value)
+{
+    directions *d = gonio_i_allocate(context, 1, sizeof *d);
+    if (d == NULL) {
+        return GONIO_ERROR_MEMORY;
+    }
+    for (size_t first = 0; first < count; first += d->count) {
+        d->count = count - first < GONIO_I_PREDICTED ? count - first : GONIO_I_PREDICTED;
+        for (size_t k = 0; k < d->count; k++) {
+            const gonio_half_difference at = gonio_half_difference_from_pair(pairs[first + k]);
+            d->points[k] = gonio_i_rows_around(basis, at, 0, d->around[k]);
+        }
+        predict_channels(context, basis, r, d, value + first * r->columns);
+    }
+    free(d);
+    return GONIO_OK;
 }
 
 /* Predicts one reading. deviation[channels], 1/sr, or NULL. */

@@ -16,4 +16,13 @@ gonio_status gonio_i_field_material(gonio_context *context, const gonio_basis *b
 double gonio_i_field_at(const gonio_basis *basis, const double *field, int channel,
                         gonio_half_difference at);
 
+/* Directions whose rows are looked up at a time. */
+enum { GONIO_I_PREDICTED = 512 };
+
+/* As gonio_reconstruction_predict, value[count][columns], of a reconstruction with a field from a
+ * basis of separate channels. Errors: _MEMORY. */
+gonio_status gonio_i_predict_many(gonio_context *context, const gonio_basis *basis,
+                                  const gonio_reconstruction *reconstruction,
+                                  const gonio_pair *pairs, size_t count, double *value);
+
 #endif

@@ -5,6 +5,7 @@
 
 #include "../basis/basis.h"
 #include "../core/core.h"
+#include "field.h"
 
 typedef struct spectra {
     const gonio_basis *basis;
@@ -15,12 +16,7 @@ static gonio_status evaluate(void *self, gonio_context *context, const gonio_pai
                              size_t count, double *values)
 {
     const spectra *s = self;
-    (void)context;
-    for (size_t k = 0; k < count; k++) {
-        gonio_reconstruction_predict(s->basis, s->r, gonio_half_difference_from_pair(pairs[k]),
-                                     values + k * s->r->columns, NULL);
-    }
-    return GONIO_OK;
+    return gonio_i_predict_many(context, s->basis, s->r, pairs, count, values);
 }
 
 gonio_status gonio_reconstruction_spectral_material(gonio_context *context,

@@ -2,6 +2,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include <zlib.h>
+
 #include "../../core/hdf_write.h"
 #include "../../core/output.h"
 #include "../sampler.h"
@@ -11,56 +13,123 @@
 
 enum { BINS = GONIO_SLAB_BINS, SIDES = 2, DEFLATE = 4 };
 
+/* Values that are looked up at a time, roughly, and channels that are compressed at a time. */
+enum { VALUES = 1 << 20, CHUNKS = 64 };
+
+/* A compressed slab of a channel. */
+typedef struct packed {
+    unsigned char *shuffled; /* [BINS * sizeof(float)] */
+    unsigned char *bytes;    /* [most] */
+    uLongf size;
+    bool done;
+} packed;
+
 typedef struct writer {
     gonio_context *context;
     const gonio_i_sampler *sampler;
     hid_t file;
     hid_t rho;
-    gonio_pair *pair; /* [BINS][SIDES] */
-    double *value;    /* [BINS][SIDES][channels] */
-    float *slab;      /* [BINS], of a channel */
-    bool *inside;     /* [BINS] */
+    int rows;         /* of theta_d, that are looked up at a time */
+    gonio_pair *pair; /* [rows][GONIO_PHI_D_BINS][SIDES] */
+    double *value;    /* [rows][GONIO_PHI_D_BINS][SIDES][channels] */
+    float *slab;      /* [channels][BINS] */
+    packed chunk[CHUNKS];
 } writer;
 
-/* The pairs at the centres of a slab's bins, either side of the reciprocal pair. */
-static void set_directions(const writer *w, int theta_h)
+/* ---- values ---- */
+
+/* The pairs at the centres of some rows of bins, either side of the reciprocal pair. */
+static void set_directions(const writer *w, int theta_h, int first, int rows)
 {
-    for (int k = 0; k < BINS; k++) {
-        const gonio_bin bin = {theta_h, k / GONIO_PHI_D_BINS, k % GONIO_PHI_D_BINS};
+    for (int k = 0; k < rows * GONIO_PHI_D_BINS; k++) {
+        const gonio_bin bin = {theta_h, first + k / GONIO_PHI_D_BINS, k % GONIO_PHI_D_BINS};
         const gonio_pair pair = gonio_pair_from_half_difference(gonio_bin_centre(bin));
-        w->inside[k] = gonio_bin_is_valid(bin);
         w->pair[SIDES * k] = pair;
         w->pair[SIDES * k + 1] = (gonio_pair){pair.outgoing, pair.incident};
     }
 }
 
 /* The mean of the sides that have data. */
-static float mean_of(const writer *w, int bin, size_t channel)
+static float mean_of(const double *value, size_t channels, size_t channel)
 {
-    const size_t channels = w->sampler->view->channels;
     double sum = 0.0;
     double count = 0.0;
     for (int side = 0; side < SIDES; side++) {
-        const double here = w->value[(size_t)(SIDES * bin + side) * channels + channel];
+        const double here = value[(size_t)side * channels + channel];
         sum += isnan(here) ? 0.0 : here;
         count += isnan(here) ? 0.0 : 1.0;
     }
-    return w->inside[bin] && count > 0.0 ? (float)(sum / count) : NAN;
+    return count > 0.0 ? (float)(sum / count) : NAN;
 }
 
-static bool write_channel(const writer *w, size_t channel, int theta_h)
+static void fill_bin(const writer *w, gonio_bin bin, const double *value)
 {
-    const hsize_t start[GONIO_I_TABLE_RANK] = {channel, (hsize_t)theta_h, 0, 0};
-    const hsize_t count[GONIO_I_TABLE_RANK] = {1, 1, GONIO_THETA_D_BINS, GONIO_PHI_D_BINS};
-    for (int k = 0; k < BINS; k++) {
-        w->slab[k] = mean_of(w, k, channel);
+    const size_t channels = w->sampler->view->channels;
+    const bool inside = gonio_bin_is_valid(bin);
+    float *slab = w->slab + (size_t)bin.theta_d * GONIO_PHI_D_BINS + bin.phi_d;
+    for (size_t c = 0; c < channels; c++) {
+        slab[c * BINS] = inside ? mean_of(value, channels, c) : NAN;
     }
-    const hid_t memory = H5Screate_simple(GONIO_I_TABLE_RANK, count, NULL);
-    const hid_t place = H5Dget_space(w->rho);
-    const bool done = H5Sselect_hyperslab(place, H5S_SELECT_SET, start, NULL, count, NULL) >= 0 &&
-                      H5Dwrite(w->rho, H5T_NATIVE_FLOAT, memory, place, H5P_DEFAULT, w->slab) >= 0;
-    H5Sclose(memory);
-    H5Sclose(place);
+}
+
+static gonio_status fill_rows(const writer *w, int theta_h, int first, int rows)
+{
+    const size_t bins = (size_t)rows * GONIO_PHI_D_BINS;
+    const size_t each = SIDES * w->sampler->view->channels;
+    set_directions(w, theta_h, first, rows);
+    const gonio_status status =
+        gonio_i_sampler_values(w->context, w->sampler, w->pair, bins * SIDES, w->value);
+    for (size_t k = 0; k < bins && status == GONIO_OK; k++) {
+        const gonio_bin bin = {theta_h, first + (int)(k / GONIO_PHI_D_BINS),
+                               (int)(k % GONIO_PHI_D_BINS)};
+        fill_bin(w, bin, w->value + k * each);
+    }
+    return status;
+}
+
+/* ---- chunks ---- */
+
+/* What HDF5's filters do, which are of one thread: bytes of the same place in the numbers together,
+ * then deflate. */
+static void compress_chunk(const float *slab, packed *c)
+{
+    const unsigned char *from = (const unsigned char *)slab;
+    for (size_t byte = 0; byte < sizeof *slab; byte++) {
+        for (size_t k = 0; k < BINS; k++) {
+            c->shuffled[byte * BINS + k] = from[k * sizeof *slab + byte];
+        }
+    }
+    c->size = compressBound(BINS * sizeof *slab);
+    c->done = compress2(c->bytes, &c->size, c->shuffled, BINS * sizeof *slab, DEFLATE) == Z_OK;
+}
+
+/* HDF5 is entered for the writing alone, as the material may come from HDF5 too. */
+static bool write_chunks(const writer *w, size_t first, size_t count, int theta_h)
+{
+    gonio_i_hdf_session session;
+    bool done = true;
+    gonio_i_hdf_enter(&session);
+    for (size_t k = 0; k < count && done; k++) {
+        const hsize_t at[GONIO_I_TABLE_RANK] = {first + k, (hsize_t)theta_h, 0, 0};
+        done = w->chunk[k].done &&
+               H5Dwrite_chunk(w->rho, H5P_DEFAULT, 0, at, w->chunk[k].size, w->chunk[k].bytes) >= 0;
+    }
+    gonio_i_hdf_leave(&session);
+    return done;
+}
+
+static bool write_channels(writer *w, int theta_h)
+{
+    const size_t channels = w->sampler->view->channels;
+    bool done = true;
+    for (size_t first = 0; first < channels && done; first += CHUNKS) {
+        const size_t count = channels - first < CHUNKS ? channels - first : CHUNKS;
+#pragma omp parallel for schedule(dynamic, 1) num_threads(gonio_context_threads(w->context))
+        for (size_t k = 0; k < count; k++) {
+            compress_chunk(w->slab + (first + k) * BINS, &w->chunk[k]);
+        }
+        done = write_chunks(w, first, count, theta_h);
+    }
     return done;
 }
 
@@ -69,24 +138,19 @@ static gonio_status cannot_make(const writer *w)
     return gonio_i_fail(w->context, GONIO_ERROR_MEMORY, "HDF5 cannot make the table");
 }
 
-/* HDF5 is entered for the writing alone, as the material may come from HDF5 too. */
-static gonio_status write_slab(const writer *w, int theta_h)
+static gonio_status write_slab(writer *w, int theta_h)
 {
-    set_directions(w, theta_h);
-    const gonio_status status =
-        gonio_i_sampler_values(w->context, w->sampler, w->pair, (size_t)BINS * SIDES, w->value);
-    if (status != GONIO_OK) {
-        return status;
+    gonio_status status = GONIO_OK;
+    for (int first = 0; first < GONIO_THETA_D_BINS && status == GONIO_OK; first += w->rows) {
+        const int left = GONIO_THETA_D_BINS - first;
+        status = fill_rows(w, theta_h, first, left < w->rows ? left : w->rows);
     }
-    gonio_i_hdf_session session;
-    bool done = true;
-    gonio_i_hdf_enter(&session);
-    for (size_t c = 0; c < w->sampler->view->channels && done; c++) {
-        done = write_channel(w, c, theta_h);
+    if (status == GONIO_OK && !write_channels(w, theta_h)) {
+        status = cannot_make(w);
     }
-    gonio_i_hdf_leave(&session);
-    return done ? gonio_i_progress(w->context, "writing", 0.98 * (theta_h + 1) / GONIO_THETA_H_BINS)
-                : cannot_make(w);
+    return status == GONIO_OK
+               ? gonio_i_progress(w->context, "writing", 0.98 * (theta_h + 1) / GONIO_THETA_H_BINS)
+               : status;
 }
 
 /* ---- the file ---- */
@@ -183,6 +247,36 @@ static gonio_status make_file(writer *w, const char *path)
     return status;
 }
 
+static bool begin_writer(writer *w)
+{
+    const size_t channels = w->sampler->view->channels;
+    const size_t row = (size_t)GONIO_PHI_D_BINS * SIDES;
+    const size_t size = BINS * sizeof(float);
+    const size_t rows = VALUES / (row * channels);
+    w->rows = rows < 1 ? 1 : rows > GONIO_THETA_D_BINS ? GONIO_THETA_D_BINS : (int)rows;
+    w->pair = gonio_i_allocate(w->context, (size_t)w->rows * row, sizeof *w->pair);
+    w->value = gonio_i_allocate(w->context, (size_t)w->rows * row * channels, sizeof *w->value);
+    w->slab = gonio_i_allocate(w->context, channels * BINS, sizeof *w->slab);
+    bool done = w->pair != NULL && w->value != NULL && w->slab != NULL;
+    for (size_t k = 0; k < CHUNKS && k < channels && done; k++) {
+        w->chunk[k].shuffled = gonio_i_allocate(w->context, size, 1);
+        w->chunk[k].bytes = gonio_i_allocate(w->context, compressBound(size), 1);
+        done = w->chunk[k].shuffled != NULL && w->chunk[k].bytes != NULL;
+    }
+    return done;
+}
+
+static void end_writer(writer *w)
+{
+    free(w->pair);
+    free(w->value);
+    free(w->slab);
+    for (size_t k = 0; k < CHUNKS; k++) {
+        free(w->chunk[k].shuffled);
+        free(w->chunk[k].bytes);
+    }
+}
+
 static gonio_status write_table(gonio_context *context, const gonio_material *material,
                                 const char *path, const gonio_write_options *options)
 {
@@ -195,18 +289,8 @@ static gonio_status write_table(gonio_context *context, const gonio_material *ma
         return status;
     }
     writer w = {.context = context, .sampler = &sampler, .file = -1, .rho = -1};
-    w.pair = gonio_i_allocate(context, (size_t)BINS * SIDES, sizeof *w.pair);
-    w.value =
-        gonio_i_allocate(context, (size_t)BINS * SIDES * sampler.view->channels, sizeof *w.value);
-    w.slab = gonio_i_allocate(context, BINS, sizeof *w.slab);
-    w.inside = gonio_i_allocate(context, BINS, sizeof *w.inside);
-    status = w.pair != NULL && w.value != NULL && w.slab != NULL && w.inside != NULL
-                 ? make_file(&w, path)
-                 : GONIO_ERROR_MEMORY;
-    free(w.pair);
-    free(w.value);
-    free(w.slab);
-    free(w.inside);
+    status = begin_writer(&w) ? make_file(&w, path) : GONIO_ERROR_MEMORY;
+    end_writer(&w);
     gonio_i_sampler_end(&sampler);
     return status == GONIO_OK ? gonio_i_progress(context, "writing", 1.0) : status;
 }
