@@ -359,10 +359,7 @@ static void test_the_plane_is_written_with_azimuths(void **state)
 static void test_names_that_are_no_angles(void **state)
 {
     (void)state;
-    static const char *const names[] = {"phi_d",
-                                        "theta_h",
-                                        "theta_d_deg",
-                                        "phi",
+    static const char *const names[] = {"phi",
                                         "theta",
                                         "light",
                                         "in",

@@ -41,14 +41,12 @@ typedef struct csv_source {
     gonio_i_csv_columns *columns;
     gonio_readings *readings;
     gonio_i_import in;
-    double *value;             /* [channels] of a row */
-    double *deviation;         /* [channels] */
-    gonio_i_csv_others others; /* columns that are not read */
-    double difference;         /* of azimuths, degrees, of a row */
-    double rotation;           /* of the sample, degrees, of a row */
-    double off;                /* from the mirror direction, degrees, of a row */
-    double wavelength;         /* of a row */
-    gonio_i_long_table table;  /* rows of one wavelength each */
+    double *value;                       /* [channels] of a row */
+    double *deviation;                   /* [channels] */
+    gonio_i_csv_others others;           /* columns that are not read */
+    double angle[GONIO_I_ANGLE_COLUMNS]; /* degrees, and components of vectors, of a row */
+    double wavelength;                   /* of a row */
+    gonio_i_long_table table;            /* rows of one wavelength each */
 } csv_source;
 
 static gonio_status bad_cell(const csv_source *s, size_t column, gonio_status status,
@@ -71,23 +69,12 @@ static double number_of(const csv_source *s, size_t column)
     return number ? value : NAN;
 }
 
-static gonio_status take_angle(csv_source *s, size_t column, size_t index, gonio_i_row *row)
+static gonio_status take_angle(csv_source *s, size_t column, size_t index)
 {
     const double number = number_of(s, column);
-    const double degrees = gonio_i_import_degrees(&s->in, number);
-    if (!isfinite(number)) {
-        return bad_cell(s, column, GONIO_ERROR_FORMAT, "is not a finite number");
-    }
-    if (index == GONIO_I_AZIMUTH_DIFFERENCE) {
-        s->difference = degrees;
-    } else if (index == GONIO_I_SAMPLE_ROTATION) {
-        s->rotation = degrees;
-    } else if (index >= GONIO_I_FROM_SPECULAR) {
-        s->off = degrees;
-    } else {
-        row->degrees[index] = degrees;
-    }
-    return GONIO_OK;
+    s->angle[index] = index < GONIO_I_VECTORS ? gonio_i_import_degrees(&s->in, number) : number;
+    return isfinite(number) ? GONIO_OK
+                            : bad_cell(s, column, GONIO_ERROR_FORMAT, "is not a finite number");
 }
 
 enum { NO_CHANNEL = -2 };
@@ -166,7 +153,7 @@ static gonio_status take_cell(csv_source *s, size_t k, gonio_i_row *row)
     const gonio_i_csv_column *column = &s->columns->column[k];
     switch (column->kind) {
     case GONIO_I_ANGLE:
-        return take_angle(s, k, column->index, row);
+        return take_angle(s, k, column->index);
     case GONIO_I_PLANNED:
         return take_planned(s, k, row);
     case GONIO_I_ROW_WAVELENGTH:
@@ -189,36 +176,15 @@ static gonio_status take_cell(csv_source *s, size_t k, gonio_i_row *row)
 
 /* ---- rows ---- */
 
-static void take_difference(const csv_source *s, gonio_i_row *row)
+static gonio_status take_directions(const csv_source *s, gonio_i_row *row)
 {
-    if (s->columns->difference_gives == 3) {
-        row->degrees[3] = row->degrees[1] + s->difference;
-    } else if (s->columns->difference_gives == 1) {
-        row->degrees[1] = row->degrees[3] - s->difference;
-    }
-}
-
-/* The detector in the plane of incidence, from the mirror direction or with a sign. Without a word
- * on it the detector is on the mirror's side where it has the sign of theta_i. */
-static gonio_status take_plane(const csv_source *s, gonio_i_row *row)
-{
-    const gonio_i_csv_columns *c = s->columns;
-    const int mirror = s->in.how.mirror;
-    if (c->from_specular != 0) {
-        row->degrees[0] = fabs(row->degrees[0]);
-        row->degrees[2] = gonio_i_import_rounded(row->degrees[0] + c->from_specular * s->off);
-        row->degrees[3] = row->degrees[1] + (mirror == GONIO_MIRROR_0 ? 0.0 : 180.0);
-    } else if (c->in_plane) {
-        row->degrees[3] = mirror == GONIO_AS_STATED ? 180.0 : 0.0;
-        if (mirror == GONIO_AS_STATED && row->degrees[0] < 0.0) {
-            return gonio_i_fail(s->context, GONIO_ERROR_DATA,
-                                "%s:%zu: theta_i below zero without azimuths: --as mirror=180 says "
-                                "that light and mirror direction have opposite signs, --as "
-                                "mirror=0 that they have the same",
-                                s->reader.path, row->line);
-        }
-    }
-    return GONIO_OK;
+    const char *problem =
+        gonio_i_geometry_take(s->columns->geometry, s->in.how.mirror, s->angle, row->degrees);
+    row->degrees[1] += s->angle[GONIO_I_SAMPLE_ROTATION];
+    row->degrees[3] += s->angle[GONIO_I_SAMPLE_ROTATION];
+    return problem == NULL ? GONIO_OK
+                           : gonio_i_fail(s->context, GONIO_ERROR_DATA, "%s:%zu: %s",
+                                          s->reader.path, row->line, problem);
 }
 
 /* Adds a row of one wavelength. It is kept until all wavelengths of its directions are known. */
@@ -248,10 +214,7 @@ static gonio_status take_row(csv_source *s)
     for (size_t k = 0; k < s->columns->reads && status == GONIO_OK; k++) {
         status = take_cell(s, s->columns->read[k], &row);
     }
-    take_difference(s, &row);
-    status = status == GONIO_OK ? take_plane(s, &row) : status;
-    row.degrees[1] += s->rotation;
-    row.degrees[3] += s->rotation;
+    status = status == GONIO_OK ? take_directions(s, &row) : status;
     gonio_i_csv_others_look(&s->others, &s->reader);
     if (status != GONIO_OK) {
         return status;

@@ -21,7 +21,11 @@ enum {
     TOWARDS_NORMAL = 1 << 11,
     ROTATION = 1 << 12,
     SAMPLE = 1 << 13,
-    WORD = 1 << 14 /* an azimuth of both sides, where none is named; phi alone may be any angle */
+    WORD = 1 << 14, /* an azimuth of both sides, where none is named; phi alone may be any angle */
+    PHASE = 1 << 15,
+    HALF = 1 << 16,
+    DIFFERENCE_VECTOR = 1 << 17, /* "d" behind another word */
+    WRITTEN = 1 << 18            /* a difference that is no delta */
 };
 
 static const gonio_i_known_word angle_words[] = {
@@ -82,8 +86,13 @@ static const gonio_i_known_word angle_words[] = {
     {"measurement", OUTGOING, 0},
     {"vza", OUTGOING | POLAR, 0},
     {"vaa", OUTGOING | AZIMUTH, 0},
-    {"difference", DIFFERENCE, 0},
-    {"diff", DIFFERENCE, 0},
+    {"emission", OUTGOING | ANY_ANGLE, 0},
+    {"emergence", OUTGOING | ANY_ANGLE, 0},
+    {"phase", PHASE, 0},
+    {"h", HALF, 0},
+    {"half", HALF, 0},
+    {"difference", DIFFERENCE | WRITTEN, 0},
+    {"diff", DIFFERENCE | WRITTEN, 0},
     {"delta", DIFFERENCE, 0},
     {"relative", DIFFERENCE, 0},
     {"rel", DIFFERENCE, 0},
@@ -126,10 +135,15 @@ static bool hear_angle(const gonio_i_words *words, gonio_i_meaning *s)
     for (size_t k = 0; k < words->count; k++) {
         const gonio_i_known_word *w = gonio_i_find_word(
             angle_words, sizeof angle_words / sizeof *angle_words, words->word[k].text);
-        /* "d phi" is a difference of azimuths, phi_d is not */
-        const bool leading = k == 0 && strcmp(words->word[k].text, "d") == 0;
-        all = all && (w != NULL || leading);
-        gonio_i_meaning_add(s, w != NULL ? w->bits : leading ? DIFFERENCE : 0, 0);
+        /* "d phi" is a difference of azimuths, phi_d is that of the difference vector */
+        const bool d = strcmp(words->word[k].text, "d") == 0;
+        all = all && (w != NULL || d);
+        gonio_i_meaning_add(s,
+                            w != NULL ? w->bits
+                            : !d      ? 0
+                            : k == 0  ? DIFFERENCE
+                                      : DIFFERENCE_VECTOR,
+                            0);
     }
     return all;
 }
@@ -160,6 +174,19 @@ static int rotation_of(unsigned bits)
     return turned && !other ? GONIO_I_SAMPLE_ROTATION : -1;
 }
 
+/* An angle of the half vector or of the difference; -1 for none. */
+static int angle_of_half(unsigned bits)
+{
+    const bool other = (bits & (INCIDENT | OUTGOING | FROM)) != 0;
+    const bool polar = (bits & POLAR) != 0;
+    const bool half = (bits & HALF) != 0;
+    const int angle = half && polar ? GONIO_I_THETA_H
+                      : half        ? GONIO_I_PHI_H
+                      : polar       ? GONIO_I_THETA_D
+                                    : GONIO_I_PHI_D;
+    return polar == ((bits & AZIMUTH) != 0) || other ? -1 : angle;
+}
+
 /* The number of an angle, 0 to 3, or one of those behind them; -1 for none. */
 static int angle_of(unsigned bits)
 {
@@ -167,6 +194,12 @@ static int angle_of(unsigned bits)
     const bool out = (bits & OUTGOING) != 0;
     const bool azimuth = (bits & AZIMUTH) != 0;
     const bool polar = (bits & POLAR) != 0 || ((bits & ANY_ANGLE) != 0 && !azimuth);
+    if ((bits & PHASE) != 0) {
+        return in || out || azimuth || (bits & POLAR) != 0 ? -1 : GONIO_I_PHASE;
+    }
+    if ((bits & (HALF | DIFFERENCE_VECTOR)) != 0) {
+        return angle_of_half(bits);
+    }
     if ((bits & SPECULAR) != 0) {
         return angle_from_specular(bits);
     }
@@ -179,16 +212,86 @@ static int angle_of(unsigned bits)
     if (azimuth && in == out) {
         return in || (bits & (DIFFERENCE | WORD)) != 0 ? GONIO_I_AZIMUTH_DIFFERENCE : -1;
     }
+    if (!in && !out && (bits & POLAR) != 0 && (bits & WRITTEN) != 0) {
+        return GONIO_I_THETA_D;
+    }
     if (in == out || (bits & DIFFERENCE) != 0) {
         return -1;
     }
     return (out ? 2 : 0) + (azimuth ? 1 : 0);
 }
 
+/* ---- x, y and z of directions ---- */
+
+enum { EITHER_SIDE = -1 };
+
+static const gonio_i_known_word side_words[] = {
+    {"wi", 0, 0},
+    {"i", 0, 0},
+    {"in", 0, 0},
+    {"incident", 0, 0},
+    {"incoming", 0, 0},
+    {"l", 0, 0},
+    {"light", 0, 0},
+    {"source", 0, 0},
+    {"lamp", 0, 0},
+    {"sun", 0, 0},
+    {"wo", 0, 1},
+    {"o", 0, 1},
+    {"out", 0, 1},
+    {"outgoing", 0, 1},
+    {"wr", 0, 1},
+    {"v", 0, 1},
+    {"view", 0, 1},
+    {"viewer", 0, 1},
+    {"observer", 0, 1},
+    {"detector", 0, 1},
+    {"det", 0, 1},
+    {"camera", 0, 1},
+    {"omega", 0, EITHER_SIDE},
+    {"w", 0, EITHER_SIDE},
+    {"dir", 0, EITHER_SIDE},
+    {"direction", 0, EITHER_SIDE},
+    {"vector", 0, EITHER_SIDE},
+    {"vec", 0, EITHER_SIDE},
+};
+
+/* The direction that words before x, y or z are of: 0 incident, 1 outgoing; -1 for none. */
+static int side_of(const gonio_i_name_word *word, size_t count)
+{
+    int side = EITHER_SIDE;
+    for (size_t k = 0; k < count; k++) {
+        const gonio_i_known_word *w =
+            gonio_i_find_word(side_words, sizeof side_words / sizeof *side_words, word[k].text);
+        if (w == NULL || (w->value != EITHER_SIDE && side != EITHER_SIDE)) {
+            return -1;
+        }
+        side = w->value != EITHER_SIDE ? w->value : side;
+    }
+    return side;
+}
+
+/* "wi_x", "lightY", "woz": the index of a component; -1 for none. */
+static int component_of(const gonio_i_words *words)
+{
+    gonio_i_words rest = *words;
+    char *last = words->whole && words->count > 0 ? rest.word[rest.count - 1].text : NULL;
+    const size_t length = last != NULL ? strlen(last) : 0;
+    if (length == 0 || last[length - 1] < 'x' || last[length - 1] > 'z') {
+        return -1;
+    }
+    const int component = last[length - 1] - 'x';
+    last[length - 1] = '\0';
+    const int side = side_of(rest.word, length > 1 ? rest.count : rest.count - 1);
+    return side >= 0 ? GONIO_I_VECTORS + 3 * side + component : -1;
+}
+
+/* ---- all ---- */
+
 bool gonio_i_take_angle_name(const gonio_i_words *words, gonio_i_column_name *name)
 {
     gonio_i_meaning s;
-    const int angle = hear_angle(words, &s) ? angle_of(s.bits) : -1;
+    const int angle = hear_angle(words, &s) ? angle_of(s.bits) : component_of(words);
     if (angle < 0) {
         return false;
     }

@@ -15,7 +15,7 @@ static gonio_status choose_angles(const gonio_i_csv_finder *f, size_t chosen[GON
         size_t *at = &chosen[f->name[k].index];
         if (*at == none || (f->name[k].own && !f->name[*at].own)) {
             *at = k;
-        } else if (f->name[k].own == f->name[*at].own) {
+        } else if (f->name[k].own == f->name[*at].own && f->name[k].index < GONIO_I_PHASE) {
             return gonio_i_csv_refuse_two(f, "the same angle", *at, k);
         }
     }
@@ -38,43 +38,6 @@ static gonio_status refuse_azimuth(const gonio_i_csv_finder *f, size_t azimuth, 
                         f->r->path, f->r->name[specular], f->r->name[azimuth]);
 }
 
-/* Whether the detector's angle is given from the mirror direction: then its own is not read. */
-static gonio_status find_specular(const gonio_i_csv_finder *f, size_t chosen[GONIO_I_ANGLE_COLUMNS])
-{
-    const size_t none = f->r->columns;
-    const size_t from = chosen[GONIO_I_FROM_SPECULAR];
-    const size_t towards = chosen[GONIO_I_ASPECULAR];
-    const size_t azimuth = chosen[3] != none ? chosen[3] : chosen[GONIO_I_AZIMUTH_DIFFERENCE];
-    if (chosen[2] != none) {
-        chosen[GONIO_I_FROM_SPECULAR] = none;
-        chosen[GONIO_I_ASPECULAR] = none;
-        return GONIO_OK;
-    }
-    if (from != none && towards != none) {
-        return gonio_i_csv_refuse_two(f, "the same angle", from, towards);
-    }
-    f->c->from_specular = from != none ? 1 : towards != none ? -1 : 0;
-    if (f->c->from_specular != 0 && azimuth != none) {
-        return refuse_azimuth(f, azimuth, from != none ? from : towards);
-    }
-    return GONIO_OK;
-}
-
-static gonio_status check_angles(const gonio_i_csv_finder *f,
-                                 const size_t chosen[GONIO_I_ANGLE_COLUMNS])
-{
-    const bool specular = f->c->from_specular != 0;
-    for (size_t angle = 0; angle < 4; angle++) {
-        const bool azimuth = angle % 2 == 1;
-        const bool replaced = azimuth ? f->c->difference_gives != 0 || f->c->in_plane || specular
-                                      : angle == 2 && specular;
-        if (chosen[angle] == f->r->columns && !replaced) {
-            return refuse_missing(f, angle);
-        }
-    }
-    return GONIO_OK;
-}
-
 /* Whether a column that is not read names an azimuth, of which it is not known whose it is. */
 static bool is_azimuth_unread(const gonio_i_csv_finder *f)
 {
@@ -85,23 +48,128 @@ static bool is_azimuth_unread(const gonio_i_csv_finder *f)
     return any;
 }
 
-/* Which column is which angle, and what replaces those that are not there. */
-static gonio_status find_columns(const gonio_i_csv_finder *f, size_t chosen[GONIO_I_ANGLE_COLUMNS])
+static bool has_all(const gonio_i_csv_finder *f, const size_t chosen[], size_t first, size_t count)
+{
+    bool all = true;
+    for (size_t k = first; k < first + count; k++) {
+        all = all && chosen[k] != f->r->columns;
+    }
+    return all;
+}
+
+static bool has_any(const gonio_i_csv_finder *f, const size_t chosen[], size_t first, size_t count)
+{
+    bool any = false;
+    for (size_t k = first; k < first + count; k++) {
+        any = any || chosen[k] != f->r->columns;
+    }
+    return any;
+}
+
+/* The geometry of columns without theta_o: from the mirror direction. */
+static gonio_status find_specular(const gonio_i_csv_finder *f,
+                                  const size_t chosen[GONIO_I_ANGLE_COLUMNS])
 {
     const size_t none = f->r->columns;
+    const size_t from = chosen[GONIO_I_FROM_SPECULAR];
+    const size_t towards = chosen[GONIO_I_ASPECULAR];
+    const size_t azimuth = chosen[3] != none ? chosen[3] : chosen[GONIO_I_AZIMUTH_DIFFERENCE];
+    if (from != none && towards != none) {
+        return gonio_i_csv_refuse_two(f, "the same angle", from, towards);
+    }
+    f->c->geometry = from != none ? GONIO_I_FROM_THE_NORMAL : GONIO_I_TOWARDS_LIGHT;
+    return azimuth != none ? refuse_azimuth(f, azimuth, from != none ? from : towards) : GONIO_OK;
+}
+
+/* The geometry of columns of polar angles, by the azimuths that there are. */
+static gonio_i_geometry with_azimuths(const gonio_i_csv_finder *f,
+                                      const size_t chosen[GONIO_I_ANGLE_COLUMNS])
+{
+    const bool phi_i = has_any(f, chosen, 1, 1);
+    const bool phi_o = has_any(f, chosen, 3, 1);
+    if (has_any(f, chosen, GONIO_I_AZIMUTH_DIFFERENCE, 1)) {
+        return !phi_o   ? GONIO_I_DIFFERENCE_GIVES_PHI_O
+               : !phi_i ? GONIO_I_DIFFERENCE_GIVES_PHI_I
+                        : GONIO_I_FOUR_ANGLES;
+    }
+    if (phi_i || phi_o) {
+        return GONIO_I_FOUR_ANGLES;
+    }
+    return has_any(f, chosen, GONIO_I_PHASE, 1) ? GONIO_I_PHASE_ANGLE
+           : is_azimuth_unread(f)               ? GONIO_I_FOUR_ANGLES
+                                                : GONIO_I_IN_PLANE;
+}
+
+/* "phi_diff" is an azimuth of the difference vector beside theta_h and theta_d. */
+static bool is_half_difference(const gonio_i_csv_finder *f, size_t chosen[GONIO_I_ANGLE_COLUMNS])
+{
+    const size_t none = f->r->columns;
+    if (has_any(f, chosen, 0, 4) || chosen[GONIO_I_THETA_H] == none ||
+        chosen[GONIO_I_THETA_D] == none) {
+        return false;
+    }
+    if (chosen[GONIO_I_PHI_D] == none) {
+        chosen[GONIO_I_PHI_D] = chosen[GONIO_I_AZIMUTH_DIFFERENCE];
+    }
+    return chosen[GONIO_I_PHI_D] != none;
+}
+
+static gonio_status find_geometry(const gonio_i_csv_finder *f, size_t chosen[GONIO_I_ANGLE_COLUMNS])
+{
+    const bool specular = !has_any(f, chosen, 2, 1) && has_any(f, chosen, GONIO_I_FROM_SPECULAR, 2);
+    if (!has_all(f, chosen, 0, 4) && has_all(f, chosen, GONIO_I_VECTORS, 6)) {
+        f->c->geometry = GONIO_I_UNIT_VECTORS;
+    } else if (is_half_difference(f, chosen)) {
+        f->c->geometry = GONIO_I_HALF_DIFFERENCE;
+    } else if (specular) {
+        return find_specular(f, chosen);
+    } else {
+        f->c->geometry = with_azimuths(f, chosen);
+    }
+    return GONIO_OK;
+}
+
+/* Bits of the columns without which a geometry cannot do, and of those that it reads too. */
+#define BIT(index) (1U << (index))
+#define HALF_BITS (BIT(GONIO_I_THETA_H) | BIT(GONIO_I_THETA_D) | BIT(GONIO_I_PHI_D))
+#define VECTOR_BITS (0x3fU << GONIO_I_VECTORS)
+static const struct {
+    unsigned needed, also;
+} columns_of[] = {
+    [GONIO_I_FOUR_ANGLES] = {0xfU, 0},
+    [GONIO_I_DIFFERENCE_GIVES_PHI_O] = {0x5U | BIT(GONIO_I_AZIMUTH_DIFFERENCE), 0x2U},
+    [GONIO_I_DIFFERENCE_GIVES_PHI_I] = {0xdU | BIT(GONIO_I_AZIMUTH_DIFFERENCE), 0},
+    [GONIO_I_IN_PLANE] = {0x5U, 0},
+    [GONIO_I_FROM_THE_NORMAL] = {0x1U | BIT(GONIO_I_FROM_SPECULAR), 0x2U},
+    [GONIO_I_TOWARDS_LIGHT] = {0x1U | BIT(GONIO_I_ASPECULAR), 0x2U},
+    [GONIO_I_PHASE_ANGLE] = {0x5U | BIT(GONIO_I_PHASE), 0},
+    [GONIO_I_HALF_DIFFERENCE] = {HALF_BITS, BIT(GONIO_I_PHI_H)},
+    [GONIO_I_UNIT_VECTORS] = {VECTOR_BITS, 0},
+};
+
+/* Leaves out the columns that the geometry does not read. Errors: _FORMAT for one that is missing.
+ */
+static gonio_status check_columns(const gonio_i_csv_finder *f, size_t chosen[GONIO_I_ANGLE_COLUMNS])
+{
+    const unsigned needed = columns_of[f->c->geometry].needed;
+    const unsigned read = needed | columns_of[f->c->geometry].also | BIT(GONIO_I_SAMPLE_ROTATION);
+    for (size_t k = 0; k < GONIO_I_ANGLE_COLUMNS; k++) {
+        if ((needed & BIT(k)) != 0 && chosen[k] == f->r->columns) {
+            return refuse_missing(f, k);
+        }
+        chosen[k] = (read & BIT(k)) != 0 ? chosen[k] : f->r->columns;
+    }
+    return GONIO_OK;
+}
+
+/* Which column is which angle, and how they give the directions. */
+static gonio_status find_columns(const gonio_i_csv_finder *f, size_t chosen[GONIO_I_ANGLE_COLUMNS])
+{
     gonio_status status = choose_angles(f, chosen);
     if (status == GONIO_OK) {
-        status = find_specular(f, chosen);
+        status = find_geometry(f, chosen);
     }
-    if (chosen[GONIO_I_AZIMUTH_DIFFERENCE] != none) {
-        f->c->difference_gives = chosen[3] == none ? 3 : chosen[1] == none ? 1 : 0;
-    }
-    if (f->c->difference_gives == 0) {
-        chosen[GONIO_I_AZIMUTH_DIFFERENCE] = none;
-    }
-    f->c->in_plane = f->c->from_specular == 0 && f->c->difference_gives == 0 && chosen[1] == none &&
-                     chosen[3] == none && !is_azimuth_unread(f);
-    return status == GONIO_OK ? check_angles(f, chosen) : status;
+    return status == GONIO_OK ? check_columns(f, chosen) : status;
 }
 
 /* What comments say: the unit, and on which side of the plane the mirror direction is. */

@@ -4,7 +4,7 @@
 
 #include "../../core/csv_reader.h"
 #include "../readings.h"
-#include "csv_names.h"
+#include "csv_geometry.h"
 
 typedef struct gonio_i_csv_column {
     gonio_i_column_kind kind; /* GONIO_I_OTHER: not read */
@@ -25,13 +25,10 @@ typedef struct gonio_i_csv_columns {
     gonio_convention stated; /* by names, units and comments; 0 where nothing states it */
     const char *unclear; /* a comment on values that is not understood or not heeded; belongs to the
                           * reader */
-    size_t difference_gives; /* the azimuth that a difference replaces, 1 or 3; 0: there is none */
-    bool in_plane;           /* there are no azimuths */
-    int from_specular;  /* theta_o is given from the mirror direction: 1 away from the normal, -1
-                         * towards it; otherwise 0 */
-    bool by_wavelength; /* a row has one value of one wavelength */
-    bool own_angles;    /* named as gonio does */
-    bool own;           /* all are */
+    gonio_i_geometry geometry; /* how the columns of angles give the directions */
+    bool by_wavelength;        /* a row has one value of one wavelength */
+    bool own_angles;           /* named as gonio does */
+    bool own;                  /* all are */
     bool any_value;
     bool any_deviation;
     bool any_time;

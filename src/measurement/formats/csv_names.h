@@ -32,13 +32,21 @@ typedef enum gonio_i_strength {
 
 /* Indices behind theta_i, phi_i, theta_o, phi_o: of phi_o - phi_i, of the rotation of the sample,
  * which is added to both azimuths, and of the angle between the detector and the mirror direction,
- * in the plane of incidence: above zero farther from the normal, or nearer to it. */
+ * in the plane of incidence: above zero farther from the normal, or nearer to it. Then the angle
+ * between light and detector, the half/difference angles (direction.h), and x, y, z of the
+ * directions towards light and detector. */
 enum {
     GONIO_I_AZIMUTH_DIFFERENCE = 4,
     GONIO_I_SAMPLE_ROTATION,
     GONIO_I_FROM_SPECULAR,
     GONIO_I_ASPECULAR,
-    GONIO_I_ANGLE_COLUMNS
+    GONIO_I_PHASE,
+    GONIO_I_THETA_H,
+    GONIO_I_PHI_H,
+    GONIO_I_THETA_D,
+    GONIO_I_PHI_D,
+    GONIO_I_VECTORS,
+    GONIO_I_ANGLE_COLUMNS = GONIO_I_VECTORS + 6
 };
 
 typedef struct gonio_i_column_name {

@@ -58,19 +58,6 @@ static void list_kind(const gonio_i_csv_reader *reader, const gonio_i_csv_column
     end_list(&list);
 }
 
-/* How angles in the plane of incidence are taken; mirror: what is in force. */
-static const char *plane_words(const gonio_i_csv_columns *columns, int mirror)
-{
-    if (columns->from_specular != 0) {
-        return columns->from_specular > 0
-                   ? ", from the mirror direction in the plane, positive away from the normal"
-                   : ", from the mirror direction in the plane, positive towards the light";
-    }
-    return !columns->in_plane           ? ""
-           : mirror == GONIO_MIRROR_180 ? ", in the plane, opposite signs on the mirror's side"
-                                        : ", in the plane, equal signs on the mirror's side";
-}
-
 void gonio_i_csv_describe(const gonio_i_csv_reader *reader, const gonio_i_csv_columns *columns,
                           int mirror, char text[GONIO_I_TAKEN_ROOM])
 {
@@ -80,7 +67,7 @@ void gonio_i_csv_describe(const gonio_i_csv_reader *reader, const gonio_i_csv_co
     if (!columns->own_angles) {
         const name_list list = {text, GONIO_I_TAKEN_ROOM, 0};
         list_kind(reader, columns, GONIO_I_ANGLE, " (angles ", text);
-        add_text(&list, plane_words(columns, mirror));
+        add_text(&list, gonio_i_geometry_words(columns->geometry, mirror));
         between = "; ";
     }
     if (columns->any_value) {
