@@ -86,7 +86,7 @@ rm again.binary one.binary deviation.binary
 # ---- energy ----
 
 expect_output ', albedo at most 0.' reconstruct b.gonio r.csv -o out.binary
-expect_output '"largest_albedo": 0.' reconstruct b.gonio r.csv --json -o out.binary
+expect_output '"largest_albedo": 0.' reconstruct b.gonio r.csv --json --predict-at p.csv -o energy.csv
 awk -F, -v OFS=, '/^[#t]/ { print; next } { $6 *= 30; $7 *= 30; $8 *= 30; print }' r.csv >bright.csv
 expect_ok reconstruct b.gonio bright.csv --no-checks -o bright.binary
 expect_true 'more light than there is is told' \
@@ -169,14 +169,12 @@ expect_not_said() { # PART NAME
     expect_true "$2" test "$(grep -c "$1" "$root/work/stderr")" -eq 0
 }
 suspect() { # FILE PART
-    expect_ok reconstruct b.gonio "$1" -o suspect.binary
+    expect_output "\"suspicion\": \"" reconstruct b.gonio "$1" --json --predict-at p.csv -o suspect.csv
     expect_true "$1: '$2'" grep -q "note: .*$2" "$root/work/stderr"
-    expect_output "\"suspicion\": \"" reconstruct b.gonio "$1" --json -o suspect.binary
-    expect_ok reconstruct b.gonio "$1" --no-checks -o suspect.binary
+    expect_ok reconstruct b.gonio "$1" --no-checks --predict-at p.csv -o suspect.csv
     expect_not_said 'fit far better' "$1: --no-checks does not look"
-    expect_ok next b.gonio "$1" -n 1 -o suspect.csv
+    expect_output "\"suspicion\": \"" next b.gonio "$1" -n 1 --json -o suspect.csv
     expect_true "next, $1: '$2'" grep -q "note: .*$2" "$root/work/stderr"
-    expect_output "\"suspicion\": \"" next b.gonio "$1" -n 1 --json -q -o suspect.csv
     expect_ok next b.gonio "$1" -n 1 --no-checks -o suspect.csv
     expect_not_said 'fit far better' "next, $1: --no-checks does not look"
 }
@@ -184,10 +182,12 @@ suspect percent.csv 'the values are in per cent'
 if full; then
     suspect cosine.csv 'the values include the cosine'
     suspect radians.csv 'the angles are in radians'
+    suspect elevation.csv 'theta is measured from the surface'
+    expect_ok reconstruct b.gonio elevation.csv -o suspect.binary
+    expect_true 'of a table too' grep -q 'note: .*theta is measured from the surface' "$root/work/stderr"
 fi
-suspect elevation.csv 'theta is measured from the surface'
 expect_output '"suspicion": null' next b.gonio all.csv -n 1 --json -o suspect.csv
-expect_output '"suspicion": null' reconstruct b.gonio all.csv --json -o suspect.binary
+expect_output '"suspicion": null' reconstruct b.gonio all.csv --json --predict-at p.csv -o suspect.csv
 expect_true 'good readings are not suspicious' test ! -s "$root/work/stderr"
 
 # ---- what an instrument subtracts too much ----
@@ -202,8 +202,8 @@ expect_true 'what is subtracted is told' \
     grep -q 'note: dark.binary: the instrument seems to subtract up to 0.*/cos(theta_i)' "$root/work/stderr"
 expect_true 'without it the paint is within 8 per cent' test "$(error $new dark.binary)" -lt 8
 expect_true 'with it it is not within 15' test "$(error $new unchecked.binary)" -ge 15
-expect_output '"dark_level_per_sr": [' reconstruct b.gonio dark.csv --json -o dark.binary
-expect_output '"dark_level_per_sr": null' reconstruct b.gonio all.csv --json -o dark.binary
+expect_output '"dark_level_per_sr": [' reconstruct b.gonio dark.csv --json --predict-at p.csv -o dark-at.csv
+expect_output '"dark_level_per_sr": null' reconstruct b.gonio all.csv --json --predict-at p.csv -o dark-at.csv
 expect_ok next b.gonio dark.csv -n 2 -o dark-next.csv
 
 # ---- bad input ----

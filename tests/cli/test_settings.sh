@@ -26,7 +26,7 @@ expect_ok learn --grid bivariate $(printf 'atlas:%s ' gold-polished red-glossy-p
 first_step() { lines "$1" | sed -n 2p; }
 for start in random qr volume; do
     for seed in 1 2; do
-        expect_ok plan bivariate.gonio --start $start --seed $seed --restarts 2 -n 12 \
+        expect_ok plan bivariate.gonio --start $start --seed $seed --restarts "$(full && echo 2 || echo 1)" -n 12 \
             --history $start-$seed.history -o $start-$seed.csv
     done
     expect_true "$start: swaps only lower the condition number" test "$(lines $start-1.history | awk -F, '

@@ -63,7 +63,7 @@ static void test_digests_and_tables_agree(void **state)
     const gonio_i_size size = {4, 12};
     const gonio_i_split *split = &splits.split[0];
     const gonio_i_study quick = {.quick = true}; /* without the methods of the full grid */
-    for (size_t m = 0; m < gonio_i_methods(&quick); m += 3) {
+    for (size_t m = 0; m < gonio_i_methods(&quick); m += support_small() ? 6 : 3) {
         const gonio_i_method_entry *method = gonio_i_method_at(m);
         gonio_error *errors[2];
         double condition[2] = {NAN, NAN};

@@ -205,17 +205,17 @@ static void test_a_warp_and_its_inverse(void **state)
 static void test_the_density_of_a_warp(void **state)
 {
     (void)state;
-    enum { STEPS = 400 };
+    const int steps = support_small() ? 100 : 400;
     static const double H = 1e-6;
     gonio_i_warp warp;
     const gonio_i_blend blend = {1, {1}, {1.0}};
     double all = 0.0;
     make_warp(&warp);
-    for (int k = 0; k < STEPS * STEPS; k++) {
-        const double u[2] = {(k % STEPS + 0.5) / STEPS, (k / STEPS + 0.5) / STEPS};
+    for (int k = 0; k < steps * steps; k++) {
+        const double u[2] = {(k % steps + 0.5) / steps, (k / steps + 0.5) / steps};
         double s[2];
         const double density = gonio_i_warp_invert(&warp, &blend, u, s);
-        all += density / (STEPS * STEPS);
+        all += density / (steps * steps);
         if (k % 1234 == 0) {
             double x[2];
             double y[2];
@@ -225,7 +225,7 @@ static void test_the_density_of_a_warp(void **state)
             assert_true(fabs(area / (H * H) - density) < 1e-3 * density);
         }
     }
-    assert_true(fabs(all - 1.0) < 1e-4);
+    assert_true(fabs(all - 1.0) < (support_small() ? 2e-3 : 1e-4));
     gonio_i_warp_free(&warp);
 }
 
@@ -311,8 +311,10 @@ static void test_a_material_written_and_read(void **state)
     char path[4096];
     snprintf(path, sizeof path, "%s/x.bsdf", folder);
     check_written("atlas:white-linen", path);
-    check_written("atlas:chromium-mirror", path);
-    check_written("atlas:red-glossy-plastic", path);
+    if (!support_small()) {
+        check_written("atlas:chromium-mirror", path);
+        check_written("atlas:red-glossy-plastic", path);
+    }
     support_remove(folder);
 }
 
@@ -355,7 +357,9 @@ static void test_an_anisotropic_material_written_and_read(void **state)
     char path[4096];
     snprintf(path, sizeof path, "%s/x.bsdf", folder);
     check_written_azimuths("atlas:steel-hairline", 13, path);
-    check_written_azimuths("atlas:maple-curly-varnished", 25, path);
+    if (!support_small()) {
+        check_written_azimuths("atlas:maple-curly-varnished", 25, path);
+    }
     support_remove(folder);
 }
 
@@ -363,7 +367,8 @@ static void test_an_anisotropic_material_written_and_read(void **state)
  * channels: light is sampled by luminance, then by vndf. */
 static double variance_of_samples(const gonio_i_tensor_file *file, size_t t)
 {
-    enum { STEPS = 500, NORMALS = 128 };
+    enum { NORMALS = 128 };
+    const int steps = support_small() ? 100 : 500;
     const size_t side = (size_t)gonio_i_tensor_find(file, "luminance")->shape[3];
     const size_t nodes = side * side;
     float *luminance = read_floats(file, "luminance");
@@ -383,9 +388,8 @@ static double variance_of_samples(const gonio_i_tensor_file *file, size_t t)
     const gonio_i_blend blend = {1, {0}, {1.0}};
     double sum = 0.0;
     double squares = 0.0;
-    for (size_t k = 0; k < STEPS * STEPS; k++) {
-        const double place[2] = {((double)(k % STEPS) + 0.5) / STEPS,
-                                 ((double)k / STEPS + 0.5) / STEPS};
+    for (int k = 0; k < steps * steps; k++) {
+        const double place[2] = {(k % steps + 0.5) / steps, (k / steps + 0.5) / steps};
         double s[2];
         double u[2];
         double density = gonio_i_warp_sample(&warp, &blend, place, s);
@@ -409,7 +413,7 @@ static double variance_of_samples(const gonio_i_tensor_file *file, size_t t)
         sum += above ? here : 0.0;
         squares += above ? here * here : 0.0;
     }
-    const double mean = sum / (STEPS * STEPS);
+    const double mean = sum / (steps * steps);
     gonio_i_warp_free(&warp);
     gonio_i_warp_free(&to_normals);
     free(vndf);
@@ -417,7 +421,7 @@ static double variance_of_samples(const gonio_i_tensor_file *file, size_t t)
     free(values);
     free(ndf);
     free(theta);
-    return squares / (STEPS * STEPS) / (mean * mean) - 1.0;
+    return squares / (steps * steps) / (mean * mean) - 1.0;
 }
 
 /* Renderers sample light well: weights hardly vary, down to grazing. */
@@ -428,7 +432,7 @@ static void test_samples_count_alike(void **state)
     char *folder = support_folder();
     char path[4096];
     snprintf(path, sizeof path, "%s/x.bsdf", folder);
-    for (size_t k = 0; k < 2; k++) {
+    for (size_t k = 0; k < (support_small() ? 1 : 2); k++) {
         gonio_material *material = NULL;
         gonio_i_tensor_file file;
         assert_int_equal(gonio_material_open(NULL, names[k], &material), GONIO_OK);
