@@ -1,12 +1,10 @@
 /* Writing HDF5, with its library; files are read without it (hdf_read.h). The HDF5 library is not
  * thread-safe. So every use is between gonio_i_hdf_enter and gonio_i_hdf_leave. They take a lock
- * and keep HDF5 from printing. */
+ * and keep HDF5 from printing. Before them gonio_i_hdf_load has to succeed. */
 #ifndef GONIO_HDF_WRITE_H
 #define GONIO_HDF_WRITE_H
 
-#include <hdf5.h>
-
-#include "core.h"
+#include "hdf_library.h"
 
 typedef struct gonio_i_hdf_session {
     H5E_auto2_t handler;

@@ -8,7 +8,8 @@
 #include <string.h>
 
 #include <cblas.h>
-#include <lapacke.h>
+
+#include "lapack_library.h"
 
 /* Every call of OpenBLAS begins with this. LAPACK counts in 32-bit integers. */
 static gonio_status check_size(gonio_context *context, size_t rows, size_t columns)
@@ -18,7 +19,7 @@ static gonio_status check_size(gonio_context *context, size_t rows, size_t colum
         return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
                             "a matrix of %zu x %zu is more than LAPACK can index", rows, columns);
     }
-    return GONIO_OK;
+    return gonio_i_lapack_load(context);
 }
 
 static gonio_status check_info(gonio_context *context, const char *routine, lapack_int info)

@@ -1,5 +1,4 @@
 /* Comparison pictures: renderings in rows and columns with labels and errors, drawn by cairo. */
-#include <cairo.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -8,6 +7,7 @@
 
 #include "../core/options.h"
 #include "../core/number.h"
+#include "cairo_library.h"
 #include "image.h"
 
 enum { GAP = 8, MARGIN = 14, MOST_SIDE = 32767, SCALE_HEIGHT = 10 }; /* pixels */
@@ -372,6 +372,9 @@ gonio_status gonio_comparison_picture_write_png(gonio_context *context,
     if (status == GONIO_OK) {
         d.largest = taken.largest_difference > 0.0 ? taken.largest_difference : 20.0;
         status = lay_out(context, &taken, &d.at);
+    }
+    if (status == GONIO_OK) {
+        status = gonio_i_cairo_load(context);
     }
     if (status != GONIO_OK) {
         return status;

@@ -1,11 +1,11 @@
 /* Ray tracing by Embree: see scene.h. */
 #include "scene.h"
 
-#include <embree3/rtcore.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "embree_library.h"
 #include "geometry.h"
 #include "mesh.h"
 
@@ -80,9 +80,10 @@ static bool build(gonio_i_scene *s)
 gonio_status gonio_i_scene_create(gonio_context *context, const gonio_mesh *mesh,
                                   gonio_i_scene **scene)
 {
-    gonio_i_scene *made = gonio_i_allocate(context, 1, sizeof *made);
+    const gonio_status status = gonio_i_embree_load(context);
+    gonio_i_scene *made = status == GONIO_OK ? gonio_i_allocate(context, 1, sizeof *made) : NULL;
     if (made == NULL) {
-        return GONIO_ERROR_MEMORY;
+        return status == GONIO_OK ? GONIO_ERROR_MEMORY : status;
     }
     made->mesh = mesh;
     made->device = rtcNewDevice("threads=1,set_affinity=0,verbose=0");

@@ -44,6 +44,12 @@ expect_true 'missing normals are told' grep -q 't.obj: lacks normals' "$root/wor
         atlas:gold-polished atlas:red-cotton $small --labels 'original,another' --differences -o c.png
     expect_output 'c.png: 1 x 3 renderings' render --compare atlas:oak-sawn atlas:red-cotton atlas:oak-sawn \
         $small -o c.png
+    # Cairo is loaded for pictures with text alone. Where it cannot be, that is said.
+    mkdir "$root/work/libraries"
+    : >"$root/work/libraries/libcairo.so.2"
+    LD_LIBRARY_PATH=$root/work/libraries expect_ok render atlas:oak-sawn $small -o without.png
+    LD_LIBRARY_PATH=$root/work/libraries expect_fail 1 'a library cannot be loaded: ' \
+        render --compare atlas:oak-sawn atlas:red-cotton $small -o d.png
 }
 if full; then
     expect_output 'PSNR dB' compare --render atlas:oak-sawn atlas:oak-sawn

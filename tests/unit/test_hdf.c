@@ -408,6 +408,12 @@ static void weights_are_read_as_the_library_reads_them(void **state)
     }
 }
 
+static int load_library(void **state)
+{
+    (void)state;
+    return gonio_i_hdf_load(NULL) == GONIO_OK ? 0 : -1;
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -417,5 +423,5 @@ int main(void)
         cmocka_unit_test(what_is_not_stored),
         cmocka_unit_test(weights_are_read_as_the_library_reads_them),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, load_library, NULL);
 }

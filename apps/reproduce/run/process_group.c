@@ -6,7 +6,7 @@
 #include <time.h>
 
 #ifdef HAVE_MPI
-#include <mpi.h>
+#include "mpi_library.h"
 #endif
 
 /* Whether an MPI launcher has started this process; without one MPI need not even be asked. */
@@ -48,7 +48,8 @@ static bool wait_for_all(void *user)
 static bool join(process_group *group, const char *command)
 {
     int provided = 0;
-    if (MPI_Init_thread(NULL, NULL, MPI_THREAD_FUNNELED, &provided) != MPI_SUCCESS) {
+    if (mpi_load(NULL) != GONIO_OK ||
+        MPI_Init_thread(NULL, NULL, MPI_THREAD_FUNNELED, &provided) != MPI_SUCCESS) {
         fprintf(stderr, "gonio %s: MPI does not start\n", command);
         return false;
     }
@@ -61,7 +62,9 @@ static bool join(process_group *group, const char *command)
 static void leave(int code)
 {
     int initialized = 0;
-    MPI_Initialized(&initialized);
+    if (is_launched() && mpi_load(NULL) == GONIO_OK) {
+        MPI_Initialized(&initialized);
+    }
     if (initialized && code != 0) {
         fflush(NULL);
         MPI_Abort(MPI_COMM_WORLD, 1);

@@ -90,12 +90,15 @@ static gonio_status write_table(gonio_context *context, const char *name,
                                 const gonio_anisotropic_table *t, const char *path)
 {
     gonio_i_hdf_session session;
+    gonio_status status = gonio_i_hdf_load(context);
+    if (status != GONIO_OK) {
+        return status;
+    }
     gonio_i_hdf_enter(&session);
     const hid_t file = gonio_i_hdf_create_image();
     const bool made = file >= 0 && write_facts(file, name, t) && write_coefficients(file, t);
-    const gonio_status status =
-        made ? write_image(context, file, path)
-             : gonio_i_fail(context, GONIO_ERROR_MEMORY, "HDF5 cannot make the table");
+    status = made ? write_image(context, file, path)
+                  : gonio_i_fail(context, GONIO_ERROR_MEMORY, "HDF5 cannot make the table");
     if (file >= 0) {
         H5Fclose(file);
     }

@@ -227,8 +227,12 @@ static gonio_status write_image(const writer *w, const char *path)
 static gonio_status make_file(writer *w, const char *path)
 {
     gonio_i_hdf_session session;
+    gonio_status status = gonio_i_hdf_load(w->context);
+    if (status != GONIO_OK) {
+        return status;
+    }
     gonio_i_hdf_enter(&session);
-    gonio_status status = begin_file(w) ? GONIO_OK : cannot_make(w);
+    status = begin_file(w) ? GONIO_OK : cannot_make(w);
     gonio_i_hdf_leave(&session);
     for (int theta_h = 0; theta_h < GONIO_THETA_H_BINS && status == GONIO_OK; theta_h++) {
         status = write_slab(w, theta_h);
