@@ -8,6 +8,7 @@
 #include "../import.h"
 #include "../long_table.h"
 #include "../rules.h"
+#include "csv_blocks.h"
 #include "csv_kept.h"
 #include "csv_layout.h"
 #include "csv_notes.h"
@@ -15,7 +16,8 @@
 #include "format.h"
 
 /* Whether the text begins with column names between commas, semicolons or tabs, has names of angles
- * in another layout (csv_layout.h), or is empty. The reader checks the names. */
+ * in another layout (csv_layout.h), is scans in blocks (csv_blocks.h), or is empty. The reader
+ * checks the names. */
 static bool recognises(const char *text, size_t size)
 {
     gonio_i_csv_lines lines;
@@ -24,7 +26,7 @@ static bool recognises(const char *text, size_t size)
     if (memchr(text, '\0', size) != NULL) {
         return false;
     }
-    if (gonio_i_csv_layout_is_other(text, size)) {
+    if (gonio_i_csv_are_blocks(text, size) || gonio_i_csv_layout_is_other(text, size)) {
         return true;
     }
     gonio_i_csv_lines_begin(&lines, text, size, NULL);
@@ -393,6 +395,9 @@ static gonio_status read_table(csv_source *s, gonio_i_csv_kept *kept)
 
 static gonio_status make_plain(gonio_i_readings_file *file)
 {
+    if (gonio_i_csv_are_blocks(file->text, file->size)) {
+        return gonio_i_csv_blocks_make_plain(file->context, file->path, &file->text, &file->size);
+    }
     if (gonio_i_csv_layout_lacks_names(file->text, file->size)) {
         return gonio_i_fail(file->context, GONIO_ERROR_FORMAT,
                             "%s: begins with numbers, not with names of columns; put a line of "

@@ -7,95 +7,13 @@
 
 #include "../../core/csv_lines.h"
 #include "../../core/memory_stream.h"
+#include "csv_cells.h"
 #include "csv_names.h"
 
 enum { MOST_LINES = 200, NAME_ROOM = 128, LEAST_ANGLES = 2, LEAST_CELLS = 3 };
 
-static const char *const marks[] = {"#", "%", "//", "!", ";", "*", "--"};
-
-typedef struct line {
-    const char *at;
-    size_t length; /* without its end */
-} line;
-
-static bool is_blank(char c)
-{
-    return c == ' ' || c == '\t' || c == '\r';
-}
-
-/* The next line of a text; false at its end. */
-static bool next_line(const char **at, const char *end, line *l)
-{
-    if (*at >= end) {
-        return false;
-    }
-    const char *stop = memchr(*at, '\n', (size_t)(end - *at));
-    *l = (line){*at, (size_t)((stop != NULL ? stop : end) - *at)};
-    *at = stop != NULL ? stop + 1 : end;
-    return true;
-}
-
-static line trimmed(line l)
-{
-    while (l.length > 0 && is_blank(*l.at)) {
-        l.at++;
-        l.length--;
-    }
-    while (l.length > 0 && is_blank(l.at[l.length - 1])) {
-        l.length--;
-    }
-    return l;
-}
-
-/* The line without the comment mark that begins it. *mark: which, NULL for none. */
-static line without_mark(line l, const char **mark)
-{
-    l = trimmed(l);
-    *mark = NULL;
-    for (size_t k = 0; k < sizeof marks / sizeof *marks && *mark == NULL; k++) {
-        const size_t length = strlen(marks[k]);
-        *mark = l.length >= length && memcmp(l.at, marks[k], length) == 0 ? marks[k] : NULL;
-    }
-    while (*mark != NULL && l.length > 0 && *l.at == **mark) {
-        l.at++;
-        l.length--;
-    }
-    return trimmed(l);
-}
-
-/* ---- cells ---- */
-
-/* A cell of a line whose cells are between separators; ' ' stands for any blanks. */
-static bool next_cell(line *rest, char separator, line *cell)
-{
-    size_t k = 0;
-    if (rest->at == NULL) {
-        return false;
-    }
-    while (k < rest->length &&
-           (separator == ' ' ? !is_blank(rest->at[k]) : rest->at[k] != separator)) {
-        k++;
-    }
-    *cell = trimmed((line){rest->at, k});
-    while (separator == ' ' && k + 1 < rest->length && is_blank(rest->at[k + 1])) {
-        k++;
-    }
-    *rest = k < rest->length ? (line){rest->at + k + 1, rest->length - k - 1} : (line){NULL, 0};
-    return true;
-}
-
-static size_t count_cells(line l, char separator)
-{
-    line cell;
-    size_t count = 0;
-    while (next_cell(&l, separator, &cell)) {
-        count++;
-    }
-    return count;
-}
-
 /* Strokes at both ends belong to the frame of a table. */
-static line without_frame(line l)
+static gonio_i_line without_frame(gonio_i_line l)
 {
     if (l.length > 1 && *l.at == '|' && l.at[l.length - 1] == '|') {
         l.at++;
@@ -105,11 +23,11 @@ static line without_frame(line l)
 }
 
 /* How many cells are names of angles. */
-static size_t count_angles(line l, char separator)
+static size_t count_angles(gonio_i_line l, char separator)
 {
-    line cell;
+    gonio_i_line cell;
     size_t count = 0;
-    while (next_cell(&l, separator, &cell)) {
+    while (gonio_i_next_cell(&l, separator, &cell)) {
         char name[NAME_ROOM];
         if (cell.length < sizeof name) {
             memcpy(name, cell.at, cell.length);
@@ -121,11 +39,11 @@ static size_t count_angles(line l, char separator)
 }
 
 /* The separator between names; 0 if these are no names of angles. */
-static char separator_of_names(line l)
+static char separator_of_names(gonio_i_line l)
 {
     static const char separators[] = "\t;,| ";
     for (size_t k = 0; separators[k] != '\0'; k++) {
-        if (count_cells(l, separators[k]) >= LEAST_CELLS &&
+        if (gonio_i_count_cells(l, separators[k]) >= LEAST_CELLS &&
             count_angles(l, separators[k]) >= LEAST_ANGLES) {
             return separators[k];
         }
@@ -152,7 +70,8 @@ static bool are_plain(const char *text, size_t size)
     if (!gonio_i_csv_lines_next(&lines, &at, &length) || length == 0) {
         return true;
     }
-    const line first = trimmed((line){at, length - (at[length - 1] == '\n')});
+    const gonio_i_line first =
+        gonio_i_trimmed((gonio_i_line){at, length - (at[length - 1] == '\n')});
     const char separator = separator_of_names(first);
     return gonio_i_csv_stated_separator(at, length) != '\0' ||
            (separator != '\0' && separator != ' ' && separator != '|') ||
@@ -163,16 +82,16 @@ static bool find_names(const char *text, size_t size, names *n)
 {
     const char *at = text;
     const char *end = text + size;
-    line l;
+    gonio_i_line l;
     *n = (names){0};
     if (size == 0 || memchr(text, '\0', size) != NULL || are_plain(text, size)) {
         return false;
     }
-    while (n->number < MOST_LINES && next_line(&at, end, &l)) {
-        l = without_frame(without_mark(l, &n->mark));
+    while (n->number < MOST_LINES && gonio_i_next_line(&at, end, &l)) {
+        l = without_frame(gonio_i_without_mark(l, &n->mark));
         n->separator = separator_of_names(l);
         if (n->separator != '\0') {
-            n->cells = count_cells(l, n->separator);
+            n->cells = gonio_i_count_cells(l, n->separator);
             return at < end;
         }
         n->number++;
@@ -194,44 +113,45 @@ bool gonio_i_csv_layout_lacks_names(const char *text, size_t size)
     size_t length = 0;
     gonio_i_csv_lines_begin(&lines, text, size, NULL);
     return gonio_i_csv_lines_next(&lines, &at, &length) && length > 0 &&
-           strspn(at, numbers) >= length && count_cells(trimmed((line){at, length}), ' ') > 0;
+           strspn(at, numbers) >= length &&
+           gonio_i_count_cells(gonio_i_trimmed((gonio_i_line){at, length}), ' ') > 0;
 }
 
 /* ---- printing ---- */
 
-static void print_comment(FILE *stream, line l)
+static void print_comment(FILE *stream, gonio_i_line l)
 {
     fprintf(stream, "# %.*s\n", (int)l.length, l.at);
 }
 
 /* The separator by which a line has as many cells as there are names: that of the names if it does,
  * 0 if none does. */
-static char separator_of_row(line l, const names *n)
+static char separator_of_row(gonio_i_line l, const names *n)
 {
     const char separators[] = {n->separator, '\t', ';', ',', ' ', '|'};
     for (size_t k = 0; k < sizeof separators; k++) {
-        if (count_cells(l, separators[k]) == n->cells) {
+        if (gonio_i_count_cells(l, separators[k]) == n->cells) {
             return separators[k];
         }
     }
     return '\0';
 }
 
-static void print_cells(FILE *stream, line l, char separator)
+static void print_cells(FILE *stream, gonio_i_line l, char separator)
 {
-    line cell;
-    for (const char *between = ""; next_cell(&l, separator, &cell); between = "\t") {
+    gonio_i_line cell;
+    for (const char *between = ""; gonio_i_next_cell(&l, separator, &cell); between = "\t") {
         fprintf(stream, "%s%.*s", between, (int)cell.length, cell.at);
     }
     fputc('\n', stream);
 }
 
 /* Rows that do not fit the names are for the reader to refuse, by their line. */
-static void print_row(FILE *stream, line l, const names *n)
+static void print_row(FILE *stream, gonio_i_line l, const names *n)
 {
     const char *mark = NULL;
-    const line rest = without_mark(l, &mark);
-    const line row = without_frame(trimmed(l));
+    const gonio_i_line rest = gonio_i_without_mark(l, &mark);
+    const gonio_i_line row = without_frame(gonio_i_trimmed(l));
     const char separator = separator_of_row(row, n);
     const bool rule =
         row.length > 0 && n->separator == '|' && strspn(row.at, "|-:+= ") >= row.length;
@@ -250,9 +170,9 @@ static void print_table(FILE *stream, const char *text, size_t size, const names
 {
     const char *at = text;
     const char *mark = NULL;
-    line l;
-    for (size_t number = 0; next_line(&at, text + size, &l); number++) {
-        const line rest = without_mark(l, &mark);
+    gonio_i_line l;
+    for (size_t number = 0; gonio_i_next_line(&at, text + size, &l); number++) {
+        const gonio_i_line rest = gonio_i_without_mark(l, &mark);
         if (number > n->number) {
             print_row(stream, l, n);
         } else if (number == n->number) {
