@@ -19,23 +19,21 @@ expect_ok convert $steel a.bsdf
 expect_output 'RGL anisotropic BSDF, RGB, 48 x 48 at 273 incidences' convert --json a.bsdf b.bsdf
 expect_output ' directions compared, ' compare -v k.xml a.bsdf
 expect_output '0.000     0.000    0.0000' compare a.bsdf b.bsdf
-table=k.xml
 if ! writes_hdf5; then
     expect_fail 2 'a.h5: this gonio was built without HDF5' convert $steel a.h5
     expect_fail 2 'a.csv: this gonio was built without HDF5' convert $steel --format table a.csv
 elif full; then
-    table=k.h5
     expect_ok convert k.xml k.h5
     expect_output 'gonio anisotropic BRDF table 90 x 90 x 36, 13 orders of phi_h, 2-fold' info k.h5
+    expect_also 'turned by 90 degrees it differs by'
 fi
-expect_output 'turned by 90 degrees it differs by' info $table
 
 # The mean, with what it lacks.
-run convert $table --average-azimuths mean.binary
+run convert k.xml --average-azimuths mean.binary
 grep -q 'the mean over azimuths differs from the anisotropic material by' "$root/work/stderr" ||
     failed 'the loss of the mean is not stated'
 expect_output 'MERL table' info mean.binary
-run convert $table --average-azimuths --format zemax --steps 30,30,30 mean.bsdf
+run convert k.xml --average-azimuths --format zemax --steps 30,30,30 mean.bsdf
 grep -q 'the mean over azimuths differs from the anisotropic material by' "$root/work/stderr" ||
     failed 'the loss of the mean is not stated of a Zemax file'
 
