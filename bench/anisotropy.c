@@ -2,10 +2,11 @@
  *
  *     gonio-anisotropy BASIS N[,N...] [FILE ...]
  *
- * FILE is a material (atlas:NAME, a table) or readings; without any, all anisotropic built-in
- * materials. A material is read without noise at the first N directions of one anisotropic plan,
- * and predicted at 3,000 random pairs of any azimuth. Of readings, a random part of at most 3,000
- * are candidates of the plan; the others are predicted, repeats averaged before.
+ * FILE is a material (atlas:NAME, a table), other:NAME (other_grain.h) or readings; other: stands
+ * for all of these. Without any, all anisotropic built-in materials. A material is read without
+ * noise at the first N directions of one anisotropic plan, and predicted at 3,000 random pairs of
+ * any azimuth. Of readings, a random part of at most 3,000 are candidates of the plan; the others
+ * are predicted, repeats averaged before.
  *
  * Prints a line of CSV for each file and N: E6, per cent, by the isotropic and the anisotropic
  * model and by interpolation from the same readings; the E6 that the anisotropic model expects; the
@@ -22,6 +23,7 @@
 #include "blas_kernels.h"
 #include "core/core.h"
 #include "core/random.h"
+#include "other_grain.h"
 #include "prior/stretch.h"
 
 enum { MOST_SIZES = 16, PLACES = 3000, CANDIDATES = 3000 };
@@ -43,6 +45,8 @@ typedef struct setting {
     size_t size[MOST_SIZES];
     result sum[MOST_SIZES];
     size_t files;
+    gonio_pair *planned; /* for every material; NULL before the first */
+    size_t planned_count;
 } setting;
 
 /* A file: readings in the order of its plan, and the values to predict. */
@@ -104,12 +108,37 @@ static void plan(const setting *s, const gonio_pair *candidates, size_t count, s
     gonio_plan_free(&made);
 }
 
-static void begin_material(const setting *s, const char *path, subject *it)
+/* The plan of all materials. */
+static void plan_materials(setting *s, subject *it)
+{
+    if (s->planned == NULL) {
+        plan(s, NULL, 0, it);
+        s->planned = it->pair;
+        s->planned_count = it->planned;
+    }
+    it->planned = s->planned_count;
+    it->pair = room(it->planned, sizeof *it->pair);
+    memcpy(it->pair, s->planned, it->planned * sizeof *it->pair);
+}
+
+static void look_up(const setting *s, const char *path, subject *it)
 {
     gonio_material *material = NULL;
-    gonio_i_oriented *place = room(PLACES, sizeof *place);
+    if (other_grain_is(path)) {
+        other_grain_values(path, it->pair, it->planned, it->value);
+        other_grain_values(path, it->place, it->places, it->known);
+        return;
+    }
     check(gonio_material_open(s->context, path, &material));
-    plan(s, NULL, 0, it);
+    check(gonio_material_evaluate(s->context, material, it->pair, it->planned, it->value));
+    check(gonio_material_evaluate(s->context, material, it->place, it->places, it->known));
+    gonio_material_free(&material);
+}
+
+static void begin_material(setting *s, const char *path, subject *it)
+{
+    gonio_i_oriented *place = room(PLACES, sizeof *place);
+    plan_materials(s, it);
     it->channels = GONIO_CHANNELS;
     it->value = room(it->planned * it->channels, sizeof *it->value);
     it->scale = room(it->channels, sizeof *it->scale);
@@ -123,9 +152,7 @@ static void begin_material(const setting *s, const char *path, subject *it)
     for (int c = 0; c < GONIO_CHANNELS; c++) {
         it->scale[c] = gonio_log_scale(c);
     }
-    check(gonio_material_evaluate(s->context, material, it->pair, it->planned, it->value));
-    check(gonio_material_evaluate(s->context, material, it->place, PLACES, it->known));
-    gonio_material_free(&material);
+    look_up(s, path, it);
     free(place);
 }
 
@@ -384,7 +411,9 @@ static void try_file(setting *s, const char *path)
 {
     subject it = {0};
     gonio_kind kind = GONIO_KIND_UNKNOWN;
-    check(gonio_file_kind(s->context, path, &kind, NULL));
+    if (!other_grain_is(path)) {
+        check(gonio_file_kind(s->context, path, &kind, NULL));
+    }
     if (kind == GONIO_KIND_READINGS) {
         begin_readings(s, path, &it);
     } else {
@@ -395,6 +424,15 @@ static void try_file(setting *s, const char *path)
     }
     s->files++;
     end_subject(&it);
+}
+
+static void try_others(setting *s)
+{
+    for (int k = 0; k < other_grain_count(); k++) {
+        char path[128];
+        snprintf(path, sizeof path, "other:%s", other_grain_name(k));
+        try_file(s, path);
+    }
 }
 
 static void try_built_in(setting *s)
@@ -436,12 +474,17 @@ int main(int argc, char **argv)
     check(gonio_basis_read(s.context, argv[1], &s.basis));
     puts("file,n,isotropic,anisotropic,interpolation,loss,expected,inside,odds,axis_ratio");
     for (int k = 3; k < argc; k++) {
-        try_file(&s, argv[k]);
+        if (strcmp(argv[k], "other:") == 0) {
+            try_others(&s);
+        } else {
+            try_file(&s, argv[k]);
+        }
     }
     if (argc == 3) {
         try_built_in(&s);
     }
     print_means(&s);
+    free(s.planned);
     gonio_basis_free(&s.basis);
     gonio_context_free(&s.context);
     return 0;
