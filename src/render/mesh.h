@@ -45,10 +45,13 @@ gonio_status gonio_i_read_ply(gonio_i_mesh_making *making, const gonio_i_bytes *
 /* Makes a flat square sample that faces +z, within the unit sphere. Errors: _MEMORY. */
 gonio_status gonio_i_mesh_flat(gonio_context *context, gonio_mesh **mesh);
 
+/* So many lines, elements or corners are read or made between two reports of progress. */
+enum { GONIO_I_MESH_PROGRESS = 1 << 14 };
+
 /* Makes normals for a mesh without. The normal at a corner of a triangle is the mean, weighted by
  * area, of the faces around the corner that are within 50 degrees of the triangle; that of the
  * triangle alone where tens of thousands of triangles meet at a corner, which would take too long.
- * Corners are no longer shared afterwards. Errors: _MEMORY. */
+ * Corners are no longer shared afterwards. Errors: _MEMORY, _CANCELLED. */
 gonio_status gonio_i_mesh_make_normals(gonio_context *context, gonio_mesh *mesh);
 
 #endif

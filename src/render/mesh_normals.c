@@ -96,6 +96,27 @@ static void mean_normal(neighbours *n, size_t triangle, uint32_t corner, float n
     }
 }
 
+/* Gives each triangle corners of its own, with their normals. */
+static gonio_status split_corners(gonio_context *context, gonio_mesh *mesh, neighbours *n,
+                                  float *position, float *normal)
+{
+    const size_t uses = 3 * mesh->triangles;
+    for (size_t k = 0; k < uses; k++) {
+        if (k % GONIO_I_MESH_PROGRESS == 0) {
+            const gonio_status status =
+                gonio_i_progress(context, "making normals", (double)k / (double)uses);
+            if (status != GONIO_OK) {
+                return status;
+            }
+        }
+        memcpy(position + 3 * k, mesh->position + 3 * (size_t)mesh->corner[k],
+               3 * sizeof *position);
+        mean_normal(n, k / 3, mesh->corner[k], normal + 3 * k);
+        mesh->corner[k] = (uint32_t)k;
+    }
+    return GONIO_OK;
+}
+
 gonio_status gonio_i_mesh_make_normals(gonio_context *context, gonio_mesh *mesh)
 {
     const size_t uses = 3 * mesh->triangles;
@@ -106,21 +127,16 @@ gonio_status gonio_i_mesh_make_normals(gonio_context *context, gonio_mesh *mesh)
     if (status == GONIO_OK) {
         position = gonio_i_allocate(context, uses, 3 * sizeof *position);
         normal = gonio_i_allocate(context, uses, 3 * sizeof *normal);
-        status = position != NULL && normal != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
+        status = position != NULL && normal != NULL
+                     ? split_corners(context, mesh, &n, position, normal)
+                     : GONIO_ERROR_MEMORY;
     }
+    free_neighbours(&n);
     if (status != GONIO_OK) {
         free(position);
         free(normal);
-        free_neighbours(&n);
         return status;
     }
-    for (size_t k = 0; k < uses; k++) {
-        memcpy(position + 3 * k, mesh->position + 3 * (size_t)mesh->corner[k],
-               3 * sizeof *position);
-        mean_normal(&n, k / 3, mesh->corner[k], normal + 3 * k);
-        mesh->corner[k] = (uint32_t)k;
-    }
-    free_neighbours(&n);
     free(mesh->position);
     free(mesh->normal);
     mesh->position = position;

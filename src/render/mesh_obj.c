@@ -85,6 +85,10 @@ static gonio_status for_each_line(reading *r, line_reader *read)
     r->line = 1;
     for (char *line = r->text; line < r->end && status == GONIO_OK; line += strlen(line) + 1) {
         status = read(r, line);
+        if (status == GONIO_OK && r->line % GONIO_I_MESH_PROGRESS == 0) {
+            status = gonio_i_progress(r->making->context, "reading the mesh",
+                                      (double)(line - r->text) / (double)(r->end - r->text));
+        }
         r->line++;
     }
     return status;

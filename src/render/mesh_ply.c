@@ -286,6 +286,21 @@ static gonio_status read_item(reading *r, const element *e)
                : fail(r, "its corners lack x, y or z");
 }
 
+static gonio_status read_items(reading *r, const element *e)
+{
+    gonio_status status = GONIO_OK;
+    /* An item without properties takes no bytes, so its count has no limit. */
+    for (unsigned long long item = 0; e->properties > 0 && item < e->items && status == GONIO_OK;
+         item++) {
+        status = read_item(r, e);
+        if (status == GONIO_OK && (item + 1) % GONIO_I_MESH_PROGRESS == 0) {
+            status = gonio_i_progress(r->making->context, "reading the mesh",
+                                      (double)item / (double)e->items);
+        }
+    }
+    return status;
+}
+
 gonio_status gonio_i_read_ply(gonio_i_mesh_making *making, const gonio_i_bytes *bytes)
 {
     reading *r = gonio_i_allocate(making->context, 1, sizeof *r);
@@ -295,12 +310,7 @@ gonio_status gonio_i_read_ply(gonio_i_mesh_making *making, const gonio_i_bytes *
     *r = (reading){.making = making, .at = bytes->data, .end = bytes->data + bytes->size};
     gonio_status status = read_header(r);
     for (int k = 0; k < r->elements && status == GONIO_OK; k++) {
-        const element *e = &r->element[k];
-        /* An item without properties takes no bytes, so its count has no limit. */
-        for (unsigned long long item = 0;
-             e->properties > 0 && item < e->items && status == GONIO_OK; item++) {
-            status = read_item(r, e);
-        }
+        status = read_items(r, &r->element[k]);
     }
     free(r);
     return status;

@@ -196,12 +196,80 @@ static void damaged_meshes_are_refused(void **state)
     }
 }
 
+/* Cancels while normals are made. */
+static int cancel_normals(void *user, const char *task, double fraction)
+{
+    (void)user;
+    (void)fraction;
+    return strcmp(task, "making normals") == 0;
+}
+
+/* Cancels while a mesh is read. */
+static int cancel_reading(void *user, const char *task, double fraction)
+{
+    (void)user;
+    (void)fraction;
+    return strcmp(task, "reading the mesh") == 0;
+}
+
+static gonio_status read_cancelled(int (*progress)(void *, const char *, double), const char *text,
+                                   size_t size)
+{
+    gonio_context *usual = telling;
+    gonio_mesh *mesh = NULL;
+    const gonio_context_options options = {.size = sizeof options, .progress = progress};
+    assert_int_equal(gonio_context_create(&telling, &options), GONIO_OK);
+    const gonio_status status = read_mesh(text, size, &mesh);
+    gonio_context_free(&telling);
+    telling = usual;
+    assert_true((mesh == NULL) == (status != GONIO_OK));
+    gonio_mesh_free(&mesh);
+    return status;
+}
+
+static void large_meshes_can_be_cancelled(void **state)
+{
+    (void)state;
+    static const char triangle[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    enum { MANY = 2 * GONIO_I_MESH_PROGRESS };
+    char *many = malloc(sizeof triangle + MANY);
+    assert_non_null(many);
+    memcpy(many, triangle, sizeof triangle - 1);
+    memset(many + sizeof triangle - 1, '\n', MANY);
+    assert_int_equal(read_cancelled(cancel_normals, triangle, sizeof triangle - 1),
+                     GONIO_ERROR_CANCELLED);
+    assert_int_equal(read_cancelled(cancel_reading, triangle, sizeof triangle - 1), GONIO_OK);
+    assert_int_equal(read_cancelled(cancel_reading, many, sizeof triangle - 1 + MANY),
+                     GONIO_ERROR_CANCELLED);
+    free(many);
+}
+
+static void large_plys_can_be_cancelled(void **state)
+{
+    (void)state;
+    enum { CORNERS = 2 * GONIO_I_MESH_PROGRESS };
+    static const char head[] = "ply\nformat binary_little_endian 1.0\nelement vertex 32768\n"
+                               "property uchar x\nproperty uchar y\nproperty uchar z\nend_header\n";
+    assert_int_equal(CORNERS, 32768);
+    char *many = calloc(sizeof head - 1 + 3 * (size_t)CORNERS, 1);
+    assert_non_null(many);
+    memcpy(many, head, sizeof head - 1);
+    assert_int_equal(read_cancelled(cancel_reading, many, sizeof head - 1 + 3 * (size_t)CORNERS),
+                     GONIO_ERROR_CANCELLED);
+    free(many);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(meshes_are_read),           cmocka_unit_test(small_objs_are_read),
-        cmocka_unit_test(crowded_corners_are_read),  cmocka_unit_test(objs_of_all_kinds_are_read),
-        cmocka_unit_test(concave_faces_are_covered), cmocka_unit_test(damaged_meshes_are_refused),
+        cmocka_unit_test(meshes_are_read),
+        cmocka_unit_test(small_objs_are_read),
+        cmocka_unit_test(crowded_corners_are_read),
+        cmocka_unit_test(objs_of_all_kinds_are_read),
+        cmocka_unit_test(concave_faces_are_covered),
+        cmocka_unit_test(damaged_meshes_are_refused),
+        cmocka_unit_test(large_meshes_can_be_cancelled),
+        cmocka_unit_test(large_plys_can_be_cancelled),
     };
     return cmocka_run_group_tests(tests, begin, end);
 }
