@@ -15,6 +15,7 @@
     X(H5Dcreate2)                                                                                  \
     X(H5Dget_space)                                                                                \
     X(H5Dwrite)                                                                                    \
+    X(H5Dwrite_chunk)                                                                              \
     X(H5Eclear2)                                                                                   \
     X(H5Eget_auto2)                                                                                \
     X(H5Eset_auto2)                                                                                \
@@ -65,6 +66,7 @@ gonio_status gonio_i_hdf_load(gonio_context *context);
 #define H5Dcreate2 (*gonio_i_hdf.H5Dcreate2)
 #define H5Dget_space (*gonio_i_hdf.H5Dget_space)
 #define H5Dwrite (*gonio_i_hdf.H5Dwrite)
+#define H5Dwrite_chunk (*gonio_i_hdf.H5Dwrite_chunk)
 #define H5Eclear2 (*gonio_i_hdf.H5Eclear2)
 #define H5Eget_auto2 (*gonio_i_hdf.H5Eget_auto2)
 #define H5Eset_auto2 (*gonio_i_hdf.H5Eset_auto2)

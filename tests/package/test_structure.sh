@@ -84,6 +84,14 @@ if [[ $# -gt 0 ]]; then
     fi
 fi
 
+# What is loaded when it is used (core/on_demand.h) is called by pointers alone.
+called=$(nm -A -P "$@" | grep -E ' (H5|rtc|cairo_|LAPACKE_)[A-Za-z0-9_]* U' | grep -v '_library\.c\.o:' || true)
+if [[ -n $called ]]; then
+    echo "called without its header NAME_library.h naming it, so the program is linked with the library:" >&2
+    echo "$called" >&2
+    failed=1
+fi
+
 # Every public function is called by a test of the library's interface.
 untested() { grep -vwFf <(cat) <(cat include/gonio/*.h | sed 's#/\*.*\*/##' | tr '\n' ' ' | grep -oE 'GONIO_API[^;(]*\(' |
     grep -oE 'gonio_[a-z0-9_]+ *\($' | tr -d ' (' | sort -u) || true; }
