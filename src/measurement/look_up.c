@@ -91,7 +91,8 @@ static int compare_places(const void *a, const void *b)
 
 typedef struct known_places {
     const gonio_readings *readings;
-    place *place;  /* [readings->count], sorted */
+    size_t count;  /* of places: repeats have that of the first of them */
+    place *place;  /* [count], sorted */
     bool turned;   /* the rotation of the sample matters */
     double median; /* by what readings at other rotations differ, |ln| */
 } known_places;
@@ -106,6 +107,17 @@ static bool are_turned(gonio_context *context, const gonio_readings *known, know
     return status == GONIO_OK;
 }
 
+/* Whether the first reading of the direction is at exactly the same angles, so that it is always
+ * found before this one. */
+static bool is_repeat(const gonio_readings *known, size_t n)
+{
+    const gonio_pair *a = &known->pair[n];
+    const gonio_pair *b = &known->pair[known->first_same[n]];
+    return known->first_same[n] != n && a->incident.theta == b->incident.theta &&
+           a->incident.phi == b->incident.phi && a->outgoing.theta == b->outgoing.theta &&
+           a->outgoing.phi == b->outgoing.phi;
+}
+
 /* any_rotation: the rotation of the sample does not matter, whatever the readings say. */
 static bool sort_places(gonio_context *context, const gonio_readings *known, bool any_rotation,
                         known_places *k)
@@ -118,10 +130,11 @@ static bool sort_places(gonio_context *context, const gonio_readings *known, boo
     }
     for (size_t n = 0; k->place != NULL && n < known->count; n++) {
         const gonio_pair *pair = &known->pair[n];
-        k->place[n] = (place){column_of(pair->incident.theta), pair->outgoing.theta, n};
+        k->place[k->count] = (place){column_of(pair->incident.theta), pair->outgoing.theta, n};
+        k->count += !is_repeat(known, n);
     }
     if (k->place != NULL) {
-        qsort(k->place, known->count, sizeof *k->place, compare_places);
+        qsort(k->place, k->count, sizeof *k->place, compare_places);
     }
     return k->place != NULL;
 }
@@ -130,7 +143,7 @@ static bool sort_places(gonio_context *context, const gonio_readings *known, boo
 static size_t lower_bound(const known_places *k, place at)
 {
     size_t low = 0;
-    size_t high = k->readings->count;
+    size_t high = k->count;
     while (low < high) {
         const size_t middle = low + (high - low) / 2;
         if (compare_places(&k->place[middle], &at) < 0) {
@@ -169,7 +182,7 @@ static void try_angles(const known_places *k, gonio_pair at, double theta_i, dou
 {
     for (int64_t column = column_of(theta_i) - 1; column <= column_of(theta_i) + 1; column++) {
         size_t n = lower_bound(k, (place){column, theta_o - SAME, 0});
-        while (n < k->readings->count && k->place[n].column == column &&
+        while (n < k->count && k->place[n].column == column &&
                k->place[n].theta_o <= theta_o + SAME) {
             try_reading(k, at, k->place[n].reading, b);
             n++;
@@ -255,12 +268,11 @@ static size_t average(const gonio_readings *known, const size_t *next, size_t fi
     return count;
 }
 
-/* Copies the values of a direction. Both have the same channels. Returns whether several readings
- * were averaged. */
+/* Copies the values of a direction, whose first reading is `first`. Both have the same channels.
+ * Returns whether several readings were averaged. */
 static bool take_values(gonio_readings *plan, size_t row, const gonio_readings *known,
-                        const size_t *next, size_t from)
+                        const size_t *next, size_t first)
 {
-    const size_t first = known->first_same[from];
     bool averaged = false;
     for (size_t c = 0; c < known->channels; c++) {
         const size_t at = row * known->channels + c;
@@ -302,17 +314,57 @@ static gonio_status refuse_unread(gonio_context *context, const gonio_readings *
                         plan->path, plan->line[row], k->readings->path, turned);
 }
 
-static gonio_status fill(gonio_context *context, gonio_readings *plan, const known_places *k,
-                         const size_t *next)
+/* What was taken for a direction of the known readings. */
+typedef struct taken_row {
+    size_t row;    /* of the plan, plus 1; 0: none yet */
+    bool averaged; /* of several readings */
+} taken_row;
+
+/* Copies what another row of the plan has. */
+static void copy_row(gonio_readings *plan, size_t from, size_t to)
+{
+    const size_t channels = plan->channels;
+    memcpy(plan->value + to * channels, plan->value + from * channels,
+           channels * sizeof *plan->value);
+    if (plan->deviation != NULL) {
+        memcpy(plan->deviation + to * channels, plan->deviation + from * channels,
+               channels * sizeof *plan->deviation);
+    }
+}
+
+/* taken: [known->count], all 0. */
+static gonio_status take_rows(gonio_context *context, gonio_readings *plan, const known_places *k,
+                              const size_t *next, taken_row *taken, size_t *averaged)
 {
     const gonio_readings *known = k->readings;
-    size_t averaged = 0;
     for (size_t n = 0; n < plan->count; n++) {
         const size_t from = find(k, plan->pair[n]);
         if (from == known->count) {
             return refuse_unread(context, plan, n, k);
         }
-        averaged += take_values(plan, n, known, next, from);
+        const size_t first = known->first_same[from];
+        if (taken[first].row > 0) {
+            copy_row(plan, taken[first].row - 1, n);
+        } else {
+            taken[first].averaged = take_values(plan, n, known, next, first);
+            taken[first].row = n + 1;
+        }
+        *averaged += taken[first].averaged;
+    }
+    return GONIO_OK;
+}
+
+static gonio_status fill(gonio_context *context, gonio_readings *plan, const known_places *k,
+                         const size_t *next)
+{
+    const gonio_readings *known = k->readings;
+    size_t averaged = 0;
+    taken_row *of = gonio_i_allocate(context, known->count, sizeof *of);
+    const gonio_status status =
+        of == NULL ? GONIO_ERROR_MEMORY : take_rows(context, plan, k, next, of, &averaged);
+    free(of);
+    if (status != GONIO_OK) {
+        return status;
     }
     if (averaged > 0) {
         gonio_i_note(context, "%s: read more than once at %zu of %zu directions: means are taken",
