@@ -144,22 +144,24 @@ static void print_times(FILE *stream, const gonio_instrument_view *view)
     fprintf(stream, "; axes move %s\n", view->in_turn ? "one after another" : "together");
 }
 
-static bool has_lists(const gonio_instrument_view *view)
+/* What else counts as reached. */
+static const char *words_of_between(const gonio_instrument_view *view)
 {
-    bool any = false;
+    bool lists = false;
     for (size_t k = 0; k < view->axes; k++) {
-        any = any || view->axis[k].positions > 0;
+        lists = lists || view->axis[k].positions > 0;
     }
-    return any;
+    return view->directions > 0 ? ", with what is within 7.5 degrees of the table's"
+           : lists              ? ", with what is between listed positions"
+                                : "";
 }
 
 static void print_reach(FILE *stream, const gonio_instrument_view *view, const gonio_reach *reach)
 {
-    const bool region = reach->share > 0.0 && view->directions == 0;
+    const bool region = reach->share > 0.0;
     if (region) {
         fprintf(stream, "reach: %.1f %% of all pairs of directions of an isotropic sample%s",
-                100.0 * reach->share,
-                has_lists(view) ? ", with what is between listed positions" : "");
+                100.0 * reach->share, words_of_between(view));
     } else {
         fputs("reach: single directions or a plane", stream);
     }

@@ -177,7 +177,8 @@ GONIO_API size_t gonio_instrument_settings(const gonio_instrument *instrument, g
 GONIO_API const char *gonio_instrument_pair_obstacle(const gonio_instrument *instrument,
                                                      gonio_pair pair, gonio_freedom freedom);
 
-/* The same of a region of pairs: what is between the positions of a list counts as reached. */
+/* The same of a region of pairs: what is between the positions of a list, or within 7.5 degrees of
+ * a direction of a table, counts as reached. */
 GONIO_API const char *gonio_instrument_region_obstacle(const gonio_instrument *instrument,
                                                        gonio_pair pair, gonio_freedom freedom);
 
@@ -198,8 +199,8 @@ enum { GONIO_MOST_OBSTACLES = 64 };
 /* What an instrument reaches of all pairs of directions. Shares are by projected solid angle of
  * both directions. */
 typedef struct gonio_reach {
-    double share;                  /* of the pairs that can be read, or are between listed
-                                    * positions, 0 to 1; 0 also where only a plane or single
+    double share;                  /* of the pairs that can be read, or are between what can
+                                    * (gonio_instrument_region_obstacle), 0 to 1; 0 also where only a plane or single
                                     * directions can */
     double theta_i[2], theta_o[2]; /* the lowest and highest that can be read, rad */
     double least_separation;       /* of light and detector, rad */

@@ -302,7 +302,7 @@ static gonio_status read_table(const gonio_i_place *file, const json_t *root,
         status = take_row(file, numbers + row * columns, row, angles_are_axes, instrument);
     }
     free(numbers);
-    return status;
+    return status == GONIO_OK ? gonio_i_table_index(file->context, instrument) : status;
 }
 
 gonio_status gonio_i_read_axes(const gonio_i_place *place, const json_t *root,

@@ -22,6 +22,8 @@ void gonio_instrument_free(gonio_instrument **instrument)
     free(i->wavelength);
     free(i->reference);
     free(i->row);
+    free(i->by_angles);
+    free(i->by_axes);
     free(i);
     *instrument = NULL;
 }

@@ -62,6 +62,12 @@ size_t gonio_i_aperture_directions(gonio_i_aperture aperture);
 size_t gonio_i_through_apertures(gonio_i_aperture source, gonio_i_aperture detector,
                                  gonio_pair pair, gonio_pair *sample);
 
+/* A row of a table by a key, ascending. */
+typedef struct gonio_i_row_key {
+    double key;
+    size_t row;
+} gonio_i_row_key;
+
 struct gonio_instrument {
     gonio_instrument_view view; /* its names belong to `source` */
     const gonio_i_kinematics *kinematics;
@@ -74,8 +80,17 @@ struct gonio_instrument {
     const char **channel;
     double *wavelength;
     gonio_reference_row *reference;
-    gonio_setting *row; /* [view.directions]: a table of reachable directions */
+    gonio_setting *row;         /* [view.directions]: a table of reachable directions */
+    gonio_i_row_key *by_angles; /* [view.directions], of theta_i + theta_o */
+    gonio_i_row_key *by_axes;   /* [view.directions], of the sum of the axes */
+    double same_row;            /* pairs this near are a row of the table, rad */
 };
+
+/* Directions this near are a row of a table, rad. */
+#define GONIO_I_SAME_ROW 1e-3
+
+/* Makes the indices of a table, once its rows are there. Errors: _MEMORY. */
+gonio_status gonio_i_table_index(gonio_context *context, gonio_instrument *instrument);
 
 /* Ranges include their ends to within this, rad. */
 #define GONIO_I_EDGE 1e-6

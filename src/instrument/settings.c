@@ -4,6 +4,9 @@
 
 #include "settings.h"
 
+/* What is this near to a direction of a table counts as reached, rad. */
+static const double BETWEEN_ROWS = 7.5 * M_PI / 180.0;
+
 gonio_pair gonio_i_mirrored(gonio_pair pair)
 {
     pair.outgoing.phi = gonio_i_azimuth(2.0 * pair.incident.phi - pair.outgoing.phi);
@@ -88,6 +91,7 @@ const char *gonio_instrument_region_obstacle(const gonio_instrument *instrument,
     for (size_t k = 0; k < between.view.axes; k++) {
         between.axis[k].positions = 0;
     }
+    between.same_row = BETWEEN_ROWS;
     return gonio_instrument_pair_obstacle(&between, pair, freedom);
 }
 
