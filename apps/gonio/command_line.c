@@ -184,13 +184,21 @@ static void end(tool *t)
     free(t->command_line);
 }
 
+/* Whether a command ended by GONIO_ERROR_MEMORY. The library says so itself; allocations of the
+ * program's own do not. */
+static bool ran_out_of_memory;
+
 int tool_run(int argc, const char **argv, const tool_command_line *line)
 {
     tool t;
     tool_keep_results_off_standard_output(false);
+    ran_out_of_memory = false;
     int code = begin(&t, argc, argv, line);
     if (code < 0) {
         code = line->work(&t, line->options);
+    }
+    if (ran_out_of_memory && !t.messages.any_error) {
+        tool_say(&t.messages, GONIO_MESSAGE_ERROR, "out of memory");
     }
     end(&t);
     return code;
@@ -208,6 +216,7 @@ const char **tool_arguments(const tool *t, size_t *count)
 
 int tool_exit_code(gonio_status status)
 {
+    ran_out_of_memory = ran_out_of_memory || status == GONIO_ERROR_MEMORY;
     return status == GONIO_OK ? 0 : status == GONIO_ERROR_ARGUMENT ? EXIT_USAGE : EXIT_DATA;
 }
 

@@ -80,6 +80,7 @@ void tool_say(tool_messages *m, gonio_message_level level, const char *text)
         return;
     }
     tool_clear_progress(m);
+    m->any_error = m->any_error || level == GONIO_MESSAGE_ERROR;
     const char *kind = level == GONIO_MESSAGE_ERROR     ? ""
                        : level == GONIO_MESSAGE_WARNING ? "warning: "
                                                         : "note: ";

@@ -31,6 +31,7 @@ typedef struct tool_messages {
     double progress_start; /* seconds */
     double progress_shown;
     bool progress_visible;
+    bool any_error; /* was printed */
 } tool_messages;
 
 /* Prints a line on standard error. With --quiet only errors are printed. */
