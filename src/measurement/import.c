@@ -25,7 +25,6 @@ void gonio_i_import_begin(gonio_i_import *import, gonio_context *context, gonio_
                                .how = gonio_i_convention_of(stated, &readings->options.as),
                                .taken_as = taken_as};
     readings->keep_angles = true;
-    readings->unit.kind = import->how.values;
     import->latest = NAN;
 }
 
@@ -86,8 +85,10 @@ static gonio_status take_wavelengths(const gonio_i_import *in, size_t channels,
     return gonio_i_readings_begin(in->context, in->readings, channels, nm);
 }
 
-static gonio_status check_counts(const gonio_i_import *in)
+/* The kind of values is known here: a reader may have set it since the beginning. */
+static gonio_status take_unit(const gonio_i_import *in)
 {
+    in->readings->unit.kind = in->how.values;
     return in->how.values != GONIO_VALUE_COUNTS || in->readings->unit.counts > 0.0
                ? GONIO_OK
                : gonio_i_fail(
@@ -106,7 +107,7 @@ gonio_status gonio_i_import_channels(gonio_i_import *import, size_t channels,
     double *nm = gonio_i_allocate(import->context, channels, sizeof *nm);
     gonio_status status = GONIO_ERROR_MEMORY;
     if (import->value != NULL && import->deviation != NULL && nm != NULL) {
-        status = check_counts(import);
+        status = take_unit(import);
     }
     if (status == GONIO_OK) {
         status = wavelength != NULL

@@ -335,6 +335,7 @@ static void test_a_table_that_lies(void **state)
     const size_t three = 3;
     const size_t one = 1;
     gonio_i_hdf_session session;
+    assert_int_equal(gonio_i_hdf_load(NULL), GONIO_OK);
     gonio_i_hdf_enter(&session);
     const hid_t file = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
     assert_true(gonio_i_hdf_write_string(file, "format", "gonio anisotropic BRDF table"));

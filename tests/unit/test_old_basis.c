@@ -110,6 +110,7 @@ static void write_old(const learned *made, const char *path)
         scale[k] = gonio_log_scale(k);
     }
     gonio_i_hdf_session session;
+    assert_int_equal(gonio_i_hdf_load(NULL), GONIO_OK);
     gonio_i_hdf_enter(&session);
     const hid_t file = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
     assert_true(file >= 0);
@@ -173,6 +174,7 @@ static void test_what_is_not_converted(void **state)
     write_old(&made, old);
     made.vectors[7] -= 1e-9;
     gonio_i_hdf_session session;
+    assert_int_equal(gonio_i_hdf_load(NULL), GONIO_OK);
     gonio_i_hdf_enter(&session);
     const hid_t file = H5Fopen(old, H5F_ACC_RDWR, H5P_DEFAULT);
     const hid_t data = H5Dopen2(file, "components", H5P_DEFAULT);
