@@ -163,8 +163,8 @@ printf '%s, "values": {"kind": "counts", "counts_of_1_per_sr": 5e5}}' \
     '{"gonio_instrument": 1, "kinematics": "direct", "axes": {"theta_i": {"from_deg": 0, "to_deg": 80},
     "theta_o": {"from_deg": -80, "to_deg": 80}}' >counter.json
 printf 'theta_i,phi_i,theta_o,phi_o,counts\n15,0,0,0,50000\n30,0,60,180,50000\n' >counts.csv
-taken_as 'counts (divided by those of 1/sr and cos theta_o)' reconstruct bare.csv --instrument counter.json \
-    --method posterior -o bare.binary
+expect_ok reconstruct b.gonio bare.csv --instrument counter.json --method posterior -o bare.binary
+expect_true 'they are counts' grep -qF 'counts (divided by those of 1/sr and cos theta_o)' "$root/work/stderr"
 expect_fail 2 'counts_of_1_per_sr of an instrument file' info -q counts.csv
 expect_ok info counts.csv --as values=brdf
 taken_as 'values in 1/sr' reconstruct stated.csv --method posterior -o bare.binary
