@@ -26,11 +26,36 @@ typedef struct gonio_i_on_demand {
     bool ready;
 } gonio_i_on_demand;
 
-#define GONIO_I_SYMBOL_WEAK(symbol) extern __typeof__(symbol) symbol __attribute__((weak));
+/* Fills in the pointers, once. Fails if the library or one of its symbols is not there. */
+gonio_status gonio_i_load(gonio_context *context, gonio_i_on_demand *library);
+
 #define GONIO_I_SYMBOL_POINTER(symbol) __typeof__(symbol) *symbol;
 #define GONIO_I_SYMBOL_ROW(symbol) {#symbol, __extension__(const void *) & (symbol)},
 
-/* Fills in the pointers, once. Fails if the library or one of its symbols is not there. */
-gonio_status gonio_i_load(gonio_context *context, gonio_i_on_demand *library);
+/* The build defines the library's name for the source that defines it, unless it is always linked.
+ */
+#ifdef GONIO_ON_DEMAND
+#define GONIO_I_SYMBOL_WEAK(symbol) extern __typeof__(symbol) symbol __attribute__((weak));
+#else
+#define GONIO_ON_DEMAND NULL
+#define GONIO_I_SYMBOL_WEAK(symbol)
+#endif
+
+/* Defines what the header of a library declares: the struct of pointers `name`, and the function
+ * that fills it in. is_global: as above. */
+#define GONIO_I_DEFINE_LIBRARY(name, load, SYMBOLS, is_global)                                     \
+    SYMBOLS(GONIO_I_SYMBOL_WEAK)                                                                   \
+    struct name name;                                                                              \
+    gonio_status load(gonio_context *context)                                                      \
+    {                                                                                              \
+        static const gonio_i_symbol symbols[] = {SYMBOLS(GONIO_I_SYMBOL_ROW)};                     \
+        static gonio_i_on_demand library = {.library = GONIO_ON_DEMAND,                            \
+                                            .global = (is_global),                                 \
+                                            .symbol = symbols,                                     \
+                                            .symbols = sizeof symbols / sizeof *symbols,           \
+                                            .pointers = &(name),                                   \
+                                            .lock = PTHREAD_MUTEX_INITIALIZER};                    \
+        return gonio_i_load(context, &library);                                                    \
+    }
 
 #endif

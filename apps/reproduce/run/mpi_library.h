@@ -7,21 +7,20 @@
 
 #include "core/on_demand.h"
 
-#define MPI_SYMBOLS(X)                                                                             \
-    X(MPI_Abort)                                                                                   \
-    X(MPI_Comm_rank)                                                                               \
-    X(MPI_Comm_size)                                                                               \
-    X(MPI_Finalize) X(MPI_Ibarrier) X(MPI_Init_thread) X(MPI_Initialized) X(MPI_Test)
-
 #ifdef OPEN_MPI
 #define MPI_DATA(X) X(ompi_mpi_comm_world)
 #else
 #define MPI_DATA(X)
 #endif
 
+#define MPI_SYMBOLS(X)                                                                             \
+    X(MPI_Abort)                                                                                   \
+    X(MPI_Comm_rank)                                                                               \
+    X(MPI_Comm_size)                                                                               \
+    X(MPI_Finalize) X(MPI_Ibarrier) X(MPI_Init_thread) X(MPI_Initialized) X(MPI_Test) MPI_DATA(X)
+
 struct mpi {
     MPI_SYMBOLS(GONIO_I_SYMBOL_POINTER)
-    MPI_DATA(GONIO_I_SYMBOL_POINTER)
 };
 
 extern struct mpi mpi;
