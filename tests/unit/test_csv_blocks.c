@@ -73,6 +73,8 @@ static void test_what_is_refused(void **state)
     assert_int_equal(read("AOI 20\n-10 0.5\n30 x\n", &r), GONIO_ERROR_FORMAT);
     assert_non_null(strstr(support_message(), "scan:3: value 'x' is not a finite number"));
     assert_int_equal(read("AOI 20\n-10 0.5 0.7\n", &r), GONIO_ERROR_FORMAT);
+    assert_int_equal(read("AOI -20\n10 0.5\n", &r), GONIO_ERROR_DATA);
+    assert_non_null(strstr(support_message(), "scan:2: theta_i below zero without azimuths"));
     assert_null(r);
 }
 

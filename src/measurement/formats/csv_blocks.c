@@ -2,13 +2,11 @@
 #include "csv_blocks.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include <gonio/measurement.h>
 
 #include "../../core/csv_reader.h"
-#include "../../core/memory_stream.h"
 #include "csv_cells.h"
 #include "csv_names.h"
 
@@ -80,7 +78,9 @@ static bool take_block_line(gonio_i_line l, block_line *b)
         name.index != THETA_I) {
         return false;
     }
-    *b = (block_line){number, name.unit};
+    const char *digit = strpbrk(text, "0123456789");
+    const bool negative = digit > text && digit[-1] == '-';
+    *b = (block_line){negative ? -number : number, name.unit};
     return true;
 }
 
@@ -91,31 +91,22 @@ static gonio_i_column_name name_of(gonio_i_line cell)
     return gonio_i_column_name_of(text);
 }
 
-/* Whether cells name angles of the light, or of both directions: a table of its own. */
-static bool names_both(gonio_i_line l)
+/* The angles that cells name, as bits of their indices. */
+static unsigned angles_named(gonio_i_line l)
 {
     gonio_i_line cell;
-    bool any = false;
+    unsigned angles = 0;
     const char separator = separator_of(l);
     while (separator != '\0' && gonio_i_next_cell(&l, separator, &cell)) {
         const gonio_i_column_name name = name_of(cell);
-        any =
-            any || (name.kind == GONIO_I_ANGLE && (name.index < 2 || name.index >= GONIO_I_PHASE));
+        angles |= name.kind == GONIO_I_ANGLE ? 1U << name.index : 0;
     }
-    return any;
+    return angles;
 }
 
-static bool names_azimuth(gonio_i_line l)
-{
-    gonio_i_line cell;
-    bool any = false;
-    const char separator = separator_of(l);
-    while (separator != '\0' && gonio_i_next_cell(&l, separator, &cell)) {
-        const gonio_i_column_name name = name_of(cell);
-        any = any || (name.kind == GONIO_I_ANGLE && name.index == PHI_O);
-    }
-    return any;
-}
+/* Angles of the light, or of both directions at once: a line that names one is of a table of its
+ * own. */
+static const unsigned NOT_IN_BLOCKS = 0x3U | ~((1U << GONIO_I_PHASE) - 1U);
 
 /* ---- the blocks of a text ---- */
 
@@ -146,11 +137,11 @@ static bool find_blocks(const char *text, size_t size, blocks *b)
             b->first = inside ? b->first : k;
             b->unit = inside ? b->unit : one.unit;
             inside = true;
-        } else if (names_both(rest)) {
+        } else if ((angles_named(rest) & NOT_IN_BLOCKS) != 0) {
             return false;
         } else if (inside && mark == NULL && b->names.at == NULL && separator_of(rest) != '\0') {
             b->names = rest;
-            b->azimuths = names_azimuth(rest);
+            b->azimuths = (angles_named(rest) & 1U << PHI_O) != 0;
         }
     }
     return false;
@@ -174,38 +165,37 @@ static void print_cells(FILE *stream, gonio_i_line l)
     fputc('\n', stream);
 }
 
-/* The name of the first column of rows: theta_o unless it says which angle of the detector it is.
- */
-static void print_detector(FILE *stream, gonio_i_line cell, const char *unit)
+static const char *words_of_unit(int unit)
+{
+    return unit == GONIO_RADIANS ? " (rad)" : unit == GONIO_DEGREES ? " (deg)" : "";
+}
+
+/* The name of the first column of rows: theta_o, in the unit of theta_i if it states none, unless
+ * it says which angle of the detector it is. */
+static void print_detector(FILE *stream, gonio_i_line cell, int unit)
 {
     char text[NAME_ROOM] = "";
     memcpy(text, cell.at, cell.length < sizeof text ? cell.length : sizeof text - 1);
+    const int said = gonio_i_angle_unit_in(text);
     if (name_of(cell).kind == GONIO_I_ANGLE) {
         fprintf(stream, "\t%s", text);
     } else {
-        const int said = gonio_i_angle_unit_in(text);
-        fprintf(stream, "\ttheta_o%s",
-                said == GONIO_RADIANS   ? " (rad)"
-                : said == GONIO_DEGREES ? " (deg)"
-                                        : unit);
+        fprintf(stream, "\ttheta_o%s", words_of_unit(said != 0 ? said : unit));
     }
 }
 
 static void print_names(FILE *stream, const blocks *b)
 {
-    const char *unit = b->unit == GONIO_RADIANS   ? " (rad)"
-                       : b->unit == GONIO_DEGREES ? " (deg)"
-                                                  : "";
     gonio_i_line rest = b->names;
     gonio_i_line cell;
-    fprintf(stream, "theta_i%s%s", unit, b->azimuths ? "\tphi_i" : "");
+    fprintf(stream, "theta_i%s%s", words_of_unit(b->unit), b->azimuths ? "\tphi_i" : "");
     if (rest.at == NULL) {
-        fprintf(stream, "\ttheta_o%s\tvalue\n", unit);
+        fprintf(stream, "\ttheta_o%s\tvalue\n", words_of_unit(b->unit));
         return;
     }
     const char separator = separator_of(rest);
     gonio_i_next_cell(&rest, separator, &cell);
-    print_detector(stream, cell, unit);
+    print_detector(stream, cell, b->unit);
     while (gonio_i_next_cell(&rest, separator, &cell)) {
         fprintf(stream, "\t%.*s", (int)cell.length, cell.at);
     }
@@ -224,8 +214,9 @@ static bool is_said(gonio_i_line l, const blocks *b, const char *mark)
            (!is_number((gonio_i_line){l.at, 1}) && memchr(l.at, ':', l.length) != NULL);
 }
 
-static void print_table(FILE *stream, const char *text, size_t size, const blocks *b)
+static void print_table(FILE *stream, const char *text, size_t size, const void *found)
 {
+    const blocks *b = found;
     const char *at = text;
     const char *mark = NULL;
     gonio_i_line l;
@@ -250,21 +241,7 @@ gonio_status gonio_i_csv_blocks_make_plain(gonio_context *context, const char *p
                                            size_t *size)
 {
     blocks b;
-    char *plain = NULL;
-    size_t length = 0;
-    if (*size == 0 || !find_blocks(*text, *size, &b)) {
-        return GONIO_OK;
-    }
-    FILE *stream = gonio_i_memory_stream(&plain, &length);
-    if (stream != NULL) {
-        print_table(stream, *text, *size, &b);
-    }
-    if (stream == NULL || fclose(stream) != 0) {
-        free(plain);
-        return gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", path);
-    }
-    free(*text);
-    *text = plain;
-    *size = length;
-    return GONIO_OK;
+    return *size > 0 && find_blocks(*text, *size, &b)
+               ? gonio_i_print_again(context, path, text, size, print_table, &b)
+               : GONIO_OK;
 }

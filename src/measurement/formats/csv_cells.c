@@ -1,7 +1,10 @@
 /* Lines and cells of a text whose layout is not known: see csv_cells.h. */
 #include "csv_cells.h"
 
+#include <stdlib.h>
 #include <string.h>
+
+#include "../../core/memory_stream.h"
 
 static const char *const marks[] = {"#", "%", "//", "!", ";", "*", "--"};
 
@@ -75,4 +78,25 @@ size_t gonio_i_count_cells(gonio_i_line l, char separator)
         count++;
     }
     return count;
+}
+
+gonio_status
+gonio_i_print_again(gonio_context *context, const char *path, char **text, size_t *size,
+                    void (*print)(FILE *stream, const char *text, size_t size, const void *found),
+                    const void *found)
+{
+    char *again = NULL;
+    size_t length = 0;
+    FILE *stream = gonio_i_memory_stream(&again, &length);
+    if (stream != NULL) {
+        print(stream, *text, *size, found);
+    }
+    if (stream == NULL || fclose(stream) != 0) {
+        free(again);
+        return gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", path);
+    }
+    free(*text);
+    *text = again;
+    *size = length;
+    return GONIO_OK;
 }

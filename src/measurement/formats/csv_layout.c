@@ -2,11 +2,9 @@
 #include "csv_layout.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "../../core/csv_lines.h"
-#include "../../core/memory_stream.h"
 #include "csv_cells.h"
 #include "csv_names.h"
 
@@ -166,8 +164,9 @@ static void print_row(FILE *stream, gonio_i_line l, const names *n)
     }
 }
 
-static void print_table(FILE *stream, const char *text, size_t size, const names *n)
+static void print_table(FILE *stream, const char *text, size_t size, const void *found)
 {
+    const names *n = found;
     const char *at = text;
     const char *mark = NULL;
     gonio_i_line l;
@@ -189,21 +188,7 @@ gonio_status gonio_i_csv_layout_make_plain(gonio_context *context, const char *p
                                            size_t *size)
 {
     names n;
-    char *plain = NULL;
-    size_t length = 0;
-    if (!find_names(*text, *size, &n)) {
-        return GONIO_OK;
-    }
-    FILE *stream = gonio_i_memory_stream(&plain, &length);
-    if (stream != NULL) {
-        print_table(stream, *text, *size, &n);
-    }
-    if (stream == NULL || fclose(stream) != 0) {
-        free(plain);
-        return gonio_i_fail(context, GONIO_ERROR_MEMORY, "%s: out of memory", path);
-    }
-    free(*text);
-    *text = plain;
-    *size = length;
-    return GONIO_OK;
+    return find_names(*text, *size, &n)
+               ? gonio_i_print_again(context, path, text, size, print_table, &n)
+               : GONIO_OK;
 }
