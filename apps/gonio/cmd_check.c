@@ -40,8 +40,10 @@ static int report(tool *t, const checked *c)
 
 static gonio_status read_plan(tool *t, checked *c)
 {
-    const gonio_readings_options any = {
-        .size = sizeof any, .average_repeats = true, .negative_to_zero = true};
+    const gonio_readings_options any = {.size = sizeof any,
+                                        .average_repeats = true,
+                                        .negative_to_zero = true,
+                                        .instrument = c->instrument};
     gonio_status status = tool_read_readings(t, c->path, &any, &c->plan);
     if (status == GONIO_OK) {
         status = plan_tour_make(t, c->instrument, c->plan, c->path, &c->tour);

@@ -85,20 +85,6 @@ static gonio_status take_wavelengths(const gonio_i_import *in, size_t channels,
     return gonio_i_readings_begin(in->context, in->readings, channels, nm);
 }
 
-/* The kind of values is known here: a reader may have set it since the beginning. */
-static gonio_status take_unit(const gonio_i_import *in)
-{
-    in->readings->unit.kind = in->how.values;
-    return in->how.values != GONIO_VALUE_COUNTS || in->readings->unit.counts > 0.0
-               ? GONIO_OK
-               : gonio_i_fail(
-                     in->context, GONIO_ERROR_ARGUMENT,
-                     "%s: its values are counts: how many of them are 1/sr is said by "
-                     "counts_of_1_per_sr of an instrument file (--instrument); or take them as "
-                     "they are by --as values=brdf",
-                     in->readings->path);
-}
-
 gonio_status gonio_i_import_channels(gonio_i_import *import, size_t channels,
                                      const double *wavelength)
 {
@@ -106,10 +92,9 @@ gonio_status gonio_i_import_channels(gonio_i_import *import, size_t channels,
     import->deviation = gonio_i_allocate(import->context, channels, sizeof *import->deviation);
     double *nm = gonio_i_allocate(import->context, channels, sizeof *nm);
     gonio_status status = GONIO_ERROR_MEMORY;
+    /* Known here: a reader may have set it since the beginning. */
+    import->readings->unit.kind = import->how.values;
     if (import->value != NULL && import->deviation != NULL && nm != NULL) {
-        status = take_unit(import);
-    }
-    if (status == GONIO_OK) {
         status = wavelength != NULL
                      ? take_wavelengths(import, channels, wavelength, nm)
                      : gonio_i_readings_begin(import->context, import->readings, channels, NULL);
@@ -205,6 +190,24 @@ static gonio_status check_angles(const gonio_i_import *in, const gonio_i_row *ro
 
 /* ---- values ---- */
 
+/* Counts need the instrument as soon as there is one: a plan with an empty column does not. */
+static gonio_status check_counts(const gonio_i_import *in, const gonio_i_row *row)
+{
+    const gonio_i_value_unit *unit = &in->readings->unit;
+    bool any = false;
+    for (size_t k = 0; k < in->readings->channels && unit->kind == GONIO_VALUE_COUNTS; k++) {
+        any = any || !isnan(row->value[k]);
+    }
+    return !any || unit->counts > 0.0
+               ? GONIO_OK
+               : gonio_i_fail(
+                     in->context, GONIO_ERROR_ARGUMENT,
+                     "%s: its values are counts: how many of them are 1/sr is said by "
+                     "counts_of_1_per_sr of an instrument file (--instrument); or take them as "
+                     "they are by --as values=brdf",
+                     in->readings->path);
+}
+
 /* Converts the values of a row to a BRDF. Returns whether there is a value. */
 static bool take_values(gonio_i_import *in, const gonio_i_row *row, const double degrees[4])
 {
@@ -264,7 +267,8 @@ gonio_status gonio_i_import_add(gonio_i_import *import, const gonio_i_row *row)
                                .time = time,
                                .value = import->value,
                                .deviation = row->deviation != NULL ? import->deviation : NULL};
-    const gonio_status status = check_angles(import, row);
+    gonio_status status = check_angles(import, row);
+    status = status == GONIO_OK ? check_counts(import, row) : status;
     if (status != GONIO_OK) {
         return status;
     }

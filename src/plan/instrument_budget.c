@@ -175,7 +175,7 @@ static void note_all(const gonio_i_planner *p, double time)
 {
     if (time < NEARLY_FULL * p->options->budget) {
         gonio_i_note(p->context,
-                     "all %zu directions that the plan chooses from take %.1f min of %.1f",
+                     "all directions that the plan chooses from, %zu, take %.1f min of %.1f",
                      p->count, time / 60.0, p->options->budget / 60.0);
     }
 }

@@ -54,8 +54,8 @@ static gonio_status choose_number(gonio_i_planner *p)
     if (asked > offered && !usual && p->options->target == 0.0) {
         return gonio_i_fail(p->context, GONIO_ERROR_ARGUMENT,
                             "%zu readings asked for, but a plan for this instrument chooses from "
-                            "%zu directions; ask for at most as many",
-                            asked, offered);
+                            "%zu direction%s; ask for at most as many",
+                            asked, offered, offered == 1 ? "" : "s");
     }
     const gonio_status status =
         gonio_i_planner_choose(p, asked < offered ? asked : offered, 0.0, 0);

@@ -166,6 +166,9 @@ printf 'theta_i,phi_i,theta_o,phi_o,counts\n15,0,0,0,50000\n30,0,60,180,50000\n'
 expect_ok reconstruct b.gonio bare.csv --instrument counter.json --method posterior -o bare.binary
 expect_true 'they are counts' grep -qF 'counts (divided by those of 1/sr and cos theta_o)' "$root/work/stderr"
 expect_fail 2 'counts_of_1_per_sr of an instrument file' info -q counts.csv
+expect_ok check counter.json counts.csv
+sed '2,$s/[0-9]*$//' counts.csv >empty.csv
+expect_output '0 measured' info empty.csv
 expect_ok info counts.csv --as values=brdf
 taken_as 'values in 1/sr' reconstruct stated.csv --method posterior -o bare.binary
 expect_fail 2 '--noise cannot be negative' next b.gonio run.csv --instrument four-axis --noise -1 -o no.csv
