@@ -18,8 +18,8 @@ typedef struct gonio_comparison {
 } gonio_comparison;
 
 /* Compares a material with a reference, over the bins of the grid. If one of them is anisotropic,
- * over directions that depend on phi_h too: those of every seventh bin at 5 azimuths, which are
- * others in each bin. Independent of the number of threads.
+ * over directions that depend on phi_h too: those of every fifth bin of phi_d at 12 azimuths, which
+ * are others in each bin. Independent of the number of threads.
  * Errors: _DATA if no bin has data in both, or the reference is black; those of the sources. */
 GONIO_API gonio_status gonio_compare(gonio_context *context, const gonio_material *reference,
                                      const gonio_material *other, gonio_comparison *comparison);

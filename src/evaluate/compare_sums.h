@@ -13,8 +13,8 @@ typedef struct gonio_i_slab_sums {
     int64_t missing; /* with data in the reference alone */
 } gonio_i_slab_sums;
 
-/* Fills in the sums of all slabs for materials of which one is anisotropic: at every seventh
- * bin, at 5 azimuths phi_h of the half vector, which are others in each bin. Errors: _MEMORY,
+/* Fills in the sums of all slabs for materials of which one is anisotropic: at every fifth bin of
+ * phi_d, at 12 azimuths phi_h of the half vector, which are others in each bin. Errors: _MEMORY,
  * _CANCELLED, those of the materials. */
 gonio_status gonio_i_compare_turned(gonio_context *context, const gonio_material *reference,
                                     const gonio_material *other,

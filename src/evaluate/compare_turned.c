@@ -10,9 +10,9 @@
 #include "compare_sums.h"
 
 enum {
-    EVERY = 7,    /* bins; other phi_d for each theta_d */
-    AZIMUTHS = 5, /* none of them is another turned by half or a quarter of a turn */
-    MOST = (GONIO_SLAB_BINS / EVERY + 1) * AZIMUTHS /* pairs of a slab */
+    EVERY = 5, /* bins of phi_d */
+    AZIMUTHS = 12,
+    MOST = GONIO_THETA_D_BINS * (GONIO_PHI_D_BINS / EVERY) * AZIMUTHS /* pairs of a slab */
 };
 
 static const double GOLDEN = 0.6180339887498949;

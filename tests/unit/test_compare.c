@@ -145,7 +145,7 @@ static void test_anisotropic_materials(void **state)
     assert_int_equal(gonio_compare(NULL, brass, steel, &swapped), GONIO_OK);
     assert_true(same.all.value[GONIO_E6] == 0.0);
     assert_true(other.all.value[GONIO_E6] > 5.0);
-    assert_true(same.bins > 780000 && same.bins < 785000 && same.missing == 0);
+    assert_true(same.bins > 2500000 && same.missing == 0);
     assert_int_equal(swapped.bins + swapped.missing, other.bins + other.missing);
     gonio_material_free(&steel);
     gonio_material_free(&brass);
