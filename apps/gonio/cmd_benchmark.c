@@ -264,11 +264,13 @@ static int run_benchmark(tool *t, const options *o, benchmark_setting *s)
     size_t count = 0;
     const char **arguments = tool_arguments(t, &count);
     gonio_status status = GONIO_OK;
+    s->reading.instrument = t->instrument;
+    s->instrument_hash = tool_instrument != NULL ? benchmark_hash(tool_instrument) : 0;
     if (tool_as != NULL) { /* of all files alike */
-        status = gonio_convention_parse(t->context, tool_as, &s->as);
+        status = gonio_convention_parse(t->context, tool_as, &s->reading.as);
     }
     if (status == GONIO_OK) {
-        status = benchmark_subjects_find(t->context, arguments, count, &s->as, &subjects);
+        status = benchmark_subjects_find(t->context, arguments, count, &s->reading, &subjects);
     }
     if (status == GONIO_OK) {
         status = run_on(t, o, s, &subjects);
@@ -381,6 +383,7 @@ int cmd_benchmark(int argc, const char **argv)
          "Share of directions of tables read ten times too high or too low (default: 0)",
          "PERCENT"},
         {"seed", '\0', POPT_ARG_LONG, &o.seed, 0, "Of all that is random (default: 0)", "N"},
+        TOOL_INSTRUMENT_OPTION,
         TOOL_READINGS_OPTIONS,
         TOOL_OPTIONS};
     char *text = help_text();

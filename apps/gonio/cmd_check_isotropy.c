@@ -64,8 +64,10 @@ static int report(const tool *t, const char *path, const gonio_isotropy_check *c
 
 static int check_isotropy(tool *t, const options *o, const char *basis_path, const char *path)
 {
-    const gonio_readings_options any = {
-        .size = sizeof any, .values_needed = true, .average_repeats = true};
+    const gonio_readings_options any = {.size = sizeof any,
+                                        .values_needed = true,
+                                        .average_repeats = true,
+                                        .instrument = t->instrument};
     gonio_reconstruct_options how;
     gonio_readings *readings = NULL;
     gonio_basis *basis = NULL;
@@ -109,8 +111,8 @@ int cmd_check_isotropy(int argc, const char **argv)
 {
     options o = {.posterior = posterior_options_default()};
     const struct poptOption table[] = {POSTERIOR_OPTIONS(&o.posterior),
-                                       SYMMETRY_OPTION(&o.symmetry), TOOL_READINGS_OPTIONS,
-                                       TOOL_OPTIONS};
+                                       SYMMETRY_OPTION(&o.symmetry), TOOL_INSTRUMENT_OPTION,
+                                       TOOL_READINGS_OPTIONS, TOOL_OPTIONS};
     const tool_command_line line = {
         .table = table,
         .usage = "[OPTION...] [BASIS] READINGS",

@@ -105,7 +105,8 @@ static gonio_status compare_materials(tool *t, comparing *c, const tool_input *o
 
 /* Values of the reference and of the other at the same directions, in the same channels. */
 typedef struct paired {
-    gonio_readings *reference;
+    const gonio_readings *reference; /* those of the input, or copied */
+    gonio_readings *copied;          /* NULL: the input's serve */
     gonio_readings *other;
     bool *left_out; /* [count] */
     size_t left_out_count;
@@ -113,26 +114,53 @@ typedef struct paired {
 
 static void free_paired(paired *p)
 {
-    gonio_readings_free(&p->reference);
+    gonio_readings_free(&p->copied);
     gonio_readings_free(&p->other);
     free(p->left_out);
 }
 
-/* Pairs the values: at the directions of the reference if it is readings, otherwise of the other.
- */
-static gonio_status pair_values(tool *t, const comparing *c, const tool_input *other, paired *p)
+static bool have_same_channels(const gonio_readings *a, const gonio_readings *b)
 {
-    const bool known = c->reference.readings != NULL;
-    const gonio_readings *at = known ? c->reference.readings : other->readings;
-    gonio_status status = gonio_readings_copy(t->context, at, &p->reference);
+    const gonio_readings_view *x = gonio_readings_describe(a);
+    const gonio_readings_view *y = gonio_readings_describe(b);
+    bool same = x->channels == y->channels && (x->wavelength == NULL) == (y->wavelength == NULL);
+    for (size_t k = 0; same && x->wavelength != NULL && k < x->channels; k++) {
+        same = x->wavelength[k] == y->wavelength[k];
+    }
+    return same;
+}
+
+/* The values of the other at the directions of the reference, which is readings. The other's own
+ * readings are then not needed: there may be millions. */
+static gonio_status pair_at_reference(tool *t, const comparing *c, tool_input *other, paired *p)
+{
+    p->reference = c->reference.readings;
+    gonio_status status = gonio_readings_copy(t->context, p->reference, &p->other);
     if (status == GONIO_OK) {
-        status = gonio_readings_copy(t->context, at, &p->other);
+        status = tool_take_values(t, other, NULL, p->other);
+    }
+    tool_close_input(other);
+    if (status != GONIO_OK || have_same_channels(p->reference, p->other)) {
+        return status;
+    }
+    status = gonio_readings_copy(t->context, p->reference, &p->copied);
+    p->reference = p->copied;
+    return status == GONIO_OK ? gonio_readings_share_channels(t->context, p->copied, p->other)
+                              : status;
+}
+
+/* The values of the reference, a material, at the directions of the other. */
+static gonio_status pair_at_other(tool *t, const comparing *c, const tool_input *other, paired *p)
+{
+    gonio_status status = gonio_readings_copy(t->context, other->readings, &p->copied);
+    if (status == GONIO_OK) {
+        status = gonio_readings_copy(t->context, other->readings, &p->other);
     }
     if (status == GONIO_OK) {
-        status = known ? tool_take_values(t, other, NULL, p->other)
-                       : tool_take_values(t, &c->reference, NULL, p->reference);
+        status = tool_take_values(t, &c->reference, NULL, p->copied);
     }
-    return status == GONIO_OK ? gonio_readings_share_channels(t->context, p->reference, p->other)
+    p->reference = p->copied;
+    return status == GONIO_OK ? gonio_readings_share_channels(t->context, p->copied, p->other)
                               : status;
 }
 
@@ -200,12 +228,13 @@ static void report_readings(const comparing *c, const char *path, const paired *
     putchar('\n');
 }
 
-static gonio_status compare_readings(tool *t, comparing *c, const tool_input *other)
+static gonio_status compare_readings(tool *t, comparing *c, tool_input *other)
 {
     paired p = {0};
     gonio_error error;
     size_t compared = 0;
-    gonio_status status = pair_values(t, c, other, &p);
+    gonio_status status = c->reference.readings != NULL ? pair_at_reference(t, c, other, &p)
+                                                        : pair_at_other(t, c, other, &p);
     if (status == GONIO_OK) {
         status = find_left_out(t, c, &p);
     }
@@ -256,8 +285,10 @@ static gonio_status compare_one(tool *t, comparing *c, const char *path)
 /* Opens the reference and the readings of --leave-out before anything is compared. */
 static gonio_status prepare(tool *t, comparing *c, const char *path)
 {
-    const gonio_readings_options directions = {
-        .size = sizeof directions, .average_repeats = true, .negative_to_zero = true};
+    const gonio_readings_options directions = {.size = sizeof directions,
+                                               .average_repeats = true,
+                                               .negative_to_zero = true,
+                                               .instrument = t->instrument};
     gonio_status status = open_input(t, path, &c->reference);
     if (status == GONIO_OK && c->o->render && c->reference.material == NULL) {
         tool_refuse(t, "--render needs whole materials, but %s is a readings file", path);
@@ -338,6 +369,7 @@ int cmd_compare(int argc, const char **argv)
          "Leave out the directions of these readings, because they were used", "FILE"},
         {"render", '\0', POPT_ARG_NONE, &o.render, 0, "Also render both and compare the renderings",
          NULL},
+        TOOL_INSTRUMENT_OPTION,
         TOOL_READINGS_OPTIONS,
         TOOL_OPTIONS};
     char *text = help_text();

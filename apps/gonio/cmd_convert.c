@@ -67,8 +67,10 @@ static bool names_readings(const char *output)
 static int convert_readings(tool *t, const correction_options *corrections, const char *input,
                             const char *output)
 {
-    const gonio_readings_options any = {
-        .size = sizeof any, .average_repeats = true, .negative_to_zero = true};
+    const gonio_readings_options any = {.size = sizeof any,
+                                        .average_repeats = true,
+                                        .negative_to_zero = true,
+                                        .instrument = t->instrument};
     gonio_readings *readings = NULL;
     gonio_reconstruct_options usual;
     gonio_reconstruct_options_default(&usual);
@@ -133,7 +135,7 @@ int cmd_convert(int argc, const char **argv)
 {
     options o = {0};
     const struct poptOption table[] = {WRITE_OPTIONS(&o.write), CORRECTION_OPTIONS(&o.corrections),
-                                       TOOL_READINGS_OPTIONS, TOOL_OPTIONS};
+                                       TOOL_INSTRUMENT_OPTION, TOOL_READINGS_OPTIONS, TOOL_OPTIONS};
     const tool_command_line line = {
         .table = table,
         .usage = "[OPTION...] IN OUT",

@@ -532,8 +532,8 @@ static int run(tool *t, void *given)
 int cmd_info(int argc, const char **argv)
 {
     albedo_at = NULL;
-    const struct poptOption table[] = {TOOL_ALBEDO_AT(&albedo_at), TOOL_READINGS_OPTIONS,
-                                       TOOL_OPTIONS};
+    const struct poptOption table[] = {TOOL_ALBEDO_AT(&albedo_at), TOOL_INSTRUMENT_OPTION,
+                                       TOOL_READINGS_OPTIONS, TOOL_OPTIONS};
     const tool_command_line line = {
         .table = table,
         .usage = "[OPTION...] FILE...",

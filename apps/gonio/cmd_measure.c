@@ -12,11 +12,11 @@
 
 typedef struct options {
     const char *output;
-    double noise;    /* per cent; NOT_GIVEN: none was given */
-    double floor;    /* the same */
-    double outliers; /* per cent */
-    long seed;
     const char *instrument; /* NULL: none */
+    double noise;           /* per cent; NOT_GIVEN: none was given */
+    double floor;           /* the same */
+    double outliers;        /* per cent */
+    long seed;
     follow_options follow;
 } options;
 
@@ -60,19 +60,15 @@ static gonio_status read_input(tool *t, const options *o, const tool_input *know
 static gonio_status rehearse(const tool *t, const options *o, const gonio_material *material,
                              const gonio_readings *plan, written *w)
 {
-    gonio_instrument *instrument = NULL;
     double duration = 0.0;
     w->material = gonio_material_name(material);
-    gonio_status status = gonio_instrument_read(t->context, o->instrument, &instrument);
-    if (status == GONIO_OK) {
-        status = gonio_rehearse(t->context, plan, material, instrument, (uint64_t)o->seed,
-                                t->command_line, o->output, &duration, &w->channels);
-    }
+    const gonio_status status =
+        gonio_rehearse(t->context, plan, material, t->instrument, (uint64_t)o->seed,
+                       t->command_line, o->output, &duration, &w->channels);
     if (status == GONIO_OK && !tool_quiet && !tool_json) {
         fprintf(tool_results(), "%s: a run of %.1f min\n",
-                gonio_instrument_describe(instrument)->name, duration / 60.0);
+                gonio_instrument_describe(t->instrument)->name, duration / 60.0);
     }
-    gonio_instrument_free(&instrument);
     return status;
 }
 
@@ -80,15 +76,10 @@ static gonio_status rehearse(const tool *t, const options *o, const gonio_materi
 static gonio_status read_and_write(tool *t, const options *o, const tool_input *known,
                                    gonio_readings *readings, written *w)
 {
-    gonio_status status = GONIO_OK;
-    if (o->instrument != NULL && known->material == NULL) {
-        tool_refuse(t, "%s: these are readings; --instrument reads a material", known->path);
-        return GONIO_ERROR_DATA;
-    }
-    if (o->instrument != NULL) {
+    if (t->instrument != NULL && known->material != NULL) {
         return rehearse(t, o, known->material, readings, w);
     }
-    status = read_input(t, o, known, readings, &w->material);
+    const gonio_status status = read_input(t, o, known, readings, &w->material);
     w->channels = gonio_readings_describe(readings)->channels;
     return status == GONIO_OK
                ? gonio_readings_write(t->context, readings, t->command_line, o->output)
@@ -97,14 +88,18 @@ static gonio_status read_and_write(tool *t, const options *o, const tool_input *
 
 static int measure(tool *t, const options *o, const char *plan, const char *path)
 {
+    gonio_status status = o->instrument != NULL ? tool_read_instrument(t, o->instrument) : GONIO_OK;
     const gonio_readings_options how = {.size = sizeof how,
                                         .values_needed = false,
                                         .average_repeats = true,
-                                        .negative_to_zero = true};
+                                        .negative_to_zero = true,
+                                        .instrument = t->instrument};
     gonio_readings *readings = NULL;
     tool_input known = {0};
     written w = {.material = path};
-    gonio_status status = tool_read_readings(t, plan, &how, &readings);
+    if (status == GONIO_OK) {
+        status = tool_read_readings(t, plan, &how, &readings);
+    }
     if (status == GONIO_OK) {
         status = tool_open_input(t, path, &known);
     }
@@ -180,7 +175,7 @@ int cmd_measure(int argc, const char **argv)
         {"instrument", '\0', POPT_ARG_STRING, &o.instrument, 0,
          "Write the run of this instrument, a file or in-plane, two-arms or four-axis: apertures, "
          "noise, drift, reference and dark lines, times (CSV); in a followed run its limits, noise "
-         "and times count",
+         "and times count; readings are taken as it gives them",
          "INSTRUMENT"},
         {"follow", '\0', POPT_ARG_STRING, &o.follow.follow, 0,
          "Follow a run: readings that an instrument appends to this file; - is standard input",

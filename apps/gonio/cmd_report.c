@@ -29,7 +29,8 @@ static gonio_status read_readings(const tool *t, const char *path, gonio_reading
     const gonio_readings_options how = {.size = sizeof how,
                                         .values_needed = false,
                                         .average_repeats = true,
-                                        .negative_to_zero = true};
+                                        .negative_to_zero = true,
+                                        .instrument = t->instrument};
     return path == NULL ? GONIO_OK : tool_read_readings(t, path, &how, readings);
 }
 
@@ -129,6 +130,7 @@ int cmd_report(int argc, const char **argv)
          "Show the directions of this plan or of these readings", "FILE"},
         {"deviation", '\0', POPT_ARG_STRING, &o.deviation, 0,
          "Standard deviations of ln(1 + rho/s) of the reconstruction, as a MERL table", "FILE"},
+        TOOL_INSTRUMENT_OPTION,
         TOOL_READINGS_OPTIONS,
         TOOL_OPTIONS};
     const tool_command_line line = {

@@ -10,6 +10,7 @@
 
 int tool_threads = 0;
 int tool_json = 0;
+const char *tool_instrument;
 
 struct poptOption tool_common_options[] = {
     {"threads", '\0', POPT_ARG_INT, &tool_threads, 0, "Use at most N threads (default: all)", "N"},
@@ -141,6 +142,11 @@ static void free_strings(tool *t)
     }
 }
 
+gonio_status tool_read_instrument(tool *t, const char *path)
+{
+    return gonio_instrument_read(t->context, path, &t->instrument);
+}
+
 /* Prepares a command. Returns an exit code, or -1 to go on. */
 static int begin(tool *t, int argc, const char **argv, const tool_command_line *line)
 {
@@ -169,12 +175,17 @@ static int begin(tool *t, int argc, const char **argv, const tool_command_line *
                                            .user = &t->messages,
                                            .threads = tool_threads};
     tool_catch_signals();
-    return gonio_context_create(&t->context, &options) == GONIO_OK ? -1 : EXIT_DATA;
+    gonio_status status = gonio_context_create(&t->context, &options);
+    if (status == GONIO_OK && tool_instrument != NULL) {
+        status = tool_read_instrument(t, tool_instrument);
+    }
+    return status == GONIO_OK ? -1 : tool_exit_code(status);
 }
 
 static void end(tool *t)
 {
     tool_clear_progress(&t->messages);
+    gonio_instrument_free(&t->instrument);
     gonio_context_free(&t->context);
     if (t->options != NULL) {
         poptFreeContext(t->options);
@@ -269,15 +280,22 @@ static bool is_regular(const char *path)
     return stat(path, &status) == 0 && S_ISREG(status.st_mode);
 }
 
+static bool is_overwritten(const char *input, const char *output)
+{
+    return input != NULL && is_regular(input) && is_same_file(input, output);
+}
+
 bool tool_check_output(const tool *t, const char *output, const char *const *inputs, size_t count)
 {
     if (output == NULL || *output == '\0') {
         return tool_refuse(t, "no output: give -o FILE");
     }
+    bool overwritten = is_overwritten(tool_instrument, output);
     for (size_t k = 0; k < count; k++) {
-        if (inputs[k] != NULL && is_regular(inputs[k]) && is_same_file(inputs[k], output)) {
-            return tool_refuse(t, "%s is an input: give another name for the output", output);
-        }
+        overwritten = overwritten || is_overwritten(inputs[k], output);
+    }
+    if (overwritten) {
+        return tool_refuse(t, "%s is an input: give another name for the output", output);
     }
     if (is_standard_output(output)) {
         tool_keep_results_off_standard_output(true);

@@ -13,6 +13,7 @@ enum { TOOL_MOST_OPTIONS = 32 };
 /* The state that every command has. */
 typedef struct tool {
     gonio_context *context;
+    gonio_instrument *instrument; /* that made the readings (tool_instrument); NULL: not known */
     poptContext options;
     const struct poptOption *table;
     const char
@@ -22,6 +23,17 @@ typedef struct tool {
     char *title;                      /* "gonio NAME" */
     tool_messages messages;
 } tool;
+
+/* The file or word of --instrument, where a command only takes readings as the instrument gives
+ * them; it is read before the command's work. NULL: none. */
+extern const char *tool_instrument;
+#define TOOL_INSTRUMENT_OPTION                                                                     \
+    {                                                                                              \
+        "instrument", '\0', POPT_ARG_STRING, &tool_instrument, 0,                                  \
+            "Readings were made by this instrument, a file or in-plane, two-arms or four-axis: "   \
+            "numbers of which a table does not say what they are, are what it gives",              \
+            "INSTRUMENT"                                                                           \
+    }
 
 /* The options of every command, to be included with TOOL_OPTIONS at the end of a table. */
 extern int tool_threads;
@@ -56,13 +68,16 @@ const char **tool_arguments(const tool *t, size_t *count);
  * `return tool_refuse(...)`. The exit code is then EXIT_USAGE. */
 bool tool_refuse(const tool *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
+/* Reads the instrument that made the readings, t->instrument. Errors: gonio_instrument_read's. */
+gonio_status tool_read_instrument(tool *t, const char *path);
+
 /* The exit code of a status: 0, 1 or 2. */
 int tool_exit_code(gonio_status status);
 
 /* Checks of the command line. Each returns true, or false after an error message. */
 
-/* Checks that an output is given and differs from the inputs (NULL: none). If it is standard
- * output, results are printed to standard error from now on (tool_results). */
+/* Checks that an output is given and differs from the inputs (NULL: none) and the instrument. If it
+ * is standard output, results are printed to standard error from now on (tool_results). */
 bool tool_check_output(const tool *t, const char *output, const char *const *inputs, size_t count);
 
 /* Whether two outputs are one file, by whatever names, and not a device. */

@@ -448,8 +448,10 @@ static void describe(description *d, json_t *results)
 
 int tool_info_readings(const tool *t, const char *path, json_t *results)
 {
-    const gonio_readings_options how = {
-        .size = sizeof how, .average_repeats = true, .negative_to_zero = true};
+    const gonio_readings_options how = {.size = sizeof how,
+                                        .average_repeats = true,
+                                        .negative_to_zero = true,
+                                        .instrument = t->instrument};
     gonio_readings *readings = NULL;
     gonio_survey *survey = NULL;
     gonio_kind kind = GONIO_KIND_UNKNOWN;

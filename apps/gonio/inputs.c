@@ -60,15 +60,16 @@ static gonio_status find_kind(const tool *t, const char *path, gonio_kind *kind)
 
 gonio_status tool_open_input(const tool *t, const char *path, tool_input *input)
 {
+    gonio_readings_options how = tool_any_values;
     gonio_kind kind = GONIO_KIND_UNKNOWN;
     *input = (tool_input){.path = path};
+    how.instrument = t->instrument;
     const gonio_status status = find_kind(t, path, &kind);
     if (status != GONIO_OK) {
         return status;
     }
-    return kind == GONIO_KIND_READINGS
-               ? tool_read_readings(t, path, &tool_any_values, &input->readings)
-               : gonio_material_open(t->context, path, &input->material);
+    return kind == GONIO_KIND_READINGS ? tool_read_readings(t, path, &how, &input->readings)
+                                       : gonio_material_open(t->context, path, &input->material);
 }
 
 void tool_close_input(tool_input *input)

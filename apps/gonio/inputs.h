@@ -28,8 +28,8 @@ typedef struct tool_input {
     gonio_readings *readings;
 } tool_input;
 
-/* Opens a file as what it is. It is read once, so that it may be a pipe. To be closed in any case.
- */
+/* Opens a file as what it is; readings as the instrument of --instrument gives them. It is read
+ * once, so that it may be a pipe. To be closed in any case. */
 gonio_status tool_open_input(const tool *t, const char *path, tool_input *input);
 void tool_close_input(tool_input *input);
 

@@ -74,17 +74,19 @@ static json_t *sizes_json(const benchmark_setting *s)
 static json_t *identity_of(const benchmark_setting *s, const benchmark_subjects *subjects,
                            const benchmark_lessons *lessons)
 {
-    json_t *as = json_pack("{s:s?, s:i, s:i, s:i, s:i, s:i}", "format", s->as.format, "angles",
-                           s->as.angles, "values", s->as.values, "mirror", s->as.mirror, "zeros",
-                           s->as.zeros, "sample", s->as.sample);
-    return json_pack(
-        "{s:s, s:o, s:o, s:o, s:o, s:I, s:f, s:f, s:f, s:f, s:I, s:I, s:b, s:b, s:s?, s:I, s:o}",
-        "build", GONIO_FINGERPRINT, "subjects", subjects_json(subjects), "lessons",
-        benchmark_lessons_json(lessons), "sizes", sizes_json(s), "methods", words_json(s, true),
-        "candidates", (json_int_t)s->candidates, "reach", s->reach, "noise", s->noise, "floor",
-        s->floor, "outliers", s->outliers, "batch", (json_int_t)s->batch, "channels",
-        (json_int_t)s->channels, "no_bands", s->no_bands, "render", s->render, "external",
-        s->external, "seed", (json_int_t)s->seed, "as", as);
+    json_t *as = json_pack("{s:s?, s:i, s:i, s:i, s:i, s:i}", "format", s->reading.as.format,
+                           "angles", s->reading.as.angles, "values", s->reading.as.values, "mirror",
+                           s->reading.as.mirror, "zeros", s->reading.as.zeros, "sample",
+                           s->reading.as.sample);
+    return json_pack("{s:s, s:o, s:o, s:o, s:o, s:I, s:f, s:f, s:f, s:f, s:I, s:I, s:b, s:b, s:s?, "
+                     "s:I, s:o, s:I}",
+                     "build", GONIO_FINGERPRINT, "subjects", subjects_json(subjects), "lessons",
+                     benchmark_lessons_json(lessons), "sizes", sizes_json(s), "methods",
+                     words_json(s, true), "candidates", (json_int_t)s->candidates, "reach",
+                     s->reach, "noise", s->noise, "floor", s->floor, "outliers", s->outliers,
+                     "batch", (json_int_t)s->batch, "channels", (json_int_t)s->channels, "no_bands",
+                     s->no_bands, "render", s->render, "external", s->external, "seed",
+                     (json_int_t)s->seed, "as", as, "instrument", (json_int_t)s->instrument_hash);
 }
 
 /* ---- plans ---- */

@@ -233,7 +233,7 @@ static gonio_status open_readings(gonio_context *context, const benchmark_settin
 {
     const benchmark_subject *s = sample->subject;
     gonio_status status =
-        benchmark_readings_open(context, s->path, s->sample, &setting->as, &sample->known);
+        benchmark_readings_open(context, s->path, s->sample, &setting->reading, &sample->known);
     if (status == GONIO_OK) {
         status = keep_channels(context, setting->channels, sample->known);
     }

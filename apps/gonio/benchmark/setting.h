@@ -37,7 +37,8 @@ typedef struct benchmark_setting {
     bool no_bands;        /* do without stated deviations, which take time */
     bool render;          /* compare renderings of tables too, of n = 8, 16, 32 */
     const char *external; /* command of the method `external`; NULL: none */
-    gonio_convention as;  /* what the numbers of files of readings stand for */
+    gonio_readings_options reading; /* of files of readings: `as` and `instrument` count */
+    uint64_t instrument_hash;       /* of the instrument's file; 0: none */
     uint64_t seed;
     const process_group *group; /* NULL for a process on its own */
 } benchmark_setting;

@@ -19,7 +19,7 @@ enum { MOST_SAMPLES = 999, DEEPEST = 8 };
 typedef struct finder {
     gonio_context *context;
     gonio_context *silent; /* for files that may be anything */
-    const gonio_convention *as;
+    const gonio_readings_options *how;
     const char *set;
     size_t prefix; /* characters of a path before the name in the set; 0: the base name alone */
     size_t left_out;
@@ -38,16 +38,17 @@ void benchmark_subjects_free(benchmark_subjects *list)
 }
 
 gonio_status benchmark_readings_open(gonio_context *context, const char *path, int sample,
-                                     const gonio_convention *as, gonio_readings **readings)
+                                     const gonio_readings_options *how, gonio_readings **readings)
 {
-    gonio_readings_options how;
-    gonio_readings_options_default(&how);
-    how.average_repeats = true;
-    how.negative_to_zero = true;
-    how.as = *as;
-    how.as.sample = sample > 0 ? sample : as->sample;
+    gonio_readings_options one;
+    gonio_readings_options_default(&one);
+    one.as = how->as;
+    one.instrument = how->instrument;
+    one.average_repeats = true;
+    one.negative_to_zero = true;
+    one.as.sample = sample > 0 ? sample : how->as.sample;
     gonio_readings *made = NULL;
-    gonio_status status = gonio_readings_read(context, path, &how, &made);
+    gonio_status status = gonio_readings_read(context, path, &one, &made);
     if (status == GONIO_OK) {
         status = gonio_readings_average_repeats(context, made);
     }
@@ -126,7 +127,8 @@ static char *name_of(const finder *f, const char *path, bool keep_extension, int
 static bool can_read(const finder *f, const char *path, int sample)
 {
     gonio_readings *readings = NULL;
-    const bool can = benchmark_readings_open(f->silent, path, sample, f->as, &readings) == GONIO_OK;
+    const bool can =
+        benchmark_readings_open(f->silent, path, sample, f->how, &readings) == GONIO_OK;
     gonio_readings_free(&readings);
     return can;
 }
@@ -134,7 +136,7 @@ static bool can_read(const finder *f, const char *path, int sample)
 /* Formats of one sample take any number for it. */
 static bool has_samples(const finder *f, const char *path)
 {
-    return f->as->sample == 0 && can_read(f, path, 0) && !can_read(f, path, INT_MAX);
+    return f->how->as.sample == 0 && can_read(f, path, 0) && !can_read(f, path, INT_MAX);
 }
 
 static gonio_status add_samples(const finder *f, const char *path)
@@ -155,7 +157,7 @@ static gonio_status add_readings(finder *f, const char *path, bool needed)
         return add_samples(f, path);
     }
     const gonio_status status =
-        benchmark_readings_open(needed ? f->context : f->silent, path, 0, f->as, &readings);
+        benchmark_readings_open(needed ? f->context : f->silent, path, 0, f->how, &readings);
     gonio_readings_free(&readings);
     if (status == GONIO_OK) {
         return add(f, path, name_of(f, path, true, 0), true, 0);
@@ -200,7 +202,7 @@ static gonio_status add_file(finder *f, const char *path, bool needed)
 {
     gonio_kind kind = GONIO_KIND_UNKNOWN;
     gonio_status status =
-        needed && f->as->format == NULL
+        needed && f->how->as.format == NULL
             ? gonio_file_expect(f->context, path, GONIO_KIND_MATERIAL | GONIO_KIND_READINGS, &kind)
             : gonio_file_kind(f->silent, path, &kind, NULL);
     if (status != GONIO_OK) {
@@ -209,7 +211,7 @@ static gonio_status add_file(finder *f, const char *path, bool needed)
     if (kind == GONIO_KIND_MATERIAL) {
         return add_material(f, path, needed);
     }
-    if (kind == GONIO_KIND_READINGS || (needed && f->as->format != NULL)) {
+    if (kind == GONIO_KIND_READINGS || (needed && f->how->as.format != NULL)) {
         return add_readings(f, path, needed);
     }
     f->left_out++;
@@ -306,14 +308,14 @@ static gonio_status add_argument(finder *f, const char *path)
 }
 
 gonio_status benchmark_subjects_find(gonio_context *context, const char *const *arguments,
-                                     size_t count, const gonio_convention *as,
+                                     size_t count, const gonio_readings_options *how,
                                      benchmark_subjects *list)
 {
     gonio_context *silent = NULL;
     *list = (benchmark_subjects){0};
     gonio_status status = gonio_context_create(&silent, NULL);
     for (size_t k = 0; k < count && status == GONIO_OK; k++) {
-        finder f = {.context = context, .silent = silent, .as = as, .list = list};
+        finder f = {.context = context, .silent = silent, .how = how, .list = list};
         char *path = plain_path(arguments[k]);
         status = path != NULL ? add_argument(&f, path) : GONIO_ERROR_MEMORY;
         free(path);

@@ -20,19 +20,20 @@ typedef struct benchmark_subjects {
 } benchmark_subjects;
 
 /* The materials and readings in each argument: of a folder and the folders in it by name, of a file
- * of several samples all, of "atlas:" the built-in materials. `as` is what numbers of readings
- * stand for. Files of a folder that are neither, cannot be read, have no values or are anisotropic
- * tables are left out, which is noted. The list is to be freed in any case. Errors: _IO, _FORMAT,
- * _DATA (of an argument that is a file, or a folder with nothing to test); _MEMORY. */
+ * of several samples all, of "atlas:" the built-in materials. `how` says by `as` and
+ * `instrument` what numbers of readings stand for. Files of a folder that are neither, cannot be
+ * read, have no values or are anisotropic tables are left out, which is noted. The list is to be
+ * freed in any case. Errors: _IO, _FORMAT, _DATA (of an argument that is a file, or a folder with
+ * nothing to test); _MEMORY. */
 gonio_status benchmark_subjects_find(gonio_context *context, const char *const *arguments,
-                                     size_t count, const gonio_convention *as,
+                                     size_t count, const gonio_readings_options *how,
                                      benchmark_subjects *list);
 void benchmark_subjects_free(benchmark_subjects *list);
 
 /* Reads a file of readings as it is tested: repeats averaged, negative values taken as 0, channels
  * without values dropped. Errors: those of gonio_readings_read. */
 gonio_status benchmark_readings_open(gonio_context *context, const char *path, int sample,
-                                     const gonio_convention *as, gonio_readings **readings);
+                                     const gonio_readings_options *how, gonio_readings **readings);
 
 /* A hash of a file's bytes; of a path that is no file, of the path. */
 uint64_t benchmark_hash(const char *path);
