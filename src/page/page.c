@@ -13,33 +13,54 @@
  * tables, deviations smoother still. */
 enum { REFERENCE_BUDGET = 2100000, RECONSTRUCTION_BUDGET = 1100000, DEVIATION_BUDGET = 400000 };
 
+/* Of an anisotropic material the mean over azimuths has two thirds of its budget, the plane of
+ * incidence at all azimuths the rest. */
+enum { MEAN_PART = 2, TURNS_PART = 1, PARTS = MEAN_PART + TURNS_PART };
+
+enum { TABLES = 5, TURNS = 3 }; /* those of azimuths: TURNS + which material */
+
 typedef struct page {
     gonio_context *context;
     const gonio_page_content *content;
     json_t *data;
     gonio_table *reference;
     gonio_table *reconstruction;
-    gonio_i_web_table packed[3];
+    gonio_i_web_table packed[TABLES];
 } page;
 
-static const char *const table_names[3] = {"reference", "reconstruction", "deviation"};
+static const char *const table_names[TABLES] = {"reference", "reconstruction", "deviation",
+                                                "reference-turns", "reconstruction-turns"};
 
 /* ---- collecting ---- */
+
+/* Packs an anisotropic material at its azimuths. */
+static gonio_status add_turns(page *p, int which, const gonio_material *material, size_t budget)
+{
+    gonio_i_web_table *packed = &p->packed[TURNS + which];
+    const gonio_status status = gonio_i_web_pack_turns(p->context, material, budget, packed);
+    if (status == GONIO_OK) {
+        json_object_set_new(p->data, table_names[TURNS + which],
+                            json_pack("{s:f}", "step", packed->step));
+    }
+    return status;
+}
 
 /* Loads a material, packs it, and adds it to the data. */
 static gonio_status add_material(page *p, int which, const gonio_material *material, size_t budget,
                                  gonio_table **table)
 {
+    const bool turns = gonio_i_web_turns(material);
     gonio_status status = gonio_table_load(p->context, material, table);
     if (status == GONIO_OK) {
-        status = gonio_i_web_pack(p->context, gonio_table_values(*table), GONIO_I_WEB_LOG, budget,
-                                  &p->packed[which]);
+        status = gonio_i_web_pack(p->context, gonio_table_values(*table), GONIO_I_WEB_LOG,
+                                  turns ? budget * MEAN_PART / PARTS : budget, &p->packed[which]);
     }
     if (status == GONIO_OK) {
         json_object_set_new(p->data, table_names[which],
                             gonio_i_web_material(material, *table, p->packed[which].step));
     }
-    return status;
+    return status == GONIO_OK && turns ? add_turns(p, which, material, budget * TURNS_PART / PARTS)
+                                       : status;
 }
 
 /* Reads a MERL table whose numbers are standard deviations of g. The reader converts numbers to
@@ -97,8 +118,10 @@ static gonio_status collect(page *p)
         status = add_deviation(p);
     }
     if (status == GONIO_OK && c->readings != NULL) {
+        const gonio_i_web_known reference = {c->reference, p->reference};
+        const gonio_i_web_known reconstruction = {c->reconstruction, p->reconstruction};
         json_object_set_new(p->data, "readings",
-                            gonio_i_web_readings(c->readings, p->reference, p->reconstruction));
+                            gonio_i_web_readings(c->readings, reference, reconstruction));
     }
     json_t *figures = NULL;
     if (status == GONIO_OK && c->folder != NULL) {
@@ -175,7 +198,7 @@ static gonio_status put_data(page *p, gonio_i_output *output)
         json == NULL ? gonio_i_fail(p->context, GONIO_ERROR_MEMORY, "out of memory for the page")
                      : put_element(p, output, "application/json", "data", json);
     free(json);
-    for (int k = 0; k < 3 && status == GONIO_OK; k++) {
+    for (int k = 0; k < TABLES && status == GONIO_OK; k++) {
         if (p->packed[k].text != NULL) {
             status = put_element(p, output, "text/plain", table_names[k], p->packed[k].text);
         }
@@ -252,7 +275,7 @@ gonio_status gonio_page_write(gonio_context *context, const gonio_page_content *
     }
     gonio_table_free(&p.reference);
     gonio_table_free(&p.reconstruction);
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < TABLES; k++) {
         free(p.packed[k].text);
     }
     json_decref(p.data);

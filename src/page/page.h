@@ -32,6 +32,15 @@ typedef enum gonio_i_web_kind {
 gonio_status gonio_i_web_pack(gonio_context *context, const double *values, gonio_i_web_kind kind,
                               size_t budget, gonio_i_web_table *packed);
 
+/* Whether the page shows a material at each azimuth of the sample: anisotropic ones. */
+bool gonio_i_web_turns(const gonio_material *material);
+
+/* Packs the plane of incidence (phi_d = 0) of such a material at all azimuths of the half vector,
+ * which take the place of phi_d: [theta_h][channel][theta_d][phi_h], 180 bins of a whole turn.
+ * Errors: _MEMORY, _CANCELLED, those of the material. */
+gonio_status gonio_i_web_pack_turns(gonio_context *context, const gonio_material *material,
+                                    size_t budget, gonio_i_web_table *packed);
+
 /* A material's name, format and values at a few directions. The page checks its own look-ups by
  * these: rows of [theta_h, theta_d, phi_d, R, G, B]. NULL when out of memory. */
 json_t *gonio_i_web_material(const gonio_material *material, const gonio_table *table, double step);
@@ -42,9 +51,16 @@ json_t *gonio_i_web_metric(const gonio_metric_view *metric);
 /* Errors of all channels and of each. */
 json_t *gonio_i_web_comparison(const gonio_comparison *comparison);
 
-/* Readings in measuring order, with what the tables (which may be NULL) hold there. */
-json_t *gonio_i_web_readings(const gonio_readings *readings, const gonio_table *reference,
-                             const gonio_table *reconstruction);
+/* What readings are compared with; NULL for nothing. */
+typedef struct gonio_i_web_known {
+    const gonio_material *material;
+    const gonio_table *table; /* of the material */
+} gonio_i_web_known;
+
+/* Readings in measuring order, with what the original and the reconstruction hold there: their
+ * tables, or what an anisotropic material holds at that azimuth. */
+json_t *gonio_i_web_readings(const gonio_readings *readings, gonio_i_web_known reference,
+                             gonio_i_web_known reconstruction);
 
 /* The tables of a folder that `gonio reproduce` left: {"fig2a": {"columns": [...], "rows":
  * [[...]], "metrics": [...]}, ...}, metrics being those whose keys are columns. Errors: _IO,

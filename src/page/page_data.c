@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "../material/colour.h"
+#include "../material/source.h"
 
 static json_t *number(double value)
 {
@@ -115,12 +116,18 @@ static json_t *direction(gonio_angles angles)
     return json_pack("[f,f]", angles.theta, angles.phi);
 }
 
-static json_t *values_at(const gonio_table *table, gonio_pair pair)
+static bool look_up(gonio_i_web_known known, gonio_pair pair, double rho[GONIO_CHANNELS])
+{
+    return gonio_i_web_turns(known.material)
+               ? gonio_i_material_colour(known.material, pair, rho)
+               : gonio_table_value(known.table, gonio_half_difference_from_pair(pair), rho);
+}
+
+static json_t *values_at(gonio_i_web_known known, gonio_pair pair)
 {
     double rho[GONIO_CHANNELS];
-    return table != NULL && gonio_table_value(table, gonio_half_difference_from_pair(pair), rho)
-               ? numbers(rho, GONIO_CHANNELS)
-               : json_null();
+    return known.material != NULL && look_up(known, pair, rho) ? numbers(rho, GONIO_CHANNELS)
+                                                               : json_null();
 }
 
 /* The colour of the wavelengths that were read, NaN of none; false when out of memory. */
@@ -169,7 +176,7 @@ static void colours_of(const gonio_readings *readings, size_t reading, double va
 }
 
 static json_t *reading_json(const gonio_readings *readings, size_t reading,
-                            const gonio_table *reference, const gonio_table *reconstruction)
+                            gonio_i_web_known reference, gonio_i_web_known reconstruction)
 {
     const gonio_readings_view *view = gonio_readings_describe(readings);
     const gonio_pair pair = view->pair[reading];
@@ -181,8 +188,8 @@ static json_t *reading_json(const gonio_readings *readings, size_t reading,
                      values_at(reference, pair), "reconstruction", values_at(reconstruction, pair));
 }
 
-json_t *gonio_i_web_readings(const gonio_readings *readings, const gonio_table *reference,
-                             const gonio_table *reconstruction)
+json_t *gonio_i_web_readings(const gonio_readings *readings, gonio_i_web_known reference,
+                             gonio_i_web_known reconstruction)
 {
     const gonio_readings_view *view = gonio_readings_describe(readings);
     json_t *list = json_array();

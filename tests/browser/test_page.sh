@@ -36,6 +36,19 @@ awk 'BEGIN {
 "$GONIO" report "$original" -o alone.html
 "$GONIO" report poles.binary -o poles.html
 
+# A sample that is brighter and shinier at some turns; readings in the plane of incidence at two.
+{
+    printf 'Symmetry ASymmetrical4D\nScatterType BRDF\nSampleRotation 4\n0 45 90 135\nAngleOfIncidence 2\n10 70\n'
+    printf 'ScatterAzimuth 3\n0 90 180\nScatterRadial 3\n0 30 150\nMonochrome\nDataBegin\n'
+    for peak in 1 1 2 2 4 4 2 2; do
+        printf 'TIS 0.1\n%s 0.2 0.1\n%s 0.2 0.1\n%s 0.2 0.1\n' $peak $peak $peak
+    done
+    echo DataEnd
+} >turned.bsdf
+printf '%s\n' theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg 30,0,40,180 60,0,20,180 30,90,40,270 60,90,20,270 \
+    20,90,35,90 >turned-plan.csv
+"$GONIO" report turned.bsdf --readings turned-plan.csv -o turned.html
+
 mkdir -p out/tables
 printf 'basis_of,component,variance,cumulative\nall,1,4,0.8\nall,2,1,1\nsplit 1,1,3,0.75\nsplit 1,2,1,1\n' \
     >out/tables/fig2a.csv

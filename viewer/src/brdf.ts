@@ -67,13 +67,13 @@ export function binCentre(thetaH: number, thetaD: number, phiD: number): HalfDif
 }
 
 /** Neighbouring bins and the weight of the upper one; constant beyond the outer centres. */
-function clamped(position: number, bins: number): [number, number, number] {
+export function clamped(position: number, bins: number): [number, number, number] {
     const p = Math.min(Math.max(position - 0.5, 0), bins - 1);
     const low = Math.floor(p);
     return [low, Math.min(low + 1, bins - 1), p - low];
 }
 
-function periodic(position: number, bins: number): [number, number, number] {
+export function periodic(position: number, bins: number): [number, number, number] {
     const p = position - 0.5;
     const low = Math.floor(p);
     const wrap = (k: number) => ((k % bins) + bins) % bins;

@@ -70,12 +70,22 @@ export interface ReportData {
     reference?: Material;
     reconstruction?: Material;
     deviation?: { step: number };
+    /** Of anisotropic materials: the plane of incidence at all azimuths. */
+    'reference-turns'?: { step: number };
+    'reconstruction-turns'?: { step: number };
     comparison?: Comparison;
     readings?: Readings;
     figures?: Record<string, FigureTable>;
 }
 
-export type TableName = 'reference' | 'reconstruction' | 'deviation';
+export const TABLE_NAMES = [
+    'reference',
+    'reconstruction',
+    'deviation',
+    'reference-turns',
+    'reconstruction-turns',
+] as const;
+export type TableName = (typeof TABLE_NAMES)[number];
 
 function textOf(id: string): string | null {
     return document.getElementById(`gonio-${id}`)?.textContent ?? null;

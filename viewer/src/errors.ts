@@ -16,7 +16,8 @@ function row(name: string, errors: ErrorNumbers, metrics: Metric[]): HTMLElement
     );
 }
 
-export function showErrors(comparison: Comparison) {
+/** turns: directions at all azimuths of the sample were compared, not bins. */
+export function showErrors(comparison: Comparison, turns: boolean) {
     const metrics = comparison.metrics;
     byId('error-metrics').replaceChildren(
         element('th', { scope: 'col' }),
@@ -29,10 +30,11 @@ export function showErrors(comparison: Comparison) {
     byId('error-summaries').textContent = metrics
         .map((metric) => `${metric.title}: ${metric.summary}.`)
         .join(' ');
+    const places = turns ? 'directions at all azimuths' : 'bins';
     const count = (value: number) => value.toLocaleString('en');
     byId('error-note').textContent =
-        `${count(comparison.bins)} bins compared` +
+        `${count(comparison.bins)} ${places} compared` +
         (comparison.missing > 0
-            ? `; ${count(comparison.missing)} bins of the original have no data in the reconstruction.`
+            ? `; ${count(comparison.missing)} ${places} of the original have no data in the reconstruction.`
             : '.');
 }

@@ -26,6 +26,7 @@ import { themeColour, valueColours } from './colour';
 import { byId, button, choice, element, short, slider, toggle, type Choice } from './controls';
 import type { Angles, Reading } from './data';
 import { onTheme } from './theme';
+import { TurnDial } from './turns';
 
 export interface Plan {
     name: string;
@@ -55,11 +56,18 @@ export class HemisphereSection {
     private readings: Reading[];
     private shown: Choice<number> | null = null;
     private shownCount = 0;
+    /** The readings of one azimuth of the sample; null for all. */
+    private chosen: Set<number> | null = null;
+    private readonly dial: TurnDial | null;
     private selected = -1;
     private arcs = true;
     private timer = 0;
 
-    constructor(private readonly plans: Plan[]) {
+    /** turns: the azimuth of the sample matters. */
+    constructor(
+        private readonly plans: Plan[],
+        turns: boolean,
+    ) {
         this.readings = plans[0].readings;
         const canvas = byId<HTMLCanvasElement>('hemisphere-canvas');
         this.renderer = new WebGLRenderer({
@@ -79,6 +87,7 @@ export class HemisphereSection {
         this.orbit.addEventListener('change', () => this.draw());
         this.scene.add(this.backdrop, this.marks, this.highlight);
         this.makeControls();
+        this.dial = turns ? new TurnDial((readings) => this.showOnly(readings)) : null;
         this.listen(canvas);
         onTheme(() => this.rebuild());
         new ResizeObserver(() => this.fitSize(canvas)).observe(canvas);
@@ -126,10 +135,28 @@ export class HemisphereSection {
             },
         );
         this.stop();
+        this.dial?.show(plan.readings);
+        this.chosen = null;
         this.selected = -1;
         this.shownCount = count;
         this.rebuild();
         this.tell();
+    }
+
+    /** The readings of one azimuth of the sample, or all. */
+    private showOnly(readings: Set<number> | null) {
+        this.chosen = readings;
+        this.rebuild();
+        this.tell();
+    }
+
+    private isShown(reading: number): boolean {
+        return reading >= 0 && reading < this.shownCount && (this.chosen?.has(reading) ?? true);
+    }
+
+    /** The numbers of the readings that are shown, in measuring order. */
+    private shownReadings(): number[] {
+        return [...this.readings.keys()].filter((k) => this.isShown(k));
     }
 
     private showFirst(count: number) {
@@ -218,35 +245,36 @@ export class HemisphereSection {
     }
 
     private makeMarks() {
-        const shown = this.readings.slice(0, this.shownCount);
+        const shown = this.shownReadings();
         const light = new MeshBasicMaterial({ color: themeColour('light-mark') });
         const view = new MeshBasicMaterial({ color: themeColour('view-mark') });
         const size = shown.length > 300 ? 0.013 : 0.022;
         const lights = new InstancedMesh(new OctahedronGeometry(size * 1.35), light, shown.length);
         const views = new InstancedMesh(new SphereGeometry(size, 12, 8), view, shown.length);
         this.places = [];
-        shown.forEach((reading, k) => {
+        shown.forEach((which, k) => {
+            const reading = this.readings[which];
             const [i, o] = [vector(reading.incident), vector(reading.outgoing)];
             lights.setMatrixAt(k, new Matrix4().makeTranslation(i.x, i.y, i.z));
             views.setMatrixAt(k, new Matrix4().makeTranslation(o.x, o.y, o.z));
-            this.places.push({ reading: k, position: i }, { reading: k, position: o });
+            this.places.push({ reading: which, position: i }, { reading: which, position: o });
         });
         this.marks.add(lights, views);
         if (this.arcs) {
-            shown.forEach((reading, k) => {
-                const share = this.readings.length > 1 ? k / (this.readings.length - 1) : 0;
+            shown.forEach((which) => {
+                const share = this.readings.length > 1 ? which / (this.readings.length - 1) : 0;
                 const material = new LineBasicMaterial({
                     color: new Color(valueColours(0.1 + 0.8 * share)),
                     transparent: true,
                     opacity: shown.length > 200 ? 0.25 : 0.6,
                 });
-                this.marks.add(new Line(arcOf(reading), material));
+                this.marks.add(new Line(arcOf(this.readings[which]), material));
             });
         }
     }
 
     private select(which: number) {
-        this.selected = which < this.shownCount ? which : -1;
+        this.selected = this.isShown(which) ? which : -1;
         this.highlight.clear();
         const reading = this.readings[this.selected];
         if (reading) {
@@ -330,9 +358,13 @@ export class HemisphereSection {
 
     /** The next or the previous reading. */
     private walk(step: number) {
-        const count = this.shownCount;
-        this.select((this.selected + step + count) % count);
-        this.tell();
+        const shown = this.shownReadings();
+        if (shown.length > 0) {
+            const at = shown.indexOf(this.selected);
+            const next = at < 0 ? (step > 0 ? 0 : -1) : at + step;
+            this.select(shown[(next + shown.length) % shown.length]);
+            this.tell();
+        }
     }
 
     private turn(azimuth: number, elevation: number) {

@@ -3,6 +3,7 @@ import { CHANNEL_NAMES, LOG_SCALE, ofChannel, radians, type Channel, type Table 
 import { Chart, type Series } from './charts';
 import { byId, choice, short, slider, toggle } from './controls';
 import type { Angles, Triple } from './data';
+import type { TurnedTable } from './turned';
 
 /** Angles of view in degrees: positive on the side of the mirror direction. */
 const ANGLES = Array.from({ length: 359 }, (_, k) => (k - 179) / 2);
@@ -20,6 +21,12 @@ interface Lobes {
 
 const outgoing = (angle: number): Angles => [radians(Math.abs(angle)), angle < 0 ? 0 : Math.PI];
 
+/** Of anisotropic materials, which depend on the azimuth. */
+export interface Turned {
+    original: TurnedTable | null;
+    reconstruction: TurnedTable | null;
+}
+
 /** rho at g + factor times its deviation. */
 function shifted(rho: Triple, deviation: Triple, factor: number): Triple {
     return rho.map((value, k) => {
@@ -30,6 +37,7 @@ function shifted(rho: Triple, deviation: Triple, factor: number): Triple {
 
 export class LobeSection {
     private incidence = 30;
+    private azimuth = 0;
     private channel: Channel = 3;
     private logarithmic = true;
     private readonly chart = new Chart(byId('lobe-chart'), 'Lobes in the plane of incidence', 360);
@@ -38,22 +46,9 @@ export class LobeSection {
         private readonly original: Table,
         private readonly reconstruction: Table | null,
         private readonly deviation: Table | null,
+        private readonly turned: Turned,
     ) {
-        const parent = byId('lobe-controls');
-        const text = (v: number) => `${v}°`;
-        slider(parent, 'incidence', 'Incidence θi', [0, 85, 1], this.incidence, text, (value) => {
-            this.incidence = value;
-            this.draw();
-        });
-        const channels = CHANNEL_NAMES.map((c) => [c, c] as const);
-        choice(parent, 'lobe-channel', 'Channel', channels, 'luminance', (value) => {
-            this.channel = CHANNEL_NAMES.indexOf(value) as Channel;
-            this.draw();
-        });
-        toggle(parent, 'lobe-log', 'Logarithmic', true, (value) => {
-            this.logarithmic = value;
-            this.draw();
-        });
+        this.makeControls();
         if (!this.deviation || !this.reconstruction) {
             byId('lobe-band').remove();
         }
@@ -63,13 +58,42 @@ export class LobeSection {
         this.draw();
     }
 
+    private makeControls() {
+        const parent = byId('lobe-controls');
+        const text = (v: number) => `${v}°`;
+        slider(parent, 'incidence', 'Incidence θi', [0, 85, 1], this.incidence, text, (value) => {
+            this.incidence = value;
+            this.draw();
+        });
+        if (this.turned.original || this.turned.reconstruction) {
+            slider(parent, 'azimuth', 'Azimuth φi of the light', [0, 358, 2], 0, text, (value) => {
+                this.azimuth = value;
+                this.draw();
+            });
+        }
+        const channels = CHANNEL_NAMES.map((c) => [c, c] as const);
+        choice(parent, 'lobe-channel', 'Channel', channels, 'luminance', (value) => {
+            this.channel = CHANNEL_NAMES.indexOf(value) as Channel;
+            this.draw();
+        });
+        toggle(parent, 'lobe-log', 'Logarithmic', true, (value) => {
+            this.logarithmic = value;
+            this.draw();
+        });
+    }
+
     private lobes(): Lobes {
         const incident: Angles = [radians(this.incidence), 0];
-        const values = (table: Table | null): (Triple | null)[] =>
-            ANGLES.map((angle) => table?.atPair(incident, outgoing(angle)) ?? null);
+        const values = (table: Table | null, turned?: TurnedTable | null): (Triple | null)[] =>
+            ANGLES.map(
+                (angle) =>
+                    (turned
+                        ? turned.at(this.incidence, this.azimuth, angle)
+                        : table?.atPair(incident, outgoing(angle))) ?? null,
+            );
         const channelOf = (list: (Triple | null)[]): Values =>
             list.map((v) => v && ofChannel(v, this.channel));
-        const reconstructed = values(this.reconstruction);
+        const reconstructed = values(this.reconstruction, this.turned.reconstruction);
         const deviations = values(this.deviation);
         const limit = (factor: number): Values =>
             channelOf(
@@ -80,7 +104,7 @@ export class LobeSection {
             );
         const banded = this.reconstruction !== null && this.deviation !== null;
         return {
-            original: channelOf(values(this.original)),
+            original: channelOf(values(this.original, this.turned.original)),
             reconstruction: this.reconstruction ? channelOf(reconstructed) : null,
             low: banded ? limit(-WITHIN) : null,
             high: banded ? limit(WITHIN) : null,

@@ -5,6 +5,7 @@ import { byId, choice, element } from './controls';
 import {
     errorOf,
     readData,
+    TABLE_NAMES,
     takeTable,
     type Material,
     type Reading,
@@ -14,17 +15,19 @@ import {
 import { showErrors } from './errors';
 import { showFigures } from './figures';
 import { HemisphereSection, type Plan } from './hemisphere';
-import { LobeSection } from './lobes';
+import { LobeSection, type Turned } from './lobes';
 import { SliceSection } from './slice';
 import { SphereRenderer } from './sphere-renderer';
 import { SphereSection } from './spheres';
 import { setTheme } from './theme';
+import { TurnedTable } from './turned';
 import { unpack } from './unpack';
 
 /** What scripts may use; also in the browser's console. */
 export interface Report {
     data: ReportData;
     tables: Partial<Record<TableName, Table>>;
+    turned: Turned;
     halfDifference: typeof halfDifference;
     spheres: SphereSection | null;
     SphereRenderer: typeof SphereRenderer;
@@ -66,7 +69,7 @@ function attempt(section: string, work: () => void) {
 
 async function unpackTables(data: ReportData): Promise<Partial<Record<TableName, Table>>> {
     const tables: Partial<Record<TableName, Table>> = {};
-    for (const name of ['reference', 'reconstruction', 'deviation'] as const) {
+    for (const name of TABLE_NAMES) {
         const packed = takeTable(name);
         const step = data[name]?.step;
         if (packed !== null && step !== undefined) {
@@ -169,9 +172,31 @@ function plansOf(data: ReportData): Plan[] {
         : plansOfFigure(data);
 }
 
+// ---- anisotropic materials ----
+
+const turnedOf = (table: Table | undefined) => (table ? new TurnedTable(table) : null);
+
+/** Which materials change as the sample turns, and that some sections show their mean. */
+function tellMean(data: ReportData) {
+    const names = (['reference', 'reconstruction'] as const)
+        .filter((which) => data[`${which}-turns`])
+        .map((which) => (which === 'reference' ? 'The original' : 'The reconstruction'));
+    if (names.length > 0) {
+        const [who, verb] = names.length > 1 ? ['Both materials', 'change'] : [names[0], 'changes'];
+        byId('turning').textContent =
+            `${who} ${verb} as the sample turns. Spheres and image slice show the mean over its azimuths, ` +
+            'the lobes any azimuth.';
+        byId('turning').hidden = false;
+    }
+}
+
 // ---- all of it ----
 
-function fill(data: ReportData, tables: Partial<Record<TableName, Table>>): SphereSection | null {
+function fill(
+    data: ReportData,
+    tables: Partial<Record<TableName, Table>>,
+    turned: Turned,
+): SphereSection | null {
     const { reference } = tables;
     const reconstruction = tables.reconstruction ?? null;
     const deviation = tables.deviation ?? null;
@@ -181,8 +206,9 @@ function fill(data: ReportData, tables: Partial<Record<TableName, Table>>): Sphe
         attempt('spheres', () => (spheres = new SphereSection(reference, reconstruction)));
     }
     const plans = plansOf(data);
+    const turns = turned.original !== null || turned.reconstruction !== null;
     if (plans.length > 0) {
-        attempt('hemisphere', () => new HemisphereSection(plans));
+        attempt('hemisphere', () => new HemisphereSection(plans, turns));
         if (data.readings && data.readings.count > readings.length) {
             byId('hemisphere-note').textContent =
                 `The first ${readings.length} of ${data.readings.count} readings are shown.`;
@@ -190,11 +216,11 @@ function fill(data: ReportData, tables: Partial<Record<TableName, Table>>): Sphe
     }
     if (reference) {
         attempt('slice', () => new SliceSection(reference, reconstruction, deviation, readings));
-        attempt('lobes', () => new LobeSection(reference, reconstruction, deviation));
+        attempt('lobes', () => new LobeSection(reference, reconstruction, deviation, turned));
     }
     if (data.comparison) {
         const { comparison } = data;
-        attempt('errors', () => showErrors(comparison));
+        attempt('errors', () => showErrors(comparison, turns));
     }
     if (data.figures) {
         const { figures } = data;
@@ -222,10 +248,15 @@ async function start() {
         return;
     }
     describe(data);
+    tellMean(data);
     const tables = await unpackTables(data);
     checkTables(data, tables);
-    const spheres = fill(data, tables);
-    window.gonioReport = { data, tables, halfDifference, spheres, SphereRenderer };
+    const turned = {
+        original: turnedOf(tables['reference-turns']),
+        reconstruction: turnedOf(tables['reconstruction-turns']),
+    };
+    const spheres = fill(data, tables, turned);
+    window.gonioReport = { data, tables, turned, halfDifference, spheres, SphereRenderer };
     document.documentElement.dataset.ready = 'yes';
 }
 

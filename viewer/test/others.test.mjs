@@ -9,6 +9,7 @@ import {
     lookUpErrors,
     looksLike,
     open,
+    slide,
     spheresDone,
 } from './browser.mjs';
 
@@ -50,6 +51,8 @@ test('a material alone has no difference, no errors and no band', async () => {
     }
     assert.equal(await page.locator('[data-control=layer]').count(), 0);
     assert.equal(await page.locator('#lobe-key').count(), 0);
+    assert.equal(await page.locator('[data-control=azimuth]').count(), 0);
+    assert.equal(await page.locator('#turning').isVisible(), false);
     assert.deepEqual(complaints, []);
     await page.close();
 });
@@ -60,6 +63,41 @@ test('where phi_d means nothing its mean is looked up, as the C library does', a
     assert.equal(worst.wrong, 0, 'where there are data');
     assert.ok(worst.most < 0.52, `off by ${worst.most} steps`);
     assert.equal(await page.locator('#problem').isHidden(), true);
+    assert.deepEqual(complaints, []);
+    await page.close();
+});
+
+test('an anisotropic material is shown at any azimuth, its readings by the turn of the sample', async () => {
+    const { page, complaints } = await open(browser, 'turned.html');
+    assert.match(await page.locator('#turning').innerText(), /changes as the sample turns/);
+    // What gonio finds at the readings, which are in the plane of incidence.
+    const found = await page.evaluate(() => {
+        const degrees = (angle) => (angle * 180) / Math.PI;
+        return window.gonioReport.data.readings.list.map(({ incident, outgoing, reference }) => {
+            const across = Math.cos(outgoing[1] - incident[1]) < 0 ? 1 : -1;
+            const [light, view] = [degrees(incident[0]), across * degrees(outgoing[0])];
+            const value = window.gonioReport.turned.original.at(light, degrees(incident[1]), view);
+            return [value[0], reference[0]];
+        });
+    });
+    for (const [here, known] of found) {
+        assert.ok(Math.abs(here / known - 1) < 0.02, `${here} for ${known}`);
+    }
+    assert.ok(found[2][1] > 2 * found[0][1], 'the azimuth counts');
+    await changes(page, '#lobe-polar', () => slide(page, 'azimuth', 90));
+
+    const told = page.locator('#turn-readout');
+    assert.match(await told.innerText(), /2 azimuths/);
+    await changes(page, '#hemisphere-canvas', () => slide(page, 'turn', 2));
+    assert.equal(await told.innerText(), '3 readings at 90°: 3, 4, 5');
+    await page.locator('#hemisphere-canvas').focus();
+    await page.keyboard.press('Shift+ArrowLeft');
+    await page.keyboard.press('Shift+ArrowRight');
+    assert.match(await page.locator('#hemisphere-readout').innerText(), /Reading 3 of 5/);
+    await changes(page, '#hemisphere-canvas', () =>
+        page.locator('[data-turn="1"]').dispatchEvent('click'),
+    );
+    assert.equal(await told.innerText(), '2 readings at 0°: 1, 2');
     assert.deepEqual(complaints, []);
     await page.close();
 });
