@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "core/random.h"
 #include "follow/command_source.h"
 #include "follow/journal.h"
 #include "follow/line_source.h"
@@ -340,6 +341,82 @@ static void test_names_and_marks(void **state)
     run_end(&r);
 }
 
+/* ---- runs of many lines ---- */
+
+/* The largest difference of an angle, degrees; the azimuth between counts by the sines. */
+static double off(const double a[4], const double b[4])
+{
+    const double between_a = fabs(remainder(a[3] - a[1], 360.0));
+    const double between_b = fabs(remainder(b[3] - b[1], 360.0));
+    const double sine = fmin(sin(a[0] * M_PI / 180.0), sin(a[2] * M_PI / 180.0));
+    return fmax(sine * fabs(between_a - between_b), fmax(fabs(a[0] - b[0]), fabs(a[2] - b[2])));
+}
+
+static double least_off(const double (*plan)[4], size_t count, const double at[4])
+{
+    double least = INFINITY;
+    for (size_t k = 0; k < count; k++) {
+        least = fmin(least, off(at, plan[k]));
+    }
+    return least;
+}
+
+/* Each line of many finds the nearest of many directions, wherever in the plan that is. */
+static void test_nearest_of_many(void **state)
+{
+    (void)state;
+    enum { WANTED = 500, LINES = 1500 };
+    static double plan[WANTED][4];
+    gonio_i_random random;
+    size_t reached = 0;
+    run r;
+    gonio_i_random_seed(&random, 7, 0);
+    for (size_t k = 0; k < WANTED; k++) {
+        plan[k][0] = 12.0 * gonio_i_random_uniform(&random);
+        plan[k][2] = 77.5 + 12.0 * gonio_i_random_uniform(&random);
+        plan[k][3] = 30.0 * gonio_i_random_uniform(&random);
+    }
+    gonio_readings *directions = made_directions((const double(*)[4])plan, WANTED);
+    const gonio_readings_options how = {.size = sizeof how, .values_needed = true};
+    assert_int_equal(run_begin(&r, directions, &how, "robot.csv"), GONIO_OK);
+    take(&r, 1, NAMES);
+    for (size_t k = 0; k < LINES; k++) {
+        const double at[4] = {13.0 * gonio_i_random_uniform(&random), 0.0,
+                              76.5 + 13.0 * gonio_i_random_uniform(&random), 15.0};
+        char line[128];
+        snprintf(line, sizeof line, "%.15g,0,%.15g,15,%zu,%zu", at[0], at[2], k + 1, k);
+        assert_int_equal(take(&r, k + 2, line), RUN_READING);
+        const double least = least_off((const double(*)[4])plan, WANTED, at);
+        const size_t wanted = r.row[k].wanted;
+        assert_true(wanted == RUN_NOWHERE ? least > 1.0 : off(at, plan[wanted]) < least + 1e-5);
+        reached += wanted != RUN_NOWHERE;
+    }
+    assert_true(reached > LINES / 10 && reached < LINES && r.copies == 0 && r.backwards == 0);
+    assert_int_equal(take(&r, 2 * LINES, r.row[LINES / 2].text), RUN_COPY);
+    gonio_readings_free(&directions);
+    run_end(&r);
+}
+
+static void test_numbers_by_key(void **state)
+{
+    (void)state;
+    enum { KEYS = 5000 };
+    number_map map = {0};
+    size_t number = 0;
+    assert_false(number_map_get(&map, 3, &number));
+    for (uint64_t k = 0; k < KEYS; k++) {
+        assert_true(number_map_put(&map, k * k << 20, (size_t)k));
+    }
+    assert_true(number_map_put(&map, 9U << 20, 77));
+    for (uint64_t k = 0; k < KEYS; k++) {
+        assert_true(number_map_get(&map, k * k << 20, &number));
+        assert_int_equal(number, k == 3 ? 77 : k);
+    }
+    assert_false(number_map_get(&map, 5U << 20, &number));
+    assert_int_equal(map.count, KEYS);
+    number_map_free(&map);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -353,6 +430,8 @@ int main(void)
         cmocka_unit_test(test_read_again),
         cmocka_unit_test(test_repeats),
         cmocka_unit_test(test_names_and_marks),
+        cmocka_unit_test(test_nearest_of_many),
+        cmocka_unit_test(test_numbers_by_key),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -58,6 +58,7 @@ typedef struct follower {
     bool said_waiting;
     uint64_t *said; /* [said_count]: kinds of notes on the readings that were said */
     size_t said_count;
+    size_t outside; /* readings at no direction of the plan, of which the first few are told */
     bool said_pending;
     bool said_repeats;
     bool said_values;

@@ -50,23 +50,35 @@ gonio_status row_check_names(run *r, const char *head)
     return status;
 }
 
-/* The text of head and line, with so many empty lines between that messages name the line's own
- * number. */
-static char *below_head(const run *r, const char *text, size_t line)
+/* The text of head and line; *line: its number there. */
+static char *below_head(const run *r, const char *text, size_t *line)
 {
     const size_t head = strlen(r->head);
-    size_t lines = 1;
+    char *whole = malloc(head + strlen(text) + 2);
+    *line = 1;
     for (size_t k = 0; k < head; k++) {
-        lines += r->head[k] == '\n';
+        *line += r->head[k] == '\n';
     }
-    const size_t empty = line > lines ? line - lines : 0;
-    char *whole = malloc(head + empty + strlen(text) + 2);
     if (whole != NULL) {
         memcpy(whole, r->head, head);
-        memset(whole + head, '\n', empty);
-        stpcpy(stpcpy(whole + head + empty, text), "\n");
+        stpcpy(stpcpy(whole + head, text), "\n");
     }
     return whole;
+}
+
+/* Gives a message that begins with the place "PATH:FROM:" the line's own number. */
+static void renumber(run *r, size_t from, size_t line)
+{
+    const size_t path = strlen(r->path);
+    char place[32];
+    char *after = NULL;
+    const int length = snprintf(place, sizeof place, ":%zu:", from);
+    if (r->problem != NULL && strncmp(r->problem, r->path, path) == 0 &&
+        strncmp(r->problem + path, place, (size_t)length) == 0 &&
+        asprintf(&after, "%s:%zu:%s", r->path, line, r->problem + path + length) >= 0) {
+        free(r->problem);
+        r->problem = after;
+    }
 }
 
 /* The mark of the row of a text. */
@@ -102,23 +114,22 @@ static gonio_status take_reading(const gonio_readings *reading, run_row *row)
     return GONIO_OK;
 }
 
-static gonio_status read_line(gonio_context *context, const run *r, const char *text, size_t line,
-                              run_row *row)
+static gonio_status read_line(gonio_context *context, run *r, const char *text, run_row *row)
 {
     gonio_readings *reading = NULL;
-    char *near = below_head(r, text, 0);
-    char *there = below_head(r, text, line);
-    gonio_status status = near == NULL || there == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
-    if (status == GONIO_OK && mark_of(r->path, near) != GONIO_I_SAMPLE) {
+    size_t line = 0;
+    char *whole = below_head(r, text, &line);
+    gonio_status status = whole == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    if (status == GONIO_OK && mark_of(r->path, whole) != GONIO_I_SAMPLE) {
         row->time = NAN;
     } else if (status == GONIO_OK) {
         status =
-            gonio_readings_read_text(context, r->path, there, strlen(there), &r->how, &reading);
+            gonio_readings_read_text(context, r->path, whole, strlen(whole), &r->how, &reading);
         status = status == GONIO_OK ? take_reading(reading, row) : status;
     }
+    renumber(r, line, row->line);
     gonio_readings_free(&reading);
-    free(near);
-    free(there);
+    free(whole);
     return status;
 }
 
@@ -127,7 +138,7 @@ bool row_read(run *r, const char *text, run_row *row, gonio_status *status)
     gonio_context *context = NULL;
     *status = quiet_context(&r->problem, &context);
     if (*status == GONIO_OK) {
-        *status = read_line(context, r, text, row->line, row);
+        *status = read_line(context, r, text, row);
     }
     gonio_context_free(&context);
     const bool read = *status == GONIO_OK;

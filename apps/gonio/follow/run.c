@@ -33,7 +33,7 @@ gonio_status run_begin(run *r, const gonio_readings *plan, const gonio_readings_
                        const char *path)
 {
     const gonio_readings_view *view = gonio_readings_describe(plan);
-    *r = (run){.how = *how, .path = path, .wanted_count = view->count};
+    *r = (run){.how = *how, .path = path, .wanted_count = view->count, .latest = NAN};
     r->wanted = calloc(view->count + 1, sizeof *r->wanted);
     r->head = strdup("");
     for (size_t k = 0; r->wanted != NULL && k < view->count; k++) {
@@ -53,7 +53,9 @@ void run_end(run *r)
     free(r->wanted);
     free(r->head);
     free(r->names);
-    free(r->seen);
+    number_map_free(&r->seen);
+    number_map_free(&r->text);
+    wanted_places_free(&r->places);
     free(r->problem);
     *r = (run){0};
 }
@@ -94,12 +96,21 @@ static bool is_open(const run_wanted *w)
     return !w->dropped && (w->row == RUN_NOWHERE || w->asked);
 }
 
+static void polar_angles(const void *user, size_t k, double theta[2])
+{
+    const run_wanted *wanted = user;
+    theta[0] = wanted[k].degrees[0];
+    theta[1] = wanted[k].degrees[2];
+}
+
 /* The nearest direction that is reached. Of several that are as near, one that is to be read. */
-static size_t find_wanted(const run *r, const double degrees[4])
+static size_t find_wanted(run *r, const double degrees[4])
 {
     size_t found = RUN_NOWHERE;
     double least = REACHED;
-    for (size_t k = 0; k < r->wanted_count; k++) {
+    const size_t near = wanted_places_find(&r->places, degrees[0], degrees[2]);
+    for (size_t n = 0; n < near; n++) {
+        const size_t k = r->places.near[n];
         const run_wanted *w = &r->wanted[k];
         const double off = w->dropped ? INFINITY : distance(degrees, w->degrees);
         const bool better = off < least - 1e-6;
@@ -175,42 +186,32 @@ static bool make_room(run *r)
     return more != NULL;
 }
 
-/* Notes that a line came; *known: whether it came before. False when out of memory. */
-static bool note_line(run *r, size_t line, const char *text, bool *known)
+/* A number for the text of a line, and for the line if that is not 0. */
+static uint64_t key_of(size_t line, const char *text)
 {
     uint64_t key = 14695981039346656037U ^ line * 0x9e3779b97f4a7c15U;
     for (; *text != '\0'; text++) {
         key = (key ^ (unsigned char)*text) * 1099511628211U;
     }
-    size_t k = r->seen_count;
-    while (k > 0 && r->seen[k - 1] != key) {
-        k--;
-    }
-    *known = k > 0;
-    if (*known) {
-        return true;
-    }
-    if (r->seen_count == r->seen_room) {
-        const size_t room = r->seen_room > 0 ? 2 * r->seen_room : FIRST_ROOM;
-        uint64_t *more = reallocarray(r->seen, room, sizeof *more);
-        if (more == NULL) {
-            return false;
-        }
-        r->seen = more;
-        r->seen_room = room;
-    }
-    r->seen[r->seen_count++] = key;
-    return true;
+    return key;
 }
 
-/* The row with the same text; the number of rows if there is none. */
+/* Notes that a line came; *known: whether it came before. False when out of memory. */
+static bool note_line(run *r, size_t line, const char *text, bool *known)
+{
+    const uint64_t key = key_of(line, text);
+    size_t ignored = 0;
+    *known = number_map_get(&r->seen, key, &ignored);
+    return *known || number_map_put(&r->seen, key, line);
+}
+
+/* The last row with the same text; the number of rows if there is none. */
 static size_t find_text(const run *r, const char *text)
 {
-    size_t k = r->rows;
-    while (k > 0 && strcmp(r->row[k - 1].text, text) != 0) {
-        k--;
-    }
-    return k > 0 ? k - 1 : r->rows;
+    size_t k = 0;
+    const bool found =
+        number_map_get(&r->text, key_of(0, text), &k) && strcmp(r->row[k].text, text) == 0;
+    return found ? k : r->rows;
 }
 
 /* Whether the direction of a row is to be read again. */
@@ -228,6 +229,15 @@ static bool differ(const run_row *a, const run_row *b)
         other = fabs(a->value[k] - b->value[k]) > AGREES * scale;
     }
     return other;
+}
+
+/* Passes over the directions that were read or dropped. */
+static void go_to_unread(run *r)
+{
+    while (r->unread < r->wanted_count &&
+           (r->wanted[r->unread].dropped || r->wanted[r->unread].row != RUN_NOWHERE)) {
+        r->unread++;
+    }
 }
 
 /* Gives a row to its direction. A repeat that was asked for and is another value takes the place of
@@ -249,8 +259,10 @@ static void give_to_wanted(run *r, size_t number)
     } else if (w->row != RUN_NOWHERE && differ(row, &r->row[w->row])) {
         row->unlike = w->row;
     }
+    r->asked -= w->asked;
     w->asked = false;
     w->row = number;
+    go_to_unread(r);
 }
 
 /* Whether a clock without a date passed midnight between two times. */
@@ -261,11 +273,15 @@ static bool passes_midnight(double before, double after)
 
 static void note_time(run *r, const run_row *row)
 {
-    double latest = NAN;
-    for (size_t k = r->rows; k > 0 && isnan(latest); k--) {
-        latest = r->row[k - 1].time;
-    }
-    r->backwards += row->time < latest && !passes_midnight(latest, row->time);
+    r->backwards += row->time < r->latest && !passes_midnight(r->latest, row->time);
+    r->latest = isnan(row->time) ? r->latest : row->time;
+}
+
+/* Makes the places of the directions if there are other ones than before. */
+static bool know_places(run *r)
+{
+    return (r->places.first != NULL && r->places.count == r->wanted_count) ||
+           wanted_places_make(&r->places, r->wanted_count, polar_angles, r->wanted);
 }
 
 static run_fate take_row(run *r, size_t line, double seconds, const char *text,
@@ -282,7 +298,8 @@ static run_fate take_row(run *r, size_t line, double seconds, const char *text,
         return RUN_UNCLEAR;
     }
     row.text = strdup(text);
-    if (row.text == NULL || !make_room(r)) {
+    if (row.text == NULL || !make_room(r) || !know_places(r) ||
+        !number_map_put(&r->text, key_of(0, text), r->rows)) {
         free(row.text);
         free(row.value);
         *status = GONIO_ERROR_MEMORY;
@@ -336,12 +353,15 @@ gonio_status run_replace(run *r, const double (*degrees)[4], size_t count)
     r->wanted = more;
     for (size_t k = 0; k < r->wanted_count; k++) {
         r->wanted[k].dropped = r->wanted[k].dropped || r->wanted[k].row == RUN_NOWHERE;
+        r->asked -= r->wanted[k].dropped && r->wanted[k].asked;
+        r->wanted[k].asked = r->wanted[k].asked && !r->wanted[k].dropped;
     }
     for (size_t k = 0; k < count; k++) {
         run_wanted *w = &r->wanted[r->wanted_count++];
         *w = (run_wanted){.row = RUN_NOWHERE};
         memcpy(w->degrees, degrees[k], sizeof w->degrees);
     }
+    go_to_unread(r);
     return GONIO_OK;
 }
 
@@ -349,7 +369,8 @@ bool run_ask(run *r, size_t wanted)
 {
     run_wanted *w = &r->wanted[wanted];
     const bool first = !w->asked_once;
-    w->asked = w->asked || first;
+    r->asked += !w->asked && first && !w->dropped;
+    w->asked = w->asked || (first && !w->dropped);
     w->asked_once = true;
     return first;
 }
@@ -365,14 +386,12 @@ size_t run_left(const run *r)
 
 size_t run_next(const run *r)
 {
-    size_t next = RUN_NOWHERE;
-    for (size_t k = 0; k < r->wanted_count; k++) {
-        if (!r->wanted[k].dropped && r->wanted[k].asked) {
+    for (size_t k = 0; k < r->wanted_count && r->asked > 0; k++) {
+        if (r->wanted[k].asked) {
             return k;
         }
-        next = next == RUN_NOWHERE && is_open(&r->wanted[k]) ? k : next;
     }
-    return next;
+    return r->unread < r->wanted_count ? r->unread : RUN_NOWHERE;
 }
 
 size_t run_unread(const run *r)

@@ -9,6 +9,9 @@
 
 #include <gonio/measurement.h>
 
+#include "number_map.h"
+#include "wanted_places.h"
+
 #define RUN_NOWHERE SIZE_MAX
 
 /* A direction to read. */
@@ -54,11 +57,14 @@ typedef struct run {
     run_row *row; /* [rows], in the order in which they came */
     size_t rows;
     size_t rows_room;
-    char *head;     /* comments and names of columns, with line ends; "" so far */
-    char *names;    /* the line of names; NULL so far */
-    uint64_t *seen; /* [seen_count]: numbers for line and text of all lines but comments */
-    size_t seen_count;
-    size_t seen_room;
+    char *head;           /* comments and names of columns, with line ends; "" so far */
+    char *names;          /* the line of names; NULL so far */
+    number_map seen;      /* by line and text: all lines but comments */
+    number_map text;      /* by text: the last row that has it */
+    wanted_places places; /* of `wanted` */
+    size_t asked;         /* how many directions are asked for */
+    size_t unread;        /* the first direction that was never read nor dropped */
+    double latest;        /* the last time that a row stated, seconds; NaN: none so far */
     size_t unclear;
     size_t copies;
     size_t backwards; /* rows whose time is before that of the row before */

@@ -15,8 +15,9 @@
 #include "settings.h"
 
 enum {
-    WAIT = 100,       /* milliseconds between looks at the file */
-    MOST_FAILURES = 3 /* of a command, one after another */
+    WAIT = 100,        /* milliseconds between looks at the file */
+    OUTSIDE_TOLD = 10, /* readings outside the plan */
+    MOST_FAILURES = 3  /* of a command, one after another */
 };
 
 static const double LONG_PENDING = 5.0; /* seconds after which half a line is spoken of */
@@ -30,16 +31,26 @@ static void say_unread(follower *f)
                f->journal_path);
 }
 
+/* A reading at no direction of the plan. Of a file of other directions not each line is told. */
+static void say_outside(follower *f, const run_row *row)
+{
+    f->outside++;
+    if (f->outside <= OUTSIDE_TOLD) {
+        follow_say(f, GONIO_MESSAGE_NOTE,
+                   "%s:%zu: no direction of the plan is within a degree of this one; the reading "
+                   "is kept%s",
+                   f->run.path, row->line,
+                   f->outside == OUTSIDE_TOLD ? ", as others like it from here on" : "");
+    }
+}
+
 /* Says what is unusual of a new row, the first time that it happens. */
 static void look_at_row(follower *f, size_t unordered, size_t backwards)
 {
     const run *r = &f->run;
     const run_row *row = &r->row[r->rows - 1];
     if (row->of_sample && row->wanted == RUN_NOWHERE) {
-        follow_say(
-            f, GONIO_MESSAGE_NOTE,
-            "%s:%zu: no direction of the plan is within a degree of this one; the reading is kept",
-            r->path, row->line);
+        say_outside(f, row);
     }
     if (row->unlike != RUN_NOWHERE) {
         follow_say(f, GONIO_MESSAGE_WARNING,
