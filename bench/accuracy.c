@@ -21,7 +21,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "blas_kernels.h"
+#include "library_settings.h"
 
 enum { MOST_SIZES = 32, MOST_MATERIALS = 4096 };
 
@@ -336,7 +336,7 @@ static void read_words(int count, char **words, setting *s)
 
 int main(int argc, char **argv)
 {
-    blas_kernels_choose(argv);
+    library_settings_choose(argv, true);
     if (argc < 6) {
         fprintf(stderr, "usage: %s FOLDER SPLITS.json FIRST LAST N[,N...] [WORD...]\n", argv[0]);
         return 2;

@@ -20,7 +20,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "blas_kernels.h"
+#include "library_settings.h"
 #include "core/core.h"
 #include "core/random.h"
 #include "other_grain.h"
@@ -460,7 +460,7 @@ static void read_sizes(char *list, setting *s)
 
 int main(int argc, char **argv)
 {
-    blas_kernels_choose(argv);
+    library_settings_choose(argv, true);
     setting s = {0};
     if (argc > 2) {
         read_sizes(argv[2], &s);

@@ -13,7 +13,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "blas_kernels.h"
+#include "library_settings.h"
 
 /* To add a section, write a file after default.c and add a line. */
 static const struct {
@@ -38,7 +38,7 @@ static bool wanted(const char *name, int argc, char **argv)
 
 int main(int argc, char **argv)
 {
-    blas_kernels_choose(argv);
+    library_settings_choose(argv, true);
     if (argc > 4 && strcmp(argv[1], learn_child) == 0) {
         return learn_as_child(argv + 2, (size_t)argc - 2);
     }

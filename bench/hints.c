@@ -16,7 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "blas_kernels.h"
+#include "library_settings.h"
 #include "core/core.h"
 #include "core/random.h"
 #include "posterior/interpret.h"
@@ -310,7 +310,7 @@ static void print_tallies(const bench *b)
 
 int main(int argc, char **argv)
 {
-    blas_kernels_choose(argv);
+    library_settings_choose(argv, true);
     if (argc < 5) {
         fprintf(stderr, "usage: %s BASIS SEED DRAWS FILE[#SAMPLE] ...\n", argv[0]);
         return 2;

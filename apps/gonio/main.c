@@ -1,7 +1,7 @@
 /* The program gonio: a table of commands. */
-#include "blas_kernels.h"
 #include "command.h"
 #include "json_output.h"
+#include "library_settings.h"
 #include "messages.h"
 
 #include <gonio/gonio.h>
@@ -78,6 +78,19 @@ static int run_command(const char *name, int argc, const char **argv)
     return EXIT_USAGE;
 }
 
+/* Whether a command computes on several threads for longer than it takes to start it. */
+static bool is_parallel(const char *name)
+{
+    static const char *const names[] = {"learn",  "plan",   "reconstruct", "next",
+                                        "report", "render", "benchmark",   "reproduce"};
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+        if (strcmp(name, names[k]) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
 int main(int argc, char **argv)
 {
     const char *name = argc > 1 ? argv[1] : "";
@@ -97,7 +110,7 @@ int main(int argc, char **argv)
         print_help(stderr);
         return EXIT_USAGE;
     }
-    blas_kernels_choose(argv);
+    library_settings_choose(argv, is_parallel(name));
     tool_watch_json_memory();
     return run_command(name, argc - 1, (const char **)(argv + 1));
 }

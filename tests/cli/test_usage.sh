@@ -119,4 +119,14 @@ if grep -qw avx2 /proc/cpuinfo && grep -qw fma /proc/cpuinfo; then
     expect_true 'kernels that nobody knows do no harm' test "$(OPENBLAS_CORETYPE=none cores | wc -l)" -eq 1
 fi
 
+# ---- threads that wait sleep soon, unless the user says how they wait ----
+
+waits() { env -u OMP_WAIT_POLICY "$@" OMP_DISPLAY_ENV=verbose "$GONIO" plan b.gonio -n 5 --threads 2 -o w.csv 2>&1 |
+    sed -n "s/.*GOMP_SPINCOUNT = '\\(.*\\)'/\\1/p" | tail -n 1; }
+if [ "$(getconf _NPROCESSORS_ONLN)" -gt 1 ]; then
+    expect_true 'a tenth of what libgomp waits' test "$(waits -u OMP_NUM_THREADS)" = 30000
+fi
+expect_true 'what the user says' test "$(waits GOMP_SPINCOUNT=7)" = 7
+expect_true 'how the user lets threads wait' test "$(waits OMP_WAIT_POLICY=passive)" = 0
+
 finish
