@@ -172,11 +172,28 @@ static exr_result_t unpack(exr_decode_pipeline_t *decoder)
 }
 
 /* Chunks are parts of an image: a small file with a single one of hundreds of megabytes was made to
- * fill the memory. */
-static bool is_moderate(const exr_chunk_info_t *chunk)
+ * fill the memory. Of a chunk that is not compressed, the library reads what there is and leaves
+ * the rest of its memory as it was. */
+static bool is_plausible(const exr_chunk_info_t *chunk)
 {
     enum { MOST_FREE = 128 << 20, MOST_COMPRESSION = 100 };
-    return chunk->unpacked_size <= MOST_FREE + chunk->packed_size * MOST_COMPRESSION;
+    const bool whole =
+        chunk->compression != EXR_COMPRESSION_NONE || chunk->packed_size == chunk->unpacked_size;
+    return whole && chunk->unpacked_size <= MOST_FREE + chunk->packed_size * MOST_COMPRESSION;
+}
+
+/* The library says that memory is out where data of B44 end early. */
+static exr_result_t judge(exr_result_t code, const exr_chunk_info_t *chunk)
+{
+    const bool is_b44 =
+        chunk->compression == EXR_COMPRESSION_B44 || chunk->compression == EXR_COMPRESSION_B44A;
+    if (code != EXR_ERR_OUT_OF_MEMORY || !is_b44) {
+        return code;
+    }
+    void *volatile trial = malloc(chunk->unpacked_size);
+    const bool has_room = trial != NULL;
+    free(trial);
+    return has_room ? EXR_ERR_CORRUPT_CHUNK : code;
 }
 
 /* Decodes one chunk whose first pixel is at column x, row y of the image. */
@@ -184,7 +201,7 @@ static exr_result_t decode(exr_context_t exr, const exr_chunk_info_t *chunk, int
                            channels wanted, gonio_image *image, bool first,
                            exr_decode_pipeline_t *decoder)
 {
-    if (!is_moderate(chunk)) {
+    if (!is_plausible(chunk)) {
         return EXR_ERR_CORRUPT_CHUNK;
     }
     exr_result_t code = first ? exr_decoding_initialize(exr, 0, chunk, decoder)
@@ -209,7 +226,7 @@ static exr_result_t decode(exr_context_t exr, const exr_chunk_info_t *chunk, int
     }
     code = first ? exr_decoding_choose_default_routines(exr, 0, decoder) : EXR_ERR_SUCCESS;
     decoder->unpack_and_convert_fn = unpack;
-    return code == EXR_ERR_SUCCESS ? exr_decoding_run(exr, 0, decoder) : code;
+    return code == EXR_ERR_SUCCESS ? judge(exr_decoding_run(exr, 0, decoder), chunk) : code;
 }
 
 static exr_result_t decode_lines(exr_context_t exr, const exr_attr_box2i_t *window, channels wanted,
