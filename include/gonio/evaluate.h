@@ -102,7 +102,8 @@ typedef struct gonio_survey {
     double *albedos;            /* what incidence[].albedo points to */
     size_t repeats;             /* readings at the same angles as an earlier one, and their */
     double repeats_percent;     /* root mean square difference relative to the mean */
-    size_t reciprocal_pairs; /* of readings with light and viewer exchanged, and their difference */
+    size_t reciprocal_pairs; /* of readings with light and viewer exchanged, and their difference;
+                                of the first ones if tens of thousands have the same polar angles */
     double reciprocity_percent;
     size_t turned_pairs;   /* of readings at the same angles and other turns of the sample; the */
     double turned_percent; /* median difference of these: large of anisotropic materials */

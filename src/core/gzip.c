@@ -35,7 +35,7 @@ size_t gonio_i_gzip_head(const void *bytes, size_t size, char *text, size_t room
 
 /* Tables compress to a tenth or so. A file that grows more than twentyfold, beyond what costs
  * little, was made to fill the memory: readings of short lines take fifteen times their text. */
-static const size_t MOST_FREE = (size_t)32 << 20;
+static const size_t MOST_FREE = (size_t)16 << 20;
 static const size_t MOST_COMPRESSION = 20;
 
 /* A growing block of text. */

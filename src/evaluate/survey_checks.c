@@ -57,6 +57,10 @@ gonio_status gonio_i_survey_turned(gonio_context *context, const gonio_readings 
     return status;
 }
 
+/* Comparisons of a second or two. Only tens of thousands of readings at the same polar angles need
+ * more; the first of them are looked at then. */
+static const size_t MOST_COMPARED = 200000000;
+
 gonio_status gonio_i_survey_reciprocity(gonio_context *context, const gonio_readings *readings,
                                         gonio_survey *survey)
 {
@@ -68,7 +72,8 @@ gonio_status gonio_i_survey_reciprocity(gonio_context *context, const gonio_read
         exchanged[k] = (gonio_pair){view->pair[k].outgoing, view->pair[k].incident};
     }
     if (status == GONIO_OK) {
-        status = gonio_i_find_readings(context, readings, false, exchanged, view->count, found);
+        status = gonio_i_find_readings(context, readings, false, exchanged, view->count,
+                                       MOST_COMPARED, found);
     }
     difference d = {0.0, 0};
     for (size_t k = 0; k < view->count && status == GONIO_OK; k++) {

@@ -4,6 +4,7 @@
  * the same at all directions. Their uncertainty is that of the blank's own deviations; otherwise
  * that of its repeats; otherwise its scatter about its median. */
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -193,7 +194,8 @@ static gonio_status prepare(blank *b)
         b->deviation == NULL) {
         return GONIO_ERROR_MEMORY;
     }
-    status = gonio_i_find_readings(b->context, b->dark, true, r->pair, r->count, b->found);
+    status =
+        gonio_i_find_readings(b->context, b->dark, true, r->pair, r->count, SIZE_MAX, b->found);
     for (size_t c = 0; c < r->channels && status == GONIO_OK; c++) {
         status = find_level(b, c);
     }

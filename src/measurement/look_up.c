@@ -18,50 +18,74 @@ typedef enum likeness { EXACT, ROTATED, RECIPROCAL, NONE } likeness;
 
 /* ---- the distance of two pairs of directions ---- */
 
+/* |remainder(a - b, 2 pi)|. Differences below 2 pi are exact. */
 static double turn_between(double a, double b)
 {
-    return fabs(remainder(a - b, 2.0 * M_PI));
+    const double turn = fabs(a - b);
+    return turn <= M_PI         ? turn
+           : turn <= 2.0 * M_PI ? 2.0 * M_PI - turn
+                                : fabs(remainder(turn, 2.0 * M_PI));
+}
+
+/* Directions that are looked up, with the sines of their polar angles. */
+typedef struct sought {
+    gonio_pair at;
+    double incident; /* sines */
+    double outgoing;
+} sought;
+
+static sought seek(gonio_pair at)
+{
+    return (sought){at, sin(fmin(at.incident.theta, M_PI / 2.0)),
+                    sin(fmin(at.outgoing.theta, M_PI / 2.0))};
+}
+
+static sought exchange(const sought *s)
+{
+    return (sought){{s->at.outgoing, s->at.incident}, s->outgoing, s->incident};
+}
+
+static double theta_between(const sought *s, const gonio_pair *b)
+{
+    return fmax(fabs(s->at.incident.theta - b->incident.theta),
+                fabs(s->at.outgoing.theta - b->outgoing.theta));
 }
 
 /* The largest difference of an angle, radians; azimuths count by the sine of theta. */
-static double distance(gonio_pair a, gonio_pair b)
+static double distance(const sought *s, const gonio_pair *b)
 {
-    const double theta =
-        fmax(fabs(a.incident.theta - b.incident.theta), fabs(a.outgoing.theta - b.outgoing.theta));
-    const double incident =
-        turn_between(a.incident.phi, b.incident.phi) * sin(fmin(a.incident.theta, M_PI / 2.0));
-    const double outgoing =
-        turn_between(a.outgoing.phi, b.outgoing.phi) * sin(fmin(a.outgoing.theta, M_PI / 2.0));
-    return fmax(theta, fmax(incident, outgoing));
+    const double incident = turn_between(s->at.incident.phi, b->incident.phi) * s->incident;
+    const double outgoing = turn_between(s->at.outgoing.phi, b->outgoing.phi) * s->outgoing;
+    return fmax(theta_between(s, b), fmax(incident, outgoing));
 }
 
 /* The distance for an isotropic material, when both directions may be rotated about the normal. The
  * direction nearer to the normal takes the difference in azimuth. */
-static double distance_rotated(gonio_pair a, gonio_pair b)
+static double distance_rotated(const sought *s, const gonio_pair *b)
 {
-    const double theta =
-        fmax(fabs(a.incident.theta - b.incident.theta), fabs(a.outgoing.theta - b.outgoing.theta));
     const double turn =
-        turn_between(a.outgoing.phi - a.incident.phi, b.outgoing.phi - b.incident.phi);
-    return fmax(theta, turn * sin(fmin(a.incident.theta, a.outgoing.theta)));
+        turn_between(s->at.outgoing.phi - s->at.incident.phi, b->outgoing.phi - b->incident.phi);
+    const bool first = s->at.incident.theta < s->at.outgoing.theta;
+    return fmax(theta_between(s, b), turn * (first ? s->incident : s->outgoing));
 }
 
 /* turned: the rotation of the sample matters. */
-static likeness compare(gonio_pair a, gonio_pair b, bool turned, double *apart)
+static likeness compare(const sought *s, const gonio_pair *b, bool turned, double *apart)
 {
-    *apart = distance(a, b);
+    *apart = distance(s, b);
     if (*apart <= SAME) {
         return EXACT;
     }
+    const sought exchanged = exchange(s);
     if (turned) {
-        *apart = distance((gonio_pair){a.outgoing, a.incident}, b);
+        *apart = distance(&exchanged, b);
         return *apart <= SAME ? RECIPROCAL : NONE;
     }
-    *apart = distance_rotated(a, b);
+    *apart = distance_rotated(s, b);
     if (*apart <= SAME) {
         return ROTATED;
     }
-    *apart = distance_rotated((gonio_pair){a.outgoing, a.incident}, b);
+    *apart = distance_rotated(&exchanged, b);
     return *apart <= SAME ? RECIPROCAL : NONE;
 }
 
@@ -91,10 +115,11 @@ static int compare_places(const void *a, const void *b)
 
 typedef struct known_places {
     const gonio_readings *readings;
-    size_t count;  /* of places: repeats have that of the first of them */
-    place *place;  /* [count], sorted */
-    bool turned;   /* the rotation of the sample matters */
-    double median; /* by what readings at other rotations differ, |ln| */
+    size_t count;    /* of places: repeats have that of the first of them */
+    place *place;    /* [count], sorted */
+    bool turned;     /* the rotation of the sample matters */
+    double median;   /* by what readings at other rotations differ, |ln| */
+    size_t compared; /* comparisons so far */
 } known_places;
 
 /* Whether readings at other rotations of the sample differ by more than noise, so that only the
@@ -162,60 +187,78 @@ typedef struct best {
     size_t reading;
 } best;
 
-static void try_reading(const known_places *k, gonio_pair at, size_t reading, best *b)
+static void try_reading(const known_places *k, const sought *s, size_t reading, best *b)
 {
     double apart = 0.0;
-    const gonio_pair here = k->readings->pair[reading];
-    const likeness like = compare(at, here, k->turned, &apart);
-    const double turn = turn_between(at.incident.phi, here.incident.phi) +
-                        turn_between(at.outgoing.phi, here.outgoing.phi);
+    const gonio_pair *here = &k->readings->pair[reading];
+    const likeness like = compare(s, here, k->turned, &apart);
+    if (like == NONE) {
+        return;
+    }
+    const double turn = turn_between(s->at.incident.phi, here->incident.phi) +
+                        turn_between(s->at.outgoing.phi, here->outgoing.phi);
     const bool first = turn < b->turn || (turn == b->turn && reading < b->reading);
     const bool nearer = apart < b->apart || (apart == b->apart && first);
-    if (like < b->like || (like != NONE && like == b->like && nearer)) {
+    if (like < b->like || (like == b->like && nearer)) {
         *b = (best){like, apart, turn, reading};
     }
 }
 
 /* Compares the readings whose polar angles are near theta_i and theta_o. */
-static void try_angles(const known_places *k, gonio_pair at, double theta_i, double theta_o,
-                       best *b)
+static void try_angles(known_places *k, const sought *s, double theta_i, double theta_o, best *b)
 {
     for (int64_t column = column_of(theta_i) - 1; column <= column_of(theta_i) + 1; column++) {
         size_t n = lower_bound(k, (place){column, theta_o - SAME, 0});
         while (n < k->count && k->place[n].column == column &&
                k->place[n].theta_o <= theta_o + SAME) {
-            try_reading(k, at, k->place[n].reading, b);
+            try_reading(k, s, k->place[n].reading, b);
+            k->compared++;
             n++;
         }
     }
 }
 
-/* The best match, the nearest of several, the first of equals; `count` if there is none. */
-static size_t find(const known_places *k, gonio_pair at)
+/* Once in a while: whether a signal ends the search. */
+static gonio_status ask(gonio_context *context, size_t n, size_t count)
 {
+    enum { OFTEN = 64 };
+    return n % OFTEN == OFTEN - 1
+               ? gonio_i_progress(context, "comparing directions", (double)n / (double)count)
+               : GONIO_OK;
+}
+
+/* The best match, the nearest of several, the first of equals; `count` if there is none. */
+static size_t find(known_places *k, gonio_pair at)
+{
+    const sought s = seek(at);
     best b = {NONE, INFINITY, INFINITY, k->readings->count};
-    try_angles(k, at, at.incident.theta, at.outgoing.theta, &b);
+    try_angles(k, &s, at.incident.theta, at.outgoing.theta, &b);
     if (b.like == NONE) {
-        try_angles(k, at, at.outgoing.theta, at.incident.theta, &b);
+        try_angles(k, &s, at.outgoing.theta, at.incident.theta, &b);
     }
     return b.reading;
 }
 
 gonio_status gonio_i_find_readings(gonio_context *context, const gonio_readings *readings,
                                    bool any_rotation, const gonio_pair *pair, size_t count,
-                                   size_t *found)
+                                   size_t most, size_t *found)
 {
     known_places k;
     if (!sort_places(context, readings, any_rotation, &k)) {
         return GONIO_ERROR_MEMORY;
     }
-    for (size_t n = 0; n < count; n++) {
+    gonio_status status = GONIO_OK;
+    for (size_t n = 0; n < count && status == GONIO_OK; n++) {
+        const sought s = seek(pair[n]);
         best b = {NONE, INFINITY, INFINITY, readings->count};
-        try_angles(&k, pair[n], pair[n].incident.theta, pair[n].outgoing.theta, &b);
+        if (k.compared < most) {
+            try_angles(&k, &s, pair[n].incident.theta, pair[n].outgoing.theta, &b);
+        }
         found[n] = b.like < RECIPROCAL ? b.reading : readings->count;
+        status = ask(context, n, count);
     }
     free(k.place);
-    return GONIO_OK;
+    return status;
 }
 
 gonio_status gonio_readings_find(gonio_context *context, const gonio_readings *readings,
@@ -225,11 +268,13 @@ gonio_status gonio_readings_find(gonio_context *context, const gonio_readings *r
     if (!sort_places(context, others, false, &k)) {
         return GONIO_ERROR_MEMORY;
     }
-    for (size_t n = 0; n < readings->count; n++) {
+    gonio_status status = GONIO_OK;
+    for (size_t n = 0; n < readings->count && status == GONIO_OK; n++) {
         same[n] = find(&k, readings->pair[n]) < others->count;
+        status = ask(context, n, readings->count);
     }
     free(k.place);
-    return GONIO_OK;
+    return status;
 }
 
 /* ---- taking values ---- */
@@ -333,12 +378,14 @@ static void copy_row(gonio_readings *plan, size_t from, size_t to)
 }
 
 /* taken: [known->count], all 0. */
-static gonio_status take_rows(gonio_context *context, gonio_readings *plan, const known_places *k,
+static gonio_status take_rows(gonio_context *context, gonio_readings *plan, known_places *k,
                               const size_t *next, taken_row *taken, size_t *averaged)
 {
     const gonio_readings *known = k->readings;
-    for (size_t n = 0; n < plan->count; n++) {
+    gonio_status status = GONIO_OK;
+    for (size_t n = 0; n < plan->count && status == GONIO_OK; n++) {
         const size_t from = find(k, plan->pair[n]);
+        status = ask(context, n, plan->count);
         if (from == known->count) {
             return refuse_unread(context, plan, n, k);
         }
@@ -351,10 +398,10 @@ static gonio_status take_rows(gonio_context *context, gonio_readings *plan, cons
         }
         *averaged += taken[first].averaged;
     }
-    return GONIO_OK;
+    return status;
 }
 
-static gonio_status fill(gonio_context *context, gonio_readings *plan, const known_places *k,
+static gonio_status fill(gonio_context *context, gonio_readings *plan, known_places *k,
                          const size_t *next)
 {
     const gonio_readings *known = k->readings;

@@ -113,10 +113,11 @@ void gonio_i_value_name(const gonio_readings *readings, size_t channel, bool dev
 
 /* Finds the reading that matches each pair of directions, as it is or rotated about the normal:
  * found[count], readings->count where there is none. Rotated ones match if any_rotation, or if the
- * readings do not differ as the sample turns. Errors: _MEMORY. */
+ * readings do not differ as the sample turns. After `most` comparisons the search ends; very many
+ * readings at the same polar angles need that many. Errors: _MEMORY, _CANCELLED. */
 gonio_status gonio_i_find_readings(gonio_context *context, const gonio_readings *readings,
                                    bool any_rotation, const gonio_pair *pair, size_t count,
-                                   size_t *found);
+                                   size_t most, size_t *found);
 
 /* Fills in first_same for readings in any order. */
 gonio_status gonio_i_readings_group(gonio_context *context, gonio_readings *readings);

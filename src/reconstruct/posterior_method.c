@@ -3,6 +3,7 @@
 #include "posterior_method.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -60,7 +61,8 @@ static gonio_status list_expected(gonio_context *context, const gonio_readings *
     *at = gonio_i_allocate(context, all + 1, sizeof **at);
     gonio_status status = read != NULL && *at != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
     if (status == GONIO_OK && readings != NULL && all > 0) {
-        status = gonio_i_find_readings(context, readings, true, options->expected_at, all, read);
+        status = gonio_i_find_readings(context, readings, true, options->expected_at, all, SIZE_MAX,
+                                       read);
     }
     size_t left = 0;
     for (size_t k = 0; k < all && status == GONIO_OK; k++) {

@@ -101,10 +101,10 @@ static void test_nothing_is_left_out(void **state)
     check_refused(f);
 }
 
-/* 48 MiB in 48 kB: no table. */
+/* 24 MiB in 24 kB: no table. */
 static void test_what_fills_the_memory_is_refused(void **state)
 {
-    enum { BLOCK = 1 << 20, BLOCKS = 48 };
+    enum { BLOCK = 1 << 20, BLOCKS = 24 };
     const file *f = *state;
     gonio_context *context = support_context();
     char *block = malloc(BLOCK);
