@@ -80,6 +80,26 @@ static gonio_status check_names(gonio_context *context, const gonio_database *da
     return status;
 }
 
+/* What is learned of materials that depend on the azimuth of the sample. */
+static void tell_means(gonio_context *context, const gonio_database *database)
+{
+    const char *first = NULL;
+    size_t others = 0;
+    for (size_t k = 0; k < database->materials; k++) {
+        others += first != NULL && database->anisotropic[k];
+        first = first == NULL && database->anisotropic[k] ? database->names[k] : first;
+    }
+    if (first != NULL && others == 0) {
+        gonio_i_note(context, "%s: anisotropic; its mean over azimuths of the sample is learned",
+                     first);
+    } else if (first != NULL) {
+        gonio_i_note(context,
+                     "%s and %zu other materials: anisotropic; their means over azimuths of the "
+                     "sample are learned",
+                     first, others);
+    }
+}
+
 static gonio_status fill(gonio_context *context, gonio_database *database,
                          const gonio_i_sources *from)
 {
@@ -100,6 +120,7 @@ static gonio_status fill(gonio_context *context, gonio_database *database,
         status = check_names(context, database);
     }
     if (status == GONIO_OK) {
+        tell_means(context, database);
         status = keep_common_cells(context, database, seen);
     }
     free(seen);
@@ -165,9 +186,10 @@ static gonio_status create(gonio_context *context, const gonio_i_sources *from, 
     made->materials = count;
     made->names = gonio_i_allocate(context, count, sizeof *made->names);
     made->fingerprints = gonio_i_allocate(context, count, sizeof *made->fingerprints);
-    const gonio_status status = made->names == NULL || made->fingerprints == NULL
-                                    ? GONIO_ERROR_MEMORY
-                                    : fill(context, made, from);
+    made->anisotropic = gonio_i_allocate(context, count, sizeof *made->anisotropic);
+    const bool room =
+        made->names != NULL && made->fingerprints != NULL && made->anisotropic != NULL;
+    const gonio_status status = room ? fill(context, made, from) : GONIO_ERROR_MEMORY;
     if (status != GONIO_OK) {
         gonio_database_free(&made);
         return status;
@@ -205,6 +227,7 @@ void gonio_database_free(gonio_database **database)
     }
     free(old->names);
     free(old->fingerprints);
+    free(old->anisotropic);
     free(old->stored);
     free(old->tile);
     free(old->cell);

@@ -31,6 +31,7 @@ struct gonio_database {
     size_t materials;
     char **names;
     uint64_t *fingerprints;
+    bool *anisotropic; /* [materials] */
     size_t stored_count;
     int32_t *stored; /* [stored_count] cells of the grid, ascending */
     size_t tiles;

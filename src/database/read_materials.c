@@ -175,6 +175,7 @@ static gonio_status take_material(gonio_context *context, gonio_database *databa
                                   const gonio_material *material, const char *name, const reader *r)
 {
     database->names[column] = strdup(gonio_material_name(material));
+    database->anisotropic[column] = gonio_material_describe(material)->anisotropic;
     size_t with_data = 0;
     const gonio_status status =
         database->names[column] == NULL

@@ -20,6 +20,9 @@ expect_output '"kind": "readings"' info --json turned.bsdf
 expect_ok convert turned.bsdf readings.csv
 expect_ok convert turned.bsdf grid.xml
 expect_output '"anisotropic": true' info --json grid.xml
+expect_ok learn turned.bsdf round.bsdf --grid bivariate -o mean.gonio
+expect_true 'what is learned of an anisotropic material is said' \
+    grep -q 'note: turned: anisotropic; its mean over azimuths of the sample is learned' "$root/work/stderr"
 expect_output 'from": "Zemax BSDF, 1 rotation x 2 incidences x 3 azimuths x 3"' convert --json round.bsdf r.xml
 expect_fail 2 'cannot hold; .bsdf, .h5, .xml and .csv can' convert turned.bsdf x.binary
 expect_fail 1 'is no whole, half or quarter turn' convert few.bsdf few.xml
