@@ -408,29 +408,44 @@ static void store_row(const bin_row *row, const bool valid[GONIO_PHI_D_BINS], in
     }
 }
 
-void gonio_atlas_slab(int index, int theta_h, double *rho)
+/* Some rows of a slab, in their places. */
+static void store_rows(const gonio_i_atlas_material *material, int theta_h, int first, int count,
+                       double *rho)
 {
-    gonio_i_atlas_material material;
     double cos_phi_d[GONIO_PHI_D_BINS];
     bool valid[GONIO_PHI_D_BINS];
     bin_row row;
+
+    half_terms half =
+        half_terms_at(material, gonio_bin_centre((gonio_bin){.theta_h = theta_h}).theta_h);
+    for (int k = 0; k < GONIO_PHI_D_BINS; k++)
+        cos_phi_d[k] = cos(gonio_bin_centre((gonio_bin){.phi_d = k}).phi_d);
+    for (int j = first; j < first + count; j++) {
+        double theta_d = gonio_bin_centre((gonio_bin){.theta_d = j}).theta_d;
+        difference_terms difference = difference_terms_at(material, theta_d);
+
+        set_cosines(&row, &half, &difference, cos_phi_d, valid);
+        evaluate(&row, material, &half, &difference);
+        store_row(&row, valid, j, rho);
+    }
+}
+
+void gonio_i_atlas_row(int index, int theta_h, int theta_d, double *slab)
+{
+    gonio_i_atlas_material material;
+
+    if (material_at(index, &material))
+        store_rows(&material, theta_h, theta_d, 1, slab);
+}
+
+void gonio_atlas_slab(int index, int theta_h, double *rho)
+{
+    gonio_i_atlas_material material;
 
     if (!material_at(index, &material) || theta_h < 0 || theta_h >= GONIO_THETA_H_BINS) {
         for (int n = 0; n < GONIO_CHANNELS * GONIO_THETA_D_BINS * GONIO_PHI_D_BINS; n++)
             rho[n] = -1.0;
         return;
     }
-
-    half_terms half =
-        half_terms_at(&material, gonio_bin_centre((gonio_bin){.theta_h = theta_h}).theta_h);
-    for (int k = 0; k < GONIO_PHI_D_BINS; k++)
-        cos_phi_d[k] = cos(gonio_bin_centre((gonio_bin){.phi_d = k}).phi_d);
-    for (int j = 0; j < GONIO_THETA_D_BINS; j++) {
-        double theta_d = gonio_bin_centre((gonio_bin){.theta_d = j}).theta_d;
-        difference_terms difference = difference_terms_at(&material, theta_d);
-
-        set_cosines(&row, &half, &difference, cos_phi_d, valid);
-        evaluate(&row, &material, &half, &difference);
-        store_row(&row, valid, j, rho);
-    }
+    store_rows(&material, theta_h, 0, GONIO_THETA_D_BINS, rho);
 }

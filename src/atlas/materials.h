@@ -47,4 +47,8 @@ typedef struct gonio_i_atlas_material {
 extern const gonio_i_atlas_material gonio_i_atlas_materials[];
 extern const int gonio_i_atlas_material_count;
 
+/* Fills the row of phi_d of gonio_atlas_slab at one theta_d index, in its place in the slab: the
+ * same numbers, at a ninetieth of the time. Both indices are in 0 .. 89. */
+void gonio_i_atlas_row(int index, int theta_h, int theta_d, double *slab);
+
 #endif

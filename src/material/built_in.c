@@ -5,13 +5,23 @@
 
 #include <gonio/atlas.h>
 
+#include "../atlas/materials.h"
 #include "../core/core.h"
+#include "inside.h"
 
 static gonio_status read_isotropic_slab(void *self, gonio_context *context, int theta_h,
                                         double *rho)
 {
     (void)context;
     gonio_atlas_slab(*(const int *)self, theta_h, rho);
+    return GONIO_OK;
+}
+
+static gonio_status read_isotropic_row(void *self, gonio_context *context, int theta_h, int theta_d,
+                                       double *rho)
+{
+    (void)context;
+    gonio_i_atlas_row(*(const int *)self, theta_h, theta_d, rho);
     return GONIO_OK;
 }
 
@@ -52,8 +62,13 @@ gonio_status gonio_i_built_in_open(gonio_context *context, const char *name,
     const int isotropic = gonio_atlas_find(name);
     const int grained = gonio_atlas_anisotropic_find(name);
     if (isotropic >= 0) {
-        return create(context, name, gonio_atlas_class(isotropic), isotropic,
-                      (gonio_material_source){.read_slab = read_isotropic_slab}, material);
+        const gonio_status status =
+            create(context, name, gonio_atlas_class(isotropic), isotropic,
+                   (gonio_material_source){.read_slab = read_isotropic_slab}, material);
+        if (status == GONIO_OK) {
+            (*material)->read_row = read_isotropic_row;
+        }
+        return status;
     }
     if (grained >= 0) {
         return create(

@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "../core/core.h"
 #include "inside.h"
@@ -71,10 +72,12 @@ static int compare_places(const void *a, const void *b)
                                 : (x->index > y->index) - (x->index < y->index);
 }
 
-/* The two slabs of a stencil, which are in memory. Even and odd slabs have a place each. */
+/* The two slabs of a stencil, which are in memory, or those of their rows that are needed. Even and
+ * odd slabs have a place each. */
 typedef struct window {
     double *buffer[2];
     int held[2];
+    bool row[2][GONIO_THETA_D_BINS]; /* which are in memory, if the source reads rows */
     const double *slab[GONIO_THETA_H_BINS];
 } window;
 
@@ -87,7 +90,30 @@ static gonio_status hold(gonio_context *context, const gonio_material *material,
     }
     w->held[at] = theta_h;
     w->slab[theta_h] = w->buffer[at];
-    return gonio_material_read_slab(context, material, theta_h, w->buffer[at]);
+    memset(w->row[at], 0, sizeof w->row[at]);
+    return material->read_row != NULL
+               ? GONIO_OK
+               : gonio_material_read_slab(context, material, theta_h, w->buffer[at]);
+}
+
+/* Reads the rows of the stencil of a direction, whose slabs are held. */
+static gonio_status hold_rows(gonio_context *context, const gonio_material *material, window *w,
+                              gonio_half_difference coordinates)
+{
+    const gonio_material_source *source = &material->source;
+    gonio_i_stencil stencil[GONIO_I_MOST_POINTS];
+    const int points = material->read_row != NULL ? gonio_i_trilinear(coordinates, stencil) : 0;
+    gonio_status status = GONIO_OK;
+    for (int k = 0; k < points && status == GONIO_OK; k++) {
+        const gonio_bin bin = stencil[k].bin;
+        bool *row = &w->row[bin.theta_h % 2][bin.theta_d];
+        if (!*row) {
+            status = material->read_row(source->self, context, bin.theta_h, bin.theta_d,
+                                        w->buffer[bin.theta_h % 2]);
+            *row = true;
+        }
+    }
+    return status;
 }
 
 static gonio_status look_up_places(gonio_context *context, const gonio_material *material,
@@ -99,6 +125,9 @@ static gonio_status look_up_places(gonio_context *context, const gonio_material 
         status = hold(context, material, w, places[k].first);
         if (status == GONIO_OK) {
             status = hold(context, material, w, places[k].last);
+        }
+        if (status == GONIO_OK) {
+            status = hold_rows(context, material, w, places[k].at);
         }
         if (status == GONIO_OK && !gonio_i_look_up(w->slab, places[k].at, rho)) {
             rho[0] = rho[1] = rho[2] = NAN;
@@ -113,7 +142,10 @@ static gonio_status look_up(gonio_context *context, const gonio_material *materi
     window w = {.held = {-1, -1}};
     place *places = gonio_i_allocate(context, count, sizeof *places);
     for (size_t k = 0; k < 2; k++) {
-        w.buffer[k] = gonio_i_allocate(context, GONIO_SLAB_VALUES, sizeof *w.buffer[k]);
+        /* of rows, what is not read is not touched */
+        w.buffer[k] = material->read_row != NULL
+                          ? malloc(GONIO_SLAB_VALUES * sizeof *w.buffer[k])
+                          : gonio_i_allocate(context, GONIO_SLAB_VALUES, sizeof *w.buffer[k]);
     }
     gonio_status status = GONIO_ERROR_MEMORY;
     if (places != NULL && w.buffer[0] != NULL && w.buffer[1] != NULL) {

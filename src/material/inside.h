@@ -10,6 +10,10 @@ struct gonio_material {
     gonio_material_source source;
     double *wavelength; /* [source.channels]; NULL for colours */
     gonio_material_view view;
+    /* Fills, of a slab, the row of phi_d at one theta_d index, in its place: the same numbers as
+     * the source's read_slab, for a few directions. NULL: read_slab is used. */
+    gonio_status (*read_row)(void *self, gonio_context *context, int theta_h, int theta_d,
+                             double *rho);
     double *weight; /* [GONIO_CHANNELS][source.channels]: from spectra to colours, or NULL */
 };
 

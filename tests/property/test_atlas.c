@@ -373,6 +373,26 @@ static int count_valid(int theta_h)
     return valid;
 }
 
+/* Few directions are looked up in the rows that they need: the values of the whole table. */
+static void test_few_directions_have_the_values_of_the_table(void **state)
+{
+    (void)state;
+    gonio_material *material = NULL;
+    gonio_table *table = NULL;
+    assert_int_equal(gonio_material_open(NULL, "atlas:random-0007", &material), GONIO_OK);
+    assert_int_equal(gonio_table_load(NULL, material, &table), GONIO_OK);
+    for (int k = 0; k < 200; k++) {
+        const gonio_pair pair = {{k * 0.0078, 0.3}, {(k * 37 % 200) * 0.0078, 0.3 + k * 0.11}};
+        double expected[GONIO_CHANNELS];
+        double value[GONIO_CHANNELS];
+        assert_true(gonio_table_value(table, gonio_half_difference_from_pair(pair), expected));
+        assert_int_equal(gonio_material_evaluate(NULL, material, &pair, 1, value), GONIO_OK);
+        assert_memory_equal(value, expected, sizeof value);
+    }
+    gonio_table_free(&table);
+    gonio_material_free(&material);
+}
+
 static void test_slab_marks_invalid_bins(void **state)
 {
     int valid = 0;
@@ -399,6 +419,7 @@ int main(void)
         cmocka_unit_test(test_random_materials_are_plausible),
         cmocka_unit_test(test_slab_agrees_with_value),
         cmocka_unit_test(test_slab_marks_invalid_bins),
+        cmocka_unit_test(test_few_directions_have_the_values_of_the_table),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
