@@ -96,10 +96,11 @@ static int convert_readings_or_grid(tool *t, const options *o, const gonio_write
     if (gonio_file_expect(NULL, input, GONIO_KIND_MATERIAL, &kind) == GONIO_OK) {
         return convert_material(t, &o->write, how, input, output);
     }
-    tool_refuse(t,
-                "%s: these are readings; 'gonio reconstruct' makes a material of them. OUT can be "
-                ".csv, or .json or .brdf (BRDF JSON)",
-                input);
+    tool_refuse(
+        t,
+        "%s: these are readings; 'gonio reconstruct %s -o %s' makes a material of them. OUT "
+        "can be .csv, or .json or .brdf (BRDF JSON)",
+        input, input, output);
     return EXIT_DATA;
 }
 
@@ -122,6 +123,10 @@ static int run(tool *t, void *given)
     const gonio_status status = gonio_file_kind(t->context, arguments[0], &kind, &format);
     if (status != GONIO_OK) {
         return tool_exit_code(status);
+    }
+    if (kind == GONIO_KIND_UNKNOWN && !tool_has_convention(arguments[0])) {
+        return tool_exit_code(gonio_file_expect(t->context, arguments[0],
+                                                GONIO_KIND_MATERIAL | GONIO_KIND_READINGS, &kind));
     }
     if (kind == GONIO_KIND_READINGS || tool_has_convention(arguments[0])) {
         return convert_readings_or_grid(t, o, &how, arguments[0], arguments[1]);

@@ -5,8 +5,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include <csv.h>
+
+#include "text_numbers.h"
 
 /* ---- a line as cells ---- */
 
@@ -234,6 +237,13 @@ static bool have_no_points(const gonio_i_csv_reader *r)
     return none;
 }
 
+/* Whether rows may end before a column: it has no name, or is for remarks. */
+static bool may_be_missing(const char *name)
+{
+    return *name == '\0' || strcasecmp(name, "comment") == 0 || strcasecmp(name, "comments") == 0 ||
+           strcasecmp(name, "remark") == 0 || strcasecmp(name, "remarks") == 0;
+}
+
 /* Cells that are empty beyond the names are no cells, and names may be missing beyond the cells. */
 static gonio_status fit_cells(gonio_i_csv_reader *r)
 {
@@ -241,11 +251,11 @@ static gonio_status fit_cells(gonio_i_csv_reader *r)
         r->cells--;
     }
     const size_t found = r->cells;
-    while (r->cells < r->columns && r->name[r->cells][0] == '\0') {
+    while (r->cells < r->columns && may_be_missing(r->name[r->cells])) {
         if (!has_room(r)) {
             return out_of_memory(r);
         }
-        r->cell[r->cells] = r->name[r->cells];
+        r->cell[r->cells] = r->name[r->cells] + strlen(r->name[r->cells]);
         r->cells++;
     }
     return r->cells == r->columns
@@ -375,6 +385,7 @@ bool gonio_i_csv_is_number(const char *cell, char delimiter, double *value)
         *comma = '.';
     }
     char *end = text;
+    gonio_i_take_fortran_exponent(text);
     *value = strtod(text, &end);
     return end != text && *end == '\0';
 }

@@ -3,6 +3,7 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -76,11 +77,24 @@ void gonio_i_numbers_word(gonio_i_numbers *n, char word[GONIO_I_WORD])
     word[length] = '\0';
 }
 
+void gonio_i_take_fortran_exponent(char *number)
+{
+    char *mark = number + strspn(number, "+-0123456789.,");
+    const bool marked = mark > number && strchr("+-", mark[-1]) == NULL && toupper(*mark) == 'D';
+    const char *exponent = marked ? mark + 1 + (mark[1] == '+' || mark[1] == '-') : "";
+    if (*exponent != '\0' && exponent[strspn(exponent, "0123456789")] == '\0') {
+        *mark = 'E';
+    }
+}
+
 static bool number_of(const char *word, double *value)
 {
+    char text[GONIO_I_WORD];
     char *end = NULL;
-    *value = strtod(word, &end);
-    return end != word && *end == '\0' && isfinite(*value);
+    snprintf(text, sizeof text, "%s", word);
+    gonio_i_take_fortran_exponent(text);
+    *value = strtod(text, &end);
+    return end != text && *end == '\0' && isfinite(*value);
 }
 
 gonio_status gonio_i_numbers_read(gonio_i_numbers *n, double *value)

@@ -43,4 +43,7 @@ gonio_status gonio_i_numbers_read(gonio_i_numbers *numbers, double *value);
  * for an empty line, or -1 if a word is no number. */
 int gonio_i_numbers_row(gonio_i_numbers *numbers, double *value, int most);
 
+/* Gives a number with the exponent of a Fortran double ("2.5D-03") the usual letter: "2.5E-03". */
+void gonio_i_take_fortran_exponent(char *number);
+
 #endif

@@ -147,8 +147,46 @@ gonio_status gonio_file_kind(gonio_context *context, const char *path, gonio_kin
 
 /* ---- a file of certain kinds ---- */
 
+/* Files that people have and gonio does not read, by their first bytes, with what to do. */
+typedef struct foreign_format {
+    const char *bytes;
+    size_t size;
+    const char *words;
+} foreign_format;
+
+#define FOREIGN(bytes, words)                                                                      \
+    {                                                                                              \
+        bytes, sizeof bytes - 1, words                                                             \
+    }
+
+static const foreign_format foreign_formats[] = {
+    FOREIGN("PK\x03\x04", "a workbook (.xlsx, .ods) or another ZIP archive, which gonio does not "
+                          "read; save the sheet as CSV, or unpack it"),
+    FOREIGN("\xD0\xCF\x11\xE0", "an old workbook (.xls), which gonio does not read; save the sheet "
+                                "as CSV"),
+    FOREIGN("MATLAB 5.0 MAT-file", "a MAT-file, which gonio does not read; save a table as CSV "
+                                   "(writetable)"),
+    FOREIGN("\x93NUMPY",
+            "an array of NumPy, which gonio does not read; save it as CSV, with a line "
+            "of column names (numpy.savetxt)"),
+    FOREIGN("OPTIS - ", "a scattering file of Speos, which gonio does not read; export it as Zemax "
+                        "BSDF, or as a table of theta_i, theta_o, phi_o and values"),
+};
+
+/* What a file is that is of none of the kinds; NULL: not known. */
+static const char *what_is_foreign(const gonio_i_file *file)
+{
+    for (size_t k = 0; k < sizeof foreign_formats / sizeof *foreign_formats; k++) {
+        if (gonio_i_file_begins(file, foreign_formats[k].bytes, foreign_formats[k].size)) {
+            return foreign_formats[k].words;
+        }
+    }
+    return NULL;
+}
+
 /* "a mesh (OBJ), not a material or readings". */
-static void print_other(FILE *stream, unsigned wanted, const kind_row *is, const char *format)
+static void print_other(FILE *stream, const char *path, unsigned wanted, const kind_row *is,
+                        const char *format)
 {
     const char *between = ", not ";
     fprintf(stream, "%s%s (%s)", is->article, is->name, format);
@@ -159,7 +197,7 @@ static void print_other(FILE *stream, unsigned wanted, const kind_row *is, const
         }
     }
     if (is->kind == GONIO_KIND_READINGS && (wanted & GONIO_KIND_MATERIAL) != 0) {
-        fputs("; gonio reconstruct makes a material of readings", stream);
+        fprintf(stream, "; 'gonio reconstruct %s -o NEW.bsdf' makes a material of readings", path);
     }
 }
 
@@ -182,7 +220,7 @@ static void print_unknown(FILE *stream, unsigned wanted)
     fputs("), judged by its content", stream);
 }
 
-static char *explain(unsigned wanted, gonio_kind kind, const char *format)
+static char *explain(const gonio_i_file *file, unsigned wanted, gonio_kind kind, const char *format)
 {
     char *text = NULL;
     size_t size = 0;
@@ -190,10 +228,13 @@ static char *explain(unsigned wanted, gonio_kind kind, const char *format)
     if (stream == NULL) {
         return NULL;
     }
-    if (kind == GONIO_KIND_UNKNOWN) {
+    const char *foreign = kind == GONIO_KIND_UNKNOWN ? what_is_foreign(file) : NULL;
+    if (foreign != NULL) {
+        fputs(foreign, stream);
+    } else if (kind == GONIO_KIND_UNKNOWN) {
         print_unknown(stream, wanted);
     } else {
-        print_other(stream, wanted, row_of(kind), format);
+        print_other(stream, file->path, wanted, row_of(kind), format);
     }
     if (fclose(stream) != 0) {
         free(text);
@@ -202,10 +243,10 @@ static char *explain(unsigned wanted, gonio_kind kind, const char *format)
     return text;
 }
 
-static gonio_status refuse(gonio_context *context, const char *path, unsigned wanted,
-                           gonio_kind kind, const char *format)
+static gonio_status refuse(gonio_context *context, const char *path, const gonio_i_file *file,
+                           unsigned wanted, gonio_kind kind, const char *format)
 {
-    char *text = explain(wanted, kind, format);
+    char *text = explain(file, wanted, kind, format);
     const gonio_status status =
         text == NULL ? gonio_i_fail(context, GONIO_ERROR_MEMORY, "out of memory")
                      : gonio_i_fail(context, GONIO_ERROR_FORMAT, "%s: %s", path, text);
@@ -235,7 +276,7 @@ gonio_status gonio_file_expect(gonio_context *context, const char *path, unsigne
         found = GONIO_KIND_BASIS;
     }
     if ((wanted & found) == 0) {
-        return refuse(context, path, wanted, found, format);
+        return refuse(context, path, &file, wanted, found, format);
     }
     *kind = found;
     return GONIO_OK;

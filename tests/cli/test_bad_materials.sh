@@ -64,11 +64,11 @@ expect_fail 1 "noise.binary: not a basis that gonio reads (gonio basis), nor a m
 RGL .bsdf, KAIST .pbsdf, UTIA .bin, BSDF-XML, Zemax BSDF), nor an image (OpenEXR, Radiance .hdr), nor a mesh (OBJ, PLY), nor readings (" info noise.binary
 # every_table PART FILE: what is said of readings, which will do where the part is.
 every_table() {
-    expect_fail 1 "$2: these are readings; 'gonio reconstruct' makes a material" convert "$2" x.binary
+    expect_fail 1 "$2: these are readings; 'gonio reconstruct $2 -o x.binary' makes a material" convert "$2" x.binary
     expect_fail 1 "$2: readings (CSV), not a material" report "$2" -o x.html
     expect_fail 1 "$2: readings (CSV), not a material" \
         learn "$2" atlas:oak-sawn atlas:plaster-cast -o x.gonio
-    expect_fail 1 "$2: readings (CSV), not a material; gonio reconstruct makes" render "$2" -o x.png --size 8
+    expect_fail 1 "$2: readings (CSV), not a material; 'gonio reconstruct $2 -o NEW.bsdf' makes" render "$2" -o x.png --size 8
     expect_fail 1 "$2: $1" compare atlas:oak-sawn "$2"
     expect_fail 1 "$2: $1" measure p.csv "$2" -o x.csv
     expect_fail 1 "$2: $1" compare "$2" atlas:oak-sawn

@@ -59,7 +59,7 @@ expect_output 'taken as the samples of an RGL .bsdf' info --as format=rgl cotton
 { printf '2'; for _ in $(seq 205); do printf ' 0.1'; done; echo; } > curet.dat
 expect_fail 1 'are expected in table.txt beside it' info curet.dat
 
-expect_fail 1 "these are readings; 'gonio reconstruct' makes a material of them" \
+expect_fail 1 "these are readings; 'gonio reconstruct fred.txt -o x.binary' makes a material" \
     convert fred.txt x.binary
 expect_fail 2 'the choices are brdf, factor' convert -q fred.txt --as values=lux x.csv
 finish

@@ -26,7 +26,19 @@ expect_true 'what is learned of an anisotropic material is said' \
 expect_output 'from": "Zemax BSDF, 1 rotation x 2 incidences x 3 azimuths x 3"' convert --json round.bsdf r.xml
 expect_fail 2 'cannot hold; .bsdf, .h5, .xml and .csv can' convert turned.bsdf x.binary
 expect_fail 1 'is no whole, half or quarter turn' convert few.bsdf few.xml
-expect_fail 1 "'gonio reconstruct' makes a material of them" convert readings.csv x.xml
+# Files of other programs that are not read are named; keys in small letters are read.
+printf 'PK\003\004\024' >book.xlsx
+printf 'OPTIS - Anisotropic BSDF surface file v8.0\n0\n' >x.anisotropicbsdf
+expect_fail 1 'a workbook (.xlsx, .ods) or another ZIP archive' info book.xlsx
+expect_fail 1 'save the sheet as CSV' convert book.xlsx x.csv
+expect_fail 1 'a scattering file of Speos' reconstruct x.anisotropicbsdf -o x.binary
+tr 'A-Z' 'a-z' <round.bsdf | sed 's/e+/E+/' >small.bsdf
+expect_ok convert -q small.bsdf small.csv
+expect_ok convert -q round.bsdf large.csv
+expect_true 'small letters are read' cmp <(grep -v '^#' small.csv) <(grep -v '^#' large.csv)
+printf 'no table at all' >words.txt
+expect_fail 1 'nor readings (' convert words.txt x.binary
+expect_fail 1 "'gonio reconstruct readings.csv -o x.xml' makes a material of them" convert readings.csv x.xml
 
 # Values at directions that the grid lacks are interpolated: ln 2 is halfway between 1 and 4.
 printf 'theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg\n10,45,10,225\n10,0,10,180\n' > own.csv

@@ -33,8 +33,8 @@ expect_output '4 readings compared' compare noisy.csv cotton.binary r.csv atlas:
 expect_true 'three comparisons' test "$(grep -c 'readings compared' "$root/work/stdout")" -eq 3
 expect_output '1096216 bins compared' compare -v cotton.binary cotton.binary
 expect_output '"missing": 0' compare --json cotton.binary r.csv
-expect_fail 1 "'gonio reconstruct' makes a material of them" convert r.csv x.binary
-expect_fail 1 'readings (CSV), not a material; gonio reconstruct makes a material of readings' report r.csv -o x.html
+expect_fail 1 "'gonio reconstruct r.csv -o x.binary' makes a material of them" convert r.csv x.binary
+expect_fail 1 "readings (CSV), not a material; 'gonio reconstruct r.csv -o NEW.bsdf' makes a material of readings" report r.csv -o x.html
 expect_fail 2 '--render needs whole materials, but r.csv is' compare --render cotton.binary r.csv
 
 # ---- channels ----

@@ -224,9 +224,12 @@ static void test_numbers_are_those_of_strtod(void **state)
             fail_msg("%s: %.17g, not %.17g", cell, value, expected);
         }
     }
-    static const char *const others[] = {"", "-", ".", "-.", "1.2.3", "1,2", "1 ", "--1", "1x"};
+    double value = 0.0;
+    assert_true(gonio_i_csv_is_number("-2.5D-03", ',', &value) && value == -2.5e-3); /* Fortran */
+    assert_true(gonio_i_csv_is_number("4,5d2", ';', &value) && value == 450.0);
+    static const char *const others[] = {"",    "-",  ".",  "-.", "1.2.3", "1,2",  "1 ",
+                                         "--1", "1x", "1D", "D2", "1D-",   "1D2.5"};
     for (size_t k = 0; k < sizeof others / sizeof *others; k++) {
-        double value = 0.0;
         if (gonio_i_csv_is_number(others[k], ',', &value)) {
             fail_msg("'%s' is no number", others[k]);
         }

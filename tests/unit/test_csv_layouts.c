@@ -63,6 +63,14 @@ static void test_layouts(void **state)
         "th_i,ph_i,th_r,ph_r,fr\n20,0,30,180,0.5\n",
         "theta_l,phi_l,theta_v,phi_v,brdf\n20,0,30,180,0.5\n",
         "AOI (deg);scatter angle (deg);BRDF (1/sr)\r\n20;30;0,5\r\n",
+        /* a header of LabVIEW, whose rows end before the remarks */
+        "Separator\tTab\r\n***End_of_Header***\t\r\n\r\ntheta_i\tphi_i\ttheta_o\tphi_"
+        "o\tBRDF\tComment"
+        "\r\n10\t0\t40\t170\t0.25\t\r\n20\t0\t30\t180\t0.5\r\n",
+        /* long names, units and comments of a plotting program */
+        "theta_i\tphi_i\ttheta_o\tphi_o\tBRDF\ndeg\tdeg\tdeg\tdeg\tsr\\+(-1)\n"
+        "Comments\t\t\t\tblack tile\n20\t0\t30\t180\t0.5\n",
+        "theta_i,phi_i,theta_o,phi_o,BRDF\n2.0D+01,0.0D+00,3.0D+01,1.8D+02,5.0D-01\n",
     };
     static const double expected[4] = {20, 0, 30, 180};
     for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) {
@@ -116,10 +124,13 @@ static void test_refused(void **state)
         const char *message;
     } cases[] = {
         {"20,0,30,180,0.5\n30,0,30,180,0.5\n", "begins with numbers, not with names of columns"},
+        {"[{\"theta_i\": 20, \"brdf\": 0.5}]\n", "JSON, but not BRDF JSON"},
         {"0 0 1 2 3\n", "begins with numbers, not with names of columns"},
         {"theta_i,theta_o,phi,brdf\n20,30,180,0.5\n", "no column 'phi_i_deg'"},
         {"% " NAMES "20 0 30 180\n", "table:2"},
         {"% " NAMES "20 0 30 180 x\n", "table:2"},
+        {"theta_i,phi_i,theta_o,phi_o,brdf\ndeg,deg,deg,deg,1/sr\n2o,,,,x1\n", "table:3"},
+        {"theta_i,phi_i,theta_o,phi_o,brdf\nwords,,,,\n20,0,30,180,0.5\n", "table:2"},
     };
     gonio_context *context = support_context();
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {

@@ -186,8 +186,18 @@ gonio_status gonio_i_zemax_read(gonio_context *context, const char *path, const 
     return status;
 }
 
+/* Whether a text has a word, in any letter case. */
+static bool has_word(const char *text, size_t size, const char *word)
+{
+    const size_t length = strlen(word);
+    bool found = false;
+    for (size_t k = 0; k + length <= size && !found; k++) {
+        found = strncasecmp(text + k, word, length) == 0;
+    }
+    return found;
+}
+
 bool gonio_i_zemax_recognises(const char *text, size_t size)
 {
-    return memmem(text, size, "AngleOfIncidence", 16) != NULL &&
-           memmem(text, size, "ScatterAzimuth", 14) != NULL;
+    return has_word(text, size, "AngleOfIncidence") && has_word(text, size, "ScatterAzimuth");
 }

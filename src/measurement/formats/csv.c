@@ -398,6 +398,13 @@ static gonio_status make_plain(gonio_i_readings_file *file)
     if (gonio_i_csv_are_blocks(file->text, file->size)) {
         return gonio_i_csv_blocks_make_plain(file->context, file->path, &file->text, &file->size);
     }
+    const char *begin = file->text + strspn(file->text, " \t\r\n");
+    if (*begin == '{' || *begin == '[') {
+        return gonio_i_fail(file->context, GONIO_ERROR_FORMAT,
+                            "%s: JSON, but not BRDF JSON: an object 'data' with columns theta_i, "
+                            "phi_i, theta_r, phi_r and BRDF; or write it as CSV",
+                            file->path);
+    }
     if (gonio_i_csv_layout_lacks_names(file->text, file->size)) {
         return gonio_i_fail(file->context, GONIO_ERROR_FORMAT,
                             "%s: begins with numbers, not with names of columns; put a line of "

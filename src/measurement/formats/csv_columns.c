@@ -3,6 +3,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "../rules.h"
 #include "csv_finder.h"
@@ -406,11 +407,33 @@ static bool is_unit_row(const gonio_i_csv_reader *r)
     return angle;
 }
 
+/* Whether a row has a word, and neither a number nor what stands for one that is missing. */
+static bool is_row_of_words(const gonio_i_csv_reader *r)
+{
+    bool word = false;
+    for (size_t k = 0; k < r->cells; k++) {
+        double number = 0.0;
+        const char *cell = r->cell[k];
+        if (gonio_i_csv_is_number(cell, r->delimiter, &number) || strpbrk(cell, "0123456789")) {
+            return false;
+        }
+        word = word || (*cell != '\0' && strcasecmp(cell, "NA") != 0);
+    }
+    return word;
+}
+
 gonio_status gonio_i_csv_take_units(gonio_i_csv_reader *reader)
 {
     gonio_status status = gonio_i_csv_next(reader);
     if (status == GONIO_OK && is_unit_row(reader)) {
-        return gonio_i_csv_units_behind_names(reader);
+        status = gonio_i_csv_units_behind_names(reader);
+        if (status != GONIO_OK) {
+            return status;
+        }
+        status = gonio_i_csv_next(reader); /* plotting programs write a line of comments below */
+        if (status == GONIO_OK && is_row_of_words(reader)) {
+            return GONIO_OK;
+        }
     }
     gonio_i_csv_again(reader);
     return status;
