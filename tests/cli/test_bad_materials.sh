@@ -33,7 +33,7 @@ for command in 'info folder' 'convert folder x.binary' 'measure p.csv folder -o 
 done
 expect_fail 1 'folder: no materials (*.binary, *.h5) in this folder' learn folder -o x.gonio
 expect_fail 1 'pipe: cannot read: not a regular file' report pipe -o x.html
-expect_fail 1 "pipe: these are readings; 'gonio reconstruct' makes" convert pipe x.binary
+expect_fail 1 "pipe: these are readings; 'gonio reconstruct pipe -o x.binary' makes" convert pipe x.binary
 expect_fail 1 "a?b: cannot read: No such file" convert $'a\nb' x.binary
 if permissions_apply; then
     cp good.binary secret.binary
