@@ -1,5 +1,7 @@
 #!/bin/sh
 # Formatting, lint and man pages: check-style.sh BUILD, with BUILD's compile_commands.json.
+# ANALYZER_NODES is how far clang's analyzer follows the paths of a function. Its own default, 225000, takes three
+# times as long; `ANALYZER_NODES=225000 make style` before a release.
 set -eu
 build=$(cd "$1" && pwd)
 cd "$(dirname "$0")/.."
@@ -15,7 +17,9 @@ fi
 
 if clang-tidy --version | grep -q 'version 14\.'; then
     find src apps -name '*.c' | sort |
-        xargs -P "$(nproc)" -n 4 clang-tidy --quiet -p "$build" --warnings-as-errors='*' 2>/dev/null
+        xargs -P "$(nproc)" -n 4 clang-tidy --quiet -p "$build" --warnings-as-errors='*' \
+            --extra-arg=-Xclang --extra-arg=-analyzer-config --extra-arg=-Xclang \
+            --extra-arg="max-nodes=${ANALYZER_NODES:-50000}" 2>/dev/null
     echo "clang-tidy: fine"
 else
     echo "clang-tidy: skipped, version 14 is needed"
