@@ -30,6 +30,8 @@ export class SphereSection {
     /** Nothing moves, and there is time for a large picture. */
     private still = false;
     private slowSteps = 0;
+    /** Whether somebody can see them: out of view a picture stays as its first samples show it. */
+    private inView = false;
 
     constructor(
         private readonly original: Table,
@@ -40,6 +42,10 @@ export class SphereSection {
         this.makeControls();
         onTheme(() => this.refresh());
         new ResizeObserver(() => this.fitSize()).observe(this.panels[0].canvas);
+        new IntersectionObserver((entries) => {
+            this.inView = entries[entries.length - 1].isIntersecting;
+            this.next();
+        }).observe(byId('sphere-panels'));
         this.renderer.canvas.addEventListener('webglcontextrestored', () => this.restart());
     }
 
@@ -281,7 +287,7 @@ export class SphereSection {
     }
 
     private next() {
-        if (!this.waiting) {
+        if (!this.waiting && (this.inView || this.renderer.samplesDone === 0)) {
             this.waiting = true;
             requestAnimationFrame(() => {
                 this.waiting = false;

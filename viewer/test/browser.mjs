@@ -20,6 +20,7 @@ export function launch() {
             '--use-angle=swiftshader',
             '--enable-unsafe-swiftshader',
             '--ignore-gpu-blocklist',
+            '--disable-gpu-compositing',
             '--force-color-profile=srgb',
             '--hide-scrollbars',
         ],
@@ -55,8 +56,11 @@ export async function open(browser, name, options = {}) {
     return { page, complaints };
 }
 
-export const spheresDone = (page) =>
-    page.waitForSelector('html[data-spheres=finished]', { timeout: PATIENCE });
+/** Until the spheres, which only improve in view, are done. */
+export async function spheresDone(page) {
+    await page.locator('#sphere-panels').scrollIntoViewIfNeeded();
+    await page.waitForSelector('html[data-spheres=finished]', { timeout: PATIENCE });
+}
 
 /** A PNG of an element, as it is on the screen. */
 export async function picture(page, selector) {

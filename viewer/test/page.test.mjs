@@ -162,6 +162,20 @@ test('controls of the spheres', async () => {
     assert.equal(await page.locator('input[data-control=exposure]').inputValue(), '0');
 });
 
+test('spheres improve only while they are in view', async () => {
+    const samples = () => page.evaluate(() => window.gonioReport.spheres.renderer.samplesDone);
+    await page.locator('#errors').scrollIntoViewIfNeeded();
+    await page.evaluate(() => window.scrollTo(0, document.body.scrollHeight));
+    await slide(page, 'lightAzimuth', -44);
+    await page.waitForTimeout(200); // for frames that must not be drawn
+    const unseen = await samples();
+    assert.ok(unseen >= 1 && unseen < 16, `${unseen} samples out of view`);
+    assert.equal(await page.evaluate(() => document.documentElement.dataset.spheres), 'working');
+    await spheresDone(page);
+    assert.ok((await samples()) >= 16);
+    await page.locator('[data-control=reset]').click();
+});
+
 test('dragging and keys move light and view', async () => {
     const sphere = page.locator('[data-sphere=original]');
     const value = (name) => page.locator(`input[data-control=${name}]`).inputValue().then(Number);
