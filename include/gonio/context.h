@@ -1,7 +1,9 @@
 /* The context: callbacks for messages and progress, and the number of threads.
  *
- * Every function that takes a context accepts NULL: silent, one thread per processor. A context may
- * be used from several threads; its callbacks are called one at a time.
+ * Every function that takes a context accepts NULL: silent, one thread per processor. Processors
+ * are those that the process may run on, at most the time that its control group gives it (cgroup
+ * v1, v2; rounded up). A context may be used from several threads; its callbacks are called one at
+ * a time.
  *
  * gonio runs its own threads. They do not nest: a function that is called from a parallel region of
  * OpenMP works on the calling thread. OpenBLAS is set, process-wide, to run each call on one
@@ -34,7 +36,7 @@ typedef struct gonio_context_options {
      * gonio_context_resume. NULL for none. */
     int (*progress)(void *user, const char *task, double fraction);
     void *user;  /* handed to both callbacks */
-    int threads; /* most threads to use; 0 for one per processor */
+    int threads; /* most threads to use; 0 for one per processor that the process is given */
 } gonio_context_options;
 
 /* The defaults: silence, no progress, one thread per processor. */

@@ -3,6 +3,7 @@
 #include "core.h"
 #include "number.h"
 #include "options.h"
+#include "processors.h"
 
 #include <ctype.h>
 #include <pthread.h>
@@ -141,7 +142,7 @@ int gonio_context_threads(const gonio_context *context)
     if (omp_in_parallel()) {
         return 1;
     }
-    const int processors = omp_get_num_procs();
+    const int processors = gonio_i_processors();
     if (context == NULL || context->options.threads == 0) {
         return processors;
     }
