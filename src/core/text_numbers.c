@@ -80,7 +80,8 @@ void gonio_i_numbers_word(gonio_i_numbers *n, char word[GONIO_I_WORD])
 void gonio_i_take_fortran_exponent(char *number)
 {
     char *mark = number + strspn(number, "+-0123456789.,");
-    const bool marked = mark > number && strchr("+-", mark[-1]) == NULL && toupper(*mark) == 'D';
+    const bool marked =
+        mark > number && strchr("+-", mark[-1]) == NULL && (*mark == 'D' || *mark == 'd');
     const char *exponent = marked ? mark + 1 + (mark[1] == '+' || mark[1] == '-') : "";
     if (*exponent != '\0' && exponent[strspn(exponent, "0123456789")] == '\0') {
         *mark = 'E';

@@ -142,10 +142,7 @@ static gonio_status look_up(gonio_context *context, const gonio_material *materi
     window w = {.held = {-1, -1}};
     place *places = gonio_i_allocate(context, count, sizeof *places);
     for (size_t k = 0; k < 2; k++) {
-        /* of rows, what is not read is not touched */
-        w.buffer[k] = material->read_row != NULL
-                          ? malloc(GONIO_SLAB_VALUES * sizeof *w.buffer[k])
-                          : gonio_i_allocate(context, GONIO_SLAB_VALUES, sizeof *w.buffer[k]);
+        w.buffer[k] = gonio_i_allocate(context, GONIO_SLAB_VALUES, sizeof *w.buffer[k]);
     }
     gonio_status status = GONIO_ERROR_MEMORY;
     if (places != NULL && w.buffer[0] != NULL && w.buffer[1] != NULL) {
