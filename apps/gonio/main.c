@@ -11,7 +11,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#define ROW(name, summary) {#name, summary, cmd_##name},
+#define ROW(name, parallel, summary) {#name, parallel, summary, cmd_##name},
 static const tool_command commands[] = {TOOL_COMMANDS(ROW)};
 
 enum { COMMANDS = sizeof commands / sizeof *commands, NAME_WIDTH = 14 };
@@ -64,31 +64,28 @@ static int finish_output(const char *name, int code)
     return code != 0 ? code : EXIT_DATA;
 }
 
-static int run_command(const char *name, int argc, const char **argv)
+/* The command of this name; NULL if there is none. */
+static const tool_command *find_command(const char *name)
 {
     for (int k = 0; k < COMMANDS; k++) {
         if (is_name(name, commands[k].name)) {
-            const int code = finish_output(name, commands[k].run(argc, argv));
-            tool_end_if_interrupted();
-            return code;
+            return &commands[k];
         }
+    }
+    return NULL;
+}
+
+static int run_command(const char *name, int argc, const char **argv)
+{
+    const tool_command *command = find_command(name);
+    if (command != NULL) {
+        const int code = finish_output(name, command->run(argc, argv));
+        tool_end_if_interrupted();
+        return code;
     }
     fprintf(stderr, "gonio: no command is called '%s'\n\n", name);
     print_help(stderr);
     return EXIT_USAGE;
-}
-
-/* Whether a command computes on several threads for longer than it takes to start it. */
-static bool is_parallel(const char *name)
-{
-    static const char *const names[] = {"learn",  "plan",   "reconstruct", "next",
-                                        "report", "render", "benchmark",   "reproduce"};
-    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
-        if (strcmp(name, names[k]) == 0) {
-            return true;
-        }
-    }
-    return false;
 }
 
 int main(int argc, char **argv)
@@ -110,7 +107,8 @@ int main(int argc, char **argv)
         print_help(stderr);
         return EXIT_USAGE;
     }
-    library_settings_choose(argv, is_parallel(name));
+    const tool_command *command = find_command(name);
+    library_settings_choose(argv, command != NULL && command->parallel);
     tool_watch_json_memory();
     return run_command(name, argc - 1, (const char **)(argv + 1));
 }
