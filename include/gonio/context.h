@@ -2,8 +2,8 @@
  *
  * Every function that takes a context accepts NULL: silent, one thread per processor. Processors
  * are those that the process may run on, at most the time that its control group gives it (cgroup
- * v1, v2; rounded up). A context may be used from several threads; its callbacks are called one at
- * a time.
+ * v1, v2; rounded up), at most one for each 64 MiB of its memory. A context may be used from
+ * several threads; its callbacks are called one at a time.
  *
  * gonio runs its own threads. They do not nest: a function that is called from a parallel region of
  * OpenMP works on the calling thread. OpenBLAS is set, process-wide, to run each call on one

@@ -48,7 +48,7 @@ static void write_text(const char *name, const char *text)
 static double share(const char *lines)
 {
     write_text("groups", lines);
-    return gonio_i_processor_share(groups, root);
+    return gonio_i_group_limit(GONIO_I_GROUP_PROCESSORS, groups, root);
 }
 
 static void test_version_2(void **state)
@@ -82,10 +82,23 @@ static void test_version_1(void **state)
     assert_true(share("3:cpuset:/docker/1\n") == 0.0);
 }
 
+static void test_memory(void **state)
+{
+    (void)state;
+    write_text("box/memory.max", "536870912\n");
+    write_text("box/free/memory.max", "max\n");
+    write_text("memory/old/memory.limit_in_bytes", "268435456\n");
+    write_text("groups", "0::/box/free\n");
+    assert_true(gonio_i_group_limit(GONIO_I_GROUP_MEMORY, groups, root) == 536870912.0);
+    write_text("groups", "0::/box/free\n4:memory:/old\n");
+    assert_true(gonio_i_group_limit(GONIO_I_GROUP_MEMORY, groups, root) == 268435456.0);
+    assert_true(share("0::/box/free\n") == 1.5); /* as before */
+}
+
 static void test_files_that_are_none(void **state)
 {
     (void)state;
-    assert_true(gonio_i_processor_share("/nonexistent", root) == 0.0);
+    assert_true(gonio_i_group_limit(GONIO_I_GROUP_PROCESSORS, "/nonexistent", root) == 0.0);
     write_text("odd/cpu.max", "nan -100000\n");
     write_text("zero/cpu.max", "100000 0\n");
     write_text("cpu.max", "");
@@ -107,6 +120,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_version_2),
         cmocka_unit_test(test_version_1),
+        cmocka_unit_test(test_memory),
         cmocka_unit_test(test_files_that_are_none),
         cmocka_unit_test(test_the_processors_of_this_process),
     };
