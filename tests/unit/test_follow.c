@@ -397,26 +397,6 @@ static void test_nearest_of_many(void **state)
     run_end(&r);
 }
 
-static void test_numbers_by_key(void **state)
-{
-    (void)state;
-    enum { KEYS = 5000 };
-    number_map map = {0};
-    size_t number = 0;
-    assert_false(number_map_get(&map, 3, &number));
-    for (uint64_t k = 0; k < KEYS; k++) {
-        assert_true(number_map_put(&map, k * k << 20, (size_t)k));
-    }
-    assert_true(number_map_put(&map, 9U << 20, 77));
-    for (uint64_t k = 0; k < KEYS; k++) {
-        assert_true(number_map_get(&map, k * k << 20, &number));
-        assert_int_equal(number, k == 3 ? 77 : k);
-    }
-    assert_false(number_map_get(&map, 5U << 20, &number));
-    assert_int_equal(map.count, KEYS);
-    number_map_free(&map);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -431,7 +411,6 @@ int main(void)
         cmocka_unit_test(test_repeats),
         cmocka_unit_test(test_names_and_marks),
         cmocka_unit_test(test_nearest_of_many),
-        cmocka_unit_test(test_numbers_by_key),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -36,11 +36,15 @@ gonio_status run_begin(run *r, const gonio_readings *plan, const gonio_readings_
     *r = (run){.how = *how, .path = path, .wanted_count = view->count, .latest = NAN};
     r->wanted = calloc(view->count + 1, sizeof *r->wanted);
     r->head = strdup("");
+    r->seen = json_object();
+    r->text = json_object();
     for (size_t k = 0; r->wanted != NULL && k < view->count; k++) {
         to_degrees(view->pair[k], r->wanted[k].degrees);
         r->wanted[k].row = RUN_NOWHERE;
     }
-    return r->wanted != NULL && r->head != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
+    return r->wanted != NULL && r->head != NULL && r->seen != NULL && r->text != NULL
+               ? GONIO_OK
+               : GONIO_ERROR_MEMORY;
 }
 
 void run_end(run *r)
@@ -53,8 +57,8 @@ void run_end(run *r)
     free(r->wanted);
     free(r->head);
     free(r->names);
-    number_map_free(&r->seen);
-    number_map_free(&r->text);
+    json_decref(r->seen);
+    json_decref(r->text);
     wanted_places_free(&r->places);
     free(r->problem);
     *r = (run){0};
@@ -186,32 +190,30 @@ static bool make_room(run *r)
     return more != NULL;
 }
 
-/* A number for the text of a line, and for the line if that is not 0. */
-static uint64_t key_of(size_t line, const char *text)
+/* Gives a text a number. Texts may hold any bytes. False when out of memory. */
+static bool note_text(json_t *texts, const char *text, size_t number)
 {
-    uint64_t key = 14695981039346656037U ^ line * 0x9e3779b97f4a7c15U;
-    for (; *text != '\0'; text++) {
-        key = (key ^ (unsigned char)*text) * 1099511628211U;
-    }
-    return key;
+    return json_object_set_new_nocheck(texts, text, json_integer((json_int_t)number)) == 0;
 }
 
 /* Notes that a line came; *known: whether it came before. False when out of memory. */
 static bool note_line(run *r, size_t line, const char *text, bool *known)
 {
-    const uint64_t key = key_of(line, text);
-    size_t ignored = 0;
-    *known = number_map_get(&r->seen, key, &ignored);
-    return *known || number_map_put(&r->seen, key, line);
+    char *place = NULL;
+    if (asprintf(&place, "%zu:%s", line, text) < 0) {
+        return false;
+    }
+    *known = json_object_get(r->seen, place) != NULL;
+    const bool noted = *known || note_text(r->seen, place, line);
+    free(place);
+    return noted;
 }
 
 /* The last row with the same text; the number of rows if there is none. */
 static size_t find_text(const run *r, const char *text)
 {
-    size_t k = 0;
-    const bool found =
-        number_map_get(&r->text, key_of(0, text), &k) && strcmp(r->row[k].text, text) == 0;
-    return found ? k : r->rows;
+    const json_t *row = json_object_get(r->text, text);
+    return row != NULL ? (size_t)json_integer_value(row) : r->rows;
 }
 
 /* Whether the direction of a row is to be read again. */
@@ -299,7 +301,7 @@ static run_fate take_row(run *r, size_t line, double seconds, const char *text,
     }
     row.text = strdup(text);
     if (row.text == NULL || !make_room(r) || !know_places(r) ||
-        !number_map_put(&r->text, key_of(0, text), r->rows)) {
+        !note_text(r->text, text, r->rows)) {
         free(row.text);
         free(row.value);
         *status = GONIO_ERROR_MEMORY;

@@ -8,8 +8,8 @@
 #define GONIO_FOLLOW_RUN_H
 
 #include <gonio/measurement.h>
+#include <jansson.h>
 
-#include "number_map.h"
 #include "wanted_places.h"
 
 #define RUN_NOWHERE SIZE_MAX
@@ -59,8 +59,8 @@ typedef struct run {
     size_t rows_room;
     char *head;           /* comments and names of columns, with line ends; "" so far */
     char *names;          /* the line of names; NULL so far */
-    number_map seen;      /* by line and text: all lines but comments */
-    number_map text;      /* by text: the last row that has it */
+    json_t *seen;         /* by "LINE:TEXT": all lines but comments */
+    json_t *text;         /* by text: the last row that has it */
     wanted_places places; /* of `wanted` */
     size_t asked;         /* how many directions are asked for */
     size_t unread;        /* the first direction that was never read nor dropped */
