@@ -66,14 +66,17 @@ export function binCentre(thetaH: number, thetaD: number, phiD: number): HalfDif
     };
 }
 
-/** Neighbouring bins and the weight of the upper one; constant beyond the outer centres. */
-export function clamped(position: number, bins: number): [number, number, number] {
+/** Neighbouring bins and the weight of the upper one. */
+export type Neighbours = [number, number, number];
+
+/** Constant beyond the outer centres. */
+function clamped(position: number, bins: number): Neighbours {
     const p = Math.min(Math.max(position - 0.5, 0), bins - 1);
     const low = Math.floor(p);
     return [low, Math.min(low + 1, bins - 1), p - low];
 }
 
-export function periodic(position: number, bins: number): [number, number, number] {
+export function periodic(position: number, bins: number): Neighbours {
     const p = position - 0.5;
     const low = Math.floor(p);
     const wrap = (k: number) => ((k % bins) + bins) % bins;
@@ -90,6 +93,10 @@ function meaningOfPhiD(c: HalfDifference): number {
     const first = binCentre(0, 0, 0);
     return Math.min(c.thetaH / first.thetaH, 1) * Math.min(c.thetaD / first.thetaD, 1);
 }
+
+/** A weighted sum of values whose fourth number is that of the weights; null without data. */
+const meanOf = (sum: number[]): Triple | null =>
+    sum[3] > 0 ? [sum[0] / sum[3], sum[1] / sum[3], sum[2] / sum[3]] : null;
 
 /** A BRDF (or its deviations) on the grid. rgba[bin][4], phi_d fastest; the fourth is 1 with data. */
 export class Table {
@@ -123,11 +130,24 @@ export class Table {
         for (let sector = 0; meaning < 1 && sector < SECTORS; sector++) {
             this.addPlane(c, sectorMiddle(sector), (1 - meaning) / SECTORS, sum);
         }
-        return sum[3] > 0 ? [sum[0] / sum[3], sum[1] / sum[3], sum[2] / sum[3]] : null;
+        return meanOf(sum);
+    }
+
+    /** Trilinear, with the neighbours in the third coordinate given. */
+    between(c: Pick<HalfDifference, 'thetaH' | 'thetaD'>, third: Neighbours): Triple | null {
+        const sum = [0, 0, 0, 0];
+        this.addPlane(c, third[0], 1 - third[2], sum);
+        this.addPlane(c, third[1], third[2], sum);
+        return meanOf(sum);
     }
 
     /** Adds the value at a bin of phi_d, bilinear in the other two, times a share, to sum[4]. */
-    private addPlane(c: HalfDifference, phiD: number, share: number, sum: number[]) {
+    private addPlane(
+        c: Pick<HalfDifference, 'thetaH' | 'thetaD'>,
+        phiD: number,
+        share: number,
+        sum: number[],
+    ) {
         const h = clamped(THETA_H_BINS * Math.sqrt(c.thetaH / QUARTER), THETA_H_BINS);
         const d = clamped((THETA_D_BINS * c.thetaD) / QUARTER, THETA_D_BINS);
         for (let k = 0; k < 4; k++) {
