@@ -136,13 +136,24 @@ static gonio_status look_up_places(gonio_context *context, const gonio_material 
     return status;
 }
 
+/* Room for a slab, not cleared: what is looked at was read into it, and of few rows the rest is
+ * never touched. */
+static double *make_slab(gonio_context *context)
+{
+    double *slab = malloc(GONIO_SLAB_VALUES * sizeof *slab);
+    if (slab == NULL) {
+        gonio_i_fail(context, GONIO_ERROR_MEMORY, "out of memory");
+    }
+    return slab;
+}
+
 static gonio_status look_up(gonio_context *context, const gonio_material *material,
                             const gonio_pair *pairs, size_t count, double *values)
 {
     window w = {.held = {-1, -1}};
     place *places = gonio_i_allocate(context, count, sizeof *places);
     for (size_t k = 0; k < 2; k++) {
-        w.buffer[k] = gonio_i_allocate(context, GONIO_SLAB_VALUES, sizeof *w.buffer[k]);
+        w.buffer[k] = make_slab(context);
     }
     gonio_status status = GONIO_ERROR_MEMORY;
     if (places != NULL && w.buffer[0] != NULL && w.buffer[1] != NULL) {
