@@ -34,18 +34,15 @@ static gonio_status describe_origin(const gonio_i_learner *l)
     return done ? GONIO_OK : gonio_i_fail(l->context, GONIO_ERROR_MEMORY, "out of memory");
 }
 
-/* Mixtures use rows of other cells, which the map of cells finds. */
 static gonio_status prepare_mixtures(gonio_i_learner *l, const gonio_basis_options *options,
                                      gonio_i_mixtures **mixtures)
 {
     if (options->mixtures == 0) {
         return GONIO_OK;
     }
-    gonio_status status = gonio_i_basis_map_cells(l->context, l->basis);
-    if (status == GONIO_OK) {
-        status = gonio_i_mixtures_create(l->context, l->basis, l->database, options, mixtures);
-        l->mixtures = *mixtures;
-    }
+    const gonio_status status =
+        gonio_i_mixtures_create(l->context, l->basis, l->database, options, mixtures);
+    l->mixtures = *mixtures;
     if (status == GONIO_OK) {
         gonio_i_mixtures_parents(*mixtures, l->basis->parents);
     }
@@ -57,8 +54,12 @@ static gonio_status learn(gonio_i_learner *l, const gonio_basis_options *options
     gonio_i_mixtures *mixtures = NULL;
     gonio_status status = describe_origin(l);
     l->weight = gonio_i_weights_of_columns(l->measured, options->mixtures, l->analytic);
+    if (status == GONIO_OK && (l->analytic > 0 || options->mixtures > 0)) {
+        status = gonio_i_basis_map_cells(l->context, l->basis); /* both use rows of other cells */
+    }
     if (status == GONIO_OK && l->analytic > 0) {
-        status = gonio_i_analytic_columns(l->context, l->database, options->analytic, &l->random);
+        status = gonio_i_analytic_columns(l->context, l->basis, l->database, options->analytic,
+                                          &l->random);
     }
     if (status == GONIO_OK) {
         status = prepare_mixtures(l, options, &mixtures);

@@ -7,6 +7,7 @@
 #include "../core/random.h"
 #include "../core/vector_math.h"
 #include "../database/tiles.h"
+#include "../direction/grid.h"
 
 /* Standard deviations of ln f and ln t. */
 static const double WIDTH_DEVIATION = 0.3;
@@ -14,18 +15,12 @@ static const double TILT_DEVIATION = 0.25;
 
 enum { CHUNK = 256 }; /* rows that are mixed together */
 
-/* Interpolation between two neighbouring bins. */
-typedef struct between {
-    int low;
-    double share; /* of the next one */
-} between;
-
 /* A varied measured column: the bins from which its value at each theta_h and theta_d comes. */
 typedef struct half {
     size_t column;
     double share;
-    between theta_h[GONIO_THETA_H_BINS];
-    between theta_d[GONIO_THETA_D_BINS];
+    gonio_i_between theta_h[GONIO_THETA_H_BINS];
+    gonio_i_between theta_d[GONIO_THETA_D_BINS];
 } half;
 
 typedef struct recipe {
@@ -39,28 +34,20 @@ struct gonio_i_mixtures {
     float *measured; /* [column][row] */
 };
 
-/* Interpolation at a distance in bins from the centre of the first; constant beyond the ends. */
-static between place(double at, int bins)
-{
-    const double inside = fmin(fmax(at, 0.0), bins - 1.0);
-    const int low = (int)fmin(inside, bins - 2.0);
-    return (between){low, inside - low};
-}
-
 /* The bins of theta_h / f; theta_h is spaced by a square root. */
-static void widen(double f, between *theta_h)
+static void widen(double f, gonio_i_between *theta_h)
 {
     for (int k = 0; k < GONIO_THETA_H_BINS; k++) {
-        theta_h[k] = place((k + 0.5) / sqrt(f) - 0.5, GONIO_THETA_H_BINS);
+        theta_h[k] = gonio_i_between_bins((k + 0.5) / sqrt(f) - 0.5, GONIO_THETA_H_BINS);
     }
 }
 
 /* The bins of 90 degrees (theta_d / 90 degrees)^t. */
-static void bend(double t, between *theta_d)
+static void bend(double t, gonio_i_between *theta_d)
 {
     for (int k = 0; k < GONIO_THETA_D_BINS; k++) {
         const double bent = pow((k + 0.5) / GONIO_THETA_D_BINS, t);
-        theta_d[k] = place(GONIO_THETA_D_BINS * bent - 0.5, GONIO_THETA_D_BINS);
+        theta_d[k] = gonio_i_between_bins(GONIO_THETA_D_BINS * bent - 0.5, GONIO_THETA_D_BINS);
     }
 }
 
@@ -177,8 +164,8 @@ static void find_rows(const gonio_basis *basis, size_t first, size_t count, row_
 static double stretched(const gonio_i_mixtures *m, const half *h, const row_run *run, size_t i)
 {
     const gonio_i_cell_indices at = run->at[i];
-    const between at_h = h->theta_h[at.theta_h];
-    const between at_d = h->theta_d[at.theta_d];
+    const gonio_i_between at_h = h->theta_h[at.theta_h];
+    const gonio_i_between at_d = h->theta_d[at.theta_d];
     const float *column = m->measured + h->column * m->basis->rows;
     const int32_t *position =
         m->basis->position +

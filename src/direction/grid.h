@@ -2,6 +2,8 @@
 #ifndef GONIO_GRID_H
 #define GONIO_GRID_H
 
+#include <math.h>
+
 #include <gonio/direction.h>
 
 /* The valid bins of a cell are those with first <= phi_d < 180 - first; 90 if there are none. */
@@ -13,6 +15,20 @@ bool gonio_i_is_bin(gonio_bin bin);
 /* cos theta_i cos theta_o = (cos th cos td)^2 - (sin th sin td cos pd)^2 at the centres of a slab's
  * bins: cosines[theta_d][phi_d]. */
 void gonio_i_slab_cosines(int theta_h, double *cosines);
+
+/* Linear interpolation between two neighbouring bins. */
+typedef struct gonio_i_between {
+    int low;
+    double share; /* of the next one */
+} gonio_i_between;
+
+/* At a distance in bins from the centre of the first; constant beyond the ends. */
+static inline gonio_i_between gonio_i_between_bins(double at, int bins)
+{
+    const double inside = fmin(fmax(at, 0.0), bins - 1.0);
+    const int low = (int)fmin(inside, bins - 2.0);
+    return (gonio_i_between){low, inside - low};
+}
 
 enum {
     GONIO_I_BILINEAR = 4,
