@@ -69,7 +69,7 @@ static gonio_status learn_atlas(tool *t, bool paper, gonio_basis **basis)
 
 /* Increment it when gonio learn makes another basis of the same materials. Bases of earlier builds
  * in the cache are then not used. */
-enum { RECIPE = 5 };
+enum { RECIPE = 6 };
 
 /* The file in the cache; NULL, after a warning, if there is no folder for it. */
 static char *cached_path(tool *t, bool paper)

@@ -36,7 +36,8 @@ typedef struct gonio_basis gonio_basis;
  * Analytic columns are those of random analytic materials (atlas.h). All together have a share of
  * 5 %; measured columns and mixtures share the rest. So the basis spans materials unlike the
  * database's, too: of real tables of another instrument, errors are 7 to 22 % smaller
- * (docs/experiments.md). */
+ * (docs/experiments.md). Where the grid has phi_d, each material is elongated across the plane of
+ * incidence, as samples are that pass for isotropic (docs/method.md). */
 enum { GONIO_DEFAULT_MIXTURES = 1000, GONIO_MIXTURE_COMPONENTS = 300 };
 
 enum { GONIO_DEFAULT_COMPONENTS = 45 };
