@@ -70,15 +70,12 @@ bool planning_options_check(const tool *t, const planning_options *o, const char
            (o->instrument == NULL || tool_check_output(t, output, &o->instrument, 1));
 }
 
-/* Reads the directions of a readings file, with or without values. What values stand for does not
- * matter: taken as they are, counts need no instrument. */
+/* Reads the directions of a readings file, with or without values. */
 static gonio_status read_directions(const tool *t, const char *path, gonio_pair **pairs,
                                     size_t *count)
 {
-    const gonio_readings_options how = {.size = sizeof how,
-                                        .average_repeats = true,
-                                        .negative_to_zero = true,
-                                        .as = {.values = GONIO_VALUE_BRDF}};
+    const gonio_readings_options how = {
+        .size = sizeof how, .average_repeats = true, .negative_to_zero = true};
     gonio_readings *readings = NULL;
     gonio_status status = tool_read_readings(t, path, &how, &readings);
     if (status != GONIO_OK) {

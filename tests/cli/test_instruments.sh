@@ -165,9 +165,6 @@ printf 'theta_i,phi_i,theta_o,phi_o,counts\n15,0,0,0,50000\n30,0,60,180,50000\n'
 expect_ok reconstruct b.gonio bare.csv --instrument counter.json --method posterior -o bare.binary
 expect_true 'they are counts' grep -qF 'counts (divided by those of 1/sr and cos theta_o)' "$root/work/stderr"
 expect_fail 2 'counts_of_1_per_sr of an instrument file' info -q counts.csv
-# A plan takes directions only from a file of counts.
-expect_ok plan b.gonio --method expected-error --candidates counts.csv -n 2 -o counted.csv
-expect_true 'both directions are planned' eval 'test "$(grep -c "^[0-9]" counted.csv)" = 2'
 expect_ok check counter.json counts.csv
 sed '2,$s/[0-9]*$//' counts.csv >empty.csv
 expect_output '0 measured' info empty.csv
