@@ -2,8 +2,9 @@
  *
  * A sample that is taken for isotropic is often measured at one orientation. If its facets have
  * larger slopes across the plane of incidence than along it, its lobes come out longer there. So do
- * lobes that an instrument blurs more across that plane. Every isotropic table of RGL shows it, by
- * a ratio of 0.7 to 2.4 (docs/experiments.md).
+ * lobes that an instrument blurs more across that plane. Of six tables of RGL that pass for
+ * isotropic, one has circular lobes; in the others the ratio of the widths is 0.7 to 2.4
+ * (docs/experiments.md).
  *
  * An elongated column is that of an isotropic material at another theta_h,
  *
