@@ -74,8 +74,10 @@ bool planning_options_check(const tool *t, const planning_options *o, const char
 static gonio_status read_directions(const tool *t, const char *path, gonio_pair **pairs,
                                     size_t *count)
 {
-    const gonio_readings_options how = {
-        .size = sizeof how, .average_repeats = true, .negative_to_zero = true};
+    const gonio_readings_options how = {.size = sizeof how,
+                                        .average_repeats = true,
+                                        .negative_to_zero = true,
+                                        .directions_only = true};
     gonio_readings *readings = NULL;
     gonio_status status = tool_read_readings(t, path, &how, &readings);
     if (status != GONIO_OK) {

@@ -74,6 +74,8 @@ typedef struct gonio_readings_options {
      * names and comments of a table state no kind of values, its kind holds. Its reference_factors
      * and counts_of_1_per_sr are those of relative values and counts. */
     const gonio_instrument *instrument;
+    bool directions_only; /* of files: nothing is asked or said of what values are; those of tables
+                           * are not read. For lists of directions */
 } gonio_readings_options;
 
 /* Values are needed. Repeats and negative readings are refused. */

@@ -79,7 +79,7 @@ OPTIONS = {
                                         phi_step="phi_step", average_azimuths="average_azimuths")),
     "readings": (gonio.Readings.load, {"values_needed": "values_needed", "average_repeats": "average_repeats",
                                        "negative_to_zero": "negative_to_zero", "as": "convention",
-                                       "instrument": "instrument"}),
+                                       "instrument": "instrument", "directions_only": None}),
     "basis": (gonio.learn, dict(components="components", subset=None, subset_count=None, without_mean="mean",
                                 mixtures="mixtures", seed="seed", analytic="analytic")),
     "database": (gonio.learn, dict(representation="grid", channels="channels", scratch="scratch", mapping="mapping")),

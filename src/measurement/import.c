@@ -24,6 +24,9 @@ void gonio_i_import_begin(gonio_i_import *import, gonio_context *context, gonio_
                                .readings = readings,
                                .how = gonio_i_convention_of(stated, &readings->options.as),
                                .taken_as = taken_as};
+    if (readings->options.directions_only) {
+        import->how.values = GONIO_AS_STATED;
+    }
     readings->keep_angles = true;
     import->latest = NAN;
 }
@@ -258,6 +261,10 @@ static gonio_status add_marked(gonio_i_import *in, const gonio_i_row *row, doubl
 gonio_status gonio_i_import_add(gonio_i_import *import, const gonio_i_row *row)
 {
     const double time = take_time(import, row);
+    if (row->mark != GONIO_I_SAMPLE && import->readings->options.directions_only) {
+        gonio_i_import_leave_out(import, GONIO_I_NOT_THE_SAMPLE);
+        return GONIO_OK;
+    }
     if (row->mark != GONIO_I_SAMPLE) {
         return add_marked(import, row, time);
     }

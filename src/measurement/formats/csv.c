@@ -285,6 +285,9 @@ static void take_nanometres(gonio_i_csv_columns *columns, const gonio_readings *
 static gonio_status write_notes(csv_source *s)
 {
     gonio_status status = GONIO_OK;
+    if (s->readings->options.directions_only) {
+        return GONIO_OK;
+    }
     if (s->columns->unclear != NULL) {
         status = gonio_i_readings_note(
             s->context, s->readings,

@@ -363,6 +363,16 @@ static gonio_status choose_columns(finder *f)
     return status == GONIO_OK ? order_columns(f) : status;
 }
 
+/* Where only directions are wanted, all but angles, times and marks is something else. */
+static void forget_values(const finder *f)
+{
+    for (size_t k = 0; f->name != NULL && k < f->r->columns; k++) {
+        const gonio_i_column_kind kind = f->name[k].kind;
+        const bool kept = kind == GONIO_I_ANGLE || kind == GONIO_I_TIME || kind == GONIO_I_MARK;
+        f->name[k].kind = kept ? kind : GONIO_I_OTHER;
+    }
+}
+
 gonio_status gonio_i_csv_columns_find(const gonio_i_csv_reader *reader,
                                       const gonio_readings_options *options,
                                       gonio_i_csv_columns *columns)
@@ -374,6 +384,9 @@ gonio_status gonio_i_csv_columns_find(const gonio_i_csv_reader *reader,
     gonio_status status = columns->column != NULL && f.name != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
     for (size_t k = 0; k < reader->columns && status == GONIO_OK; k++) {
         f.name[k] = gonio_i_column_name_of(reader->name[k]);
+    }
+    if (options->directions_only) {
+        forget_values(&f);
     }
     status = status == GONIO_OK ? choose_columns(&f) : status;
     free(f.name);

@@ -37,6 +37,8 @@ static const gonio_i_known_word value_words[] = {
     {"bsdf", QUANTITY | SURE, BRDF},
     {"fr", QUANTITY | SURE, BRDF},
     {"ccbrdf", QUANTITY | SURE | COSINE, BRDF},
+    {"ccbsdf", QUANTITY | SURE | COSINE, BRDF},
+    {"cc", COSINE, 0}, /* cosine-corrected */
     {"brf", QUANTITY | SURE | FACTOR, FACTORS},
     {"value", QUANTITY, VALUE},
     {"values", QUANTITY, VALUE},
@@ -49,6 +51,9 @@ static const gonio_i_known_word value_words[] = {
     {"factors", FACTOR, 0},
     {"cos", COSINE, 0},
     {"cosine", COSINE, 0},
+    {"costheta", COSINE, 0},
+    {"brdfcos", QUANTITY | SURE | COSINE, BRDF},
+    {"bsdfcos", QUANTITY | SURE | COSINE, BRDF},
     {"deviation", SPREAD, 0},
     {"dev", SPREAD, 0},
     {"stddev", SPREAD, 0},
@@ -87,6 +92,7 @@ static const gonio_i_known_word value_words[] = {
     {"in", FILL, 0},
     {"with", FILL, 0},
     {"times", FILL, 0},
+    {"x", FILL, 0},
     {"channel", FILL, 0},
     {"standard", FILL, 0},
     {"bidirectional", FILL, 0},
@@ -149,12 +155,34 @@ static int unit_of_value(const gonio_i_meaning *s)
                                              : 0;
 }
 
+/* Takes the angle behind "cos" out of the name: "theta_o", "theta_r", "(theta)". That of the light
+ * stays, and so the name is not understood. */
+static void take_cosine_angle(gonio_i_words *words)
+{
+    static const char *const sides[] = {"o", "out", "r", "s", "v"};
+    for (size_t k = 1; k < words->count; k++) {
+        gonio_i_name_word *word = &words->word[k];
+        const bool cosine =
+            strncmp(word[-1].text, "cos", 3) == 0 || strncmp(word[-1].text, "brdfcos", 7) == 0;
+        if (!cosine || strcmp(word->text, "theta") != 0) {
+            continue;
+        }
+        size_t taken = 1;
+        for (size_t j = 0; j < sizeof sides / sizeof *sides && k + 1 < words->count; j++) {
+            taken = strcmp(word[1].text, sides[j]) == 0 ? 2 : taken;
+        }
+        words->count -= taken;
+        memmove(word, word + taken, (words->count - k) * sizeof *word);
+    }
+}
+
 int gonio_i_value_kind_in(const char *text)
 {
     gonio_i_words words;
     gonio_i_meaning s;
     double number = 0.0;
     gonio_i_words_split(text, &words);
+    take_cosine_angle(&words);
     hear_value(&words, &s, &number);
     return unit_of_value(&s);
 }
@@ -246,6 +274,7 @@ bool gonio_i_take_value_name(const char *text, gonio_i_words *words, gonio_i_col
     gonio_i_meaning s;
     double number = 0.0;
     join_f_r(text, words);
+    take_cosine_angle(words);
     if (!hear_value(words, &s, &number) || (s.twice & (COLOUR | NUMBER | SPREAD)) != 0) {
         return false;
     }

@@ -15,7 +15,8 @@ static const struct {
     {"\xe2\x81\xbb", " "},       {"\xce\xb8", " theta "},  {"\xcf\x91", " theta "},
     {"\xcf\x86", " phi "},       {"\xcf\x95", " phi "},    {"\xce\x94", " delta "},
     {"\xe2\x88\x86", " delta "}, {"\xce\xbb", " lambda "}, {"\xcf\x81", " rho "},
-    {"\xcf\x83", " sigma "},     {"%", " percent "},
+    {"\xcf\x83", " sigma "},     {"%", " percent "},       {"\xc3\x97", " x "},
+    {"\xc2\xb7", " "},           {"\xe2\x8b\x85", " "},
 };
 
 enum { NAME_ROOM = 256 };
