@@ -12,8 +12,8 @@ extern const char *tool_as;
     {                                                                                              \
         "as", '\0', POPT_ARG_STRING, &tool_as, 0,                                                  \
             "Units and conventions of readings, where gonio takes them wrongly: "                  \
-            "angles=degrees|radians, values=brdf|factor|percent|cosine|factor-cosine|relative|"    \
-            "counts, "                                                                             \
+            "angles=degrees|radians|gon, values=brdf|factor|percent|cosine|factor-cosine|"         \
+            "relative|counts, scale=linear|log10|ln|db, "                                          \
             "mirror=180|0, "                                                                       \
             "wavelengths=nm|um|m, zeros=missing|dark, sample=NUMBER, format=NAME; separated by "   \
             "commas; FILE: before a word begins those of one file",                                \

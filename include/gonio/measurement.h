@@ -23,7 +23,17 @@ typedef struct gonio_readings gonio_readings;
 
 /* Every choice is 0 for "as the file or its format states". */
 enum { GONIO_AS_STATED = 0 };
-typedef enum gonio_angle_unit { GONIO_DEGREES = 1, GONIO_RADIANS } gonio_angle_unit;
+typedef enum gonio_angle_unit {
+    GONIO_DEGREES = 1,
+    GONIO_RADIANS,
+    GONIO_GRADIANS /* 400 to a turn, gon */
+} gonio_angle_unit;
+typedef enum gonio_value_scale {
+    GONIO_SCALE_LINEAR = 1,
+    GONIO_SCALE_LOG10,  /* the numbers are logarithms to base 10 of the values */
+    GONIO_SCALE_LN,     /* natural logarithms */
+    GONIO_SCALE_DECIBEL /* ten times those to base 10 */
+} gonio_value_scale;
 typedef enum gonio_mirror_azimuth {
     GONIO_MIRROR_180 = 1, /* the mirror direction is at phi_o = phi_i + 180 degrees, as in gonio */
     GONIO_MIRROR_0        /* the mirror direction is at phi_o = phi_i */
@@ -49,13 +59,14 @@ typedef struct gonio_convention {
     int wavelengths; /* gonio_wavelength_unit */
     int zeros;       /* gonio_zero_meaning */
     int sample;      /* number of the sample in a file of several; 0: the first */
+    int scale;       /* gonio_value_scale */
 } gonio_convention;
 
 /* Reads a convention from text: "angles=radians,values=factor,mirror=0". Keys and words:
- * angles=degrees, radians; values=brdf, factor, percent, cosine, factor-cosine, relative, counts;
- * mirror=180, 0; wavelengths=nm, um, m; zeros=missing, dark; sample=NUMBER; format=WORD. Fields
- * that the text does not name stay. Errors: _ARGUMENT for an unknown key or word; the message lists
- * the known ones. */
+ * angles=degrees, radians, gon; values=brdf, factor, percent, cosine, factor-cosine, relative,
+ * counts; scale=linear, log10, ln, db; mirror=180, 0; wavelengths=nm, um, m; zeros=missing, dark;
+ * sample=NUMBER; format=WORD. Fields that the text does not name stay. Errors: _ARGUMENT for an
+ * unknown key or word; the message lists the known ones. */
 GONIO_API gonio_status gonio_convention_parse(gonio_context *context, const char *text,
                                               gonio_convention *convention);
 

@@ -12,7 +12,7 @@ typedef struct gonio_i_choice {
     const char *sentence; /* NULL: not worth saying */
 } gonio_i_choice;
 
-enum { GONIO_I_CONVENTION_KEYS = 5, GONIO_I_MOST_CHOICES = 7 };
+enum { GONIO_I_CONVENTION_KEYS = 6, GONIO_I_MOST_CHOICES = 7 };
 
 /* The keys of conventions that are choices. */
 typedef struct gonio_i_convention_key {

@@ -80,7 +80,7 @@ static gonio_status take_item(gonio_context *context, const char *name, const ch
     }
     return gonio_i_fail(context, GONIO_ERROR_ARGUMENT,
                         "'%s': KEY=WORD is expected, with one of the keys angles, mirror, values, "
-                        "wavelengths, zeros, sample, format",
+                        "scale, wavelengths, zeros, sample, format",
                         name);
 }
 

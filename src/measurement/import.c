@@ -8,6 +8,7 @@
 #include "convention.h"
 #include "horizon.h"
 #include "rules.h"
+#include "value_scale.h"
 #include "../core/memory_stream.h"
 
 enum { DIGITS = 9 };
@@ -26,6 +27,7 @@ void gonio_i_import_begin(gonio_i_import *import, gonio_context *context, gonio_
                                .taken_as = taken_as};
     if (readings->options.directions_only) {
         import->how.values = GONIO_AS_STATED;
+        import->how.scale = GONIO_AS_STATED;
     }
     readings->keep_angles = true;
     import->latest = NAN;
@@ -121,13 +123,16 @@ double gonio_i_import_rounded(double degrees)
 
 double gonio_i_import_degrees(const gonio_i_import *import, double angle)
 {
-    return import->how.angles == GONIO_RADIANS ? gonio_i_import_rounded(angle * 180.0 / M_PI)
-                                               : angle;
+    return import->how.angles == GONIO_RADIANS    ? gonio_i_import_rounded(angle * 180.0 / M_PI)
+           : import->how.angles == GONIO_GRADIANS ? gonio_i_import_rounded(angle * 0.9)
+                                                  : angle;
 }
 
 static double as_in_file(const gonio_i_import *in, double degrees)
 {
-    return in->how.angles == GONIO_RADIANS ? degrees * M_PI / 180.0 : degrees;
+    return in->how.angles == GONIO_RADIANS    ? degrees * M_PI / 180.0
+           : in->how.angles == GONIO_GRADIANS ? degrees / 0.9
+                                              : degrees;
 }
 
 static gonio_status refuse_angle(const gonio_i_import *in, const gonio_i_row *row, int which)
@@ -140,7 +145,11 @@ static gonio_status refuse_angle(const gonio_i_import *in, const gonio_i_row *ro
                                                           : "";
     return gonio_i_fail(in->context, isfinite(number) ? GONIO_ERROR_DATA : GONIO_ERROR_FORMAT,
                         "%s:%zu: %s = %.7g is impossible in %s%s", in->readings->path, row->line,
-                        names[which], number, radians ? "radians" : "degrees", advice);
+                        names[which], number,
+                        radians                            ? "radians"
+                        : in->how.angles == GONIO_GRADIANS ? "gon"
+                                                           : "degrees",
+                        advice);
 }
 
 /* Makes theta positive, which turns phi by 180 degrees. Limits phi to one turn. */
@@ -258,8 +267,29 @@ static gonio_status add_marked(gonio_i_import *in, const gonio_i_row *row, doubl
                               row->value);
 }
 
-gonio_status gonio_i_import_add(gonio_i_import *import, const gonio_i_row *row)
+/* Makes values of logarithms. Numbers stay the caller's. */
+static gonio_i_row without_logarithms(const gonio_i_import *in, const gonio_i_row *row)
 {
+    gonio_i_row linear = *row;
+    if (!gonio_i_scale_is_logarithm(in->how.scale)) {
+        return linear;
+    }
+    for (size_t k = 0; k < in->readings->channels; k++) {
+        in->value[k] = gonio_i_scale_value(in->how.scale, row->value[k]);
+        in->deviation[k] =
+            row->deviation != NULL
+                ? gonio_i_scale_deviation(in->how.scale, in->value[k], row->deviation[k])
+                : NAN;
+    }
+    linear.value = in->value;
+    linear.deviation = row->deviation != NULL ? in->deviation : NULL;
+    return linear;
+}
+
+gonio_status gonio_i_import_add(gonio_i_import *import, const gonio_i_row *given)
+{
+    const gonio_i_row linear = without_logarithms(import, given);
+    const gonio_i_row *row = &linear;
     const double time = take_time(import, row);
     if (row->mark != GONIO_I_SAMPLE && import->readings->options.directions_only) {
         gonio_i_import_leave_out(import, GONIO_I_NOT_THE_SAMPLE);

@@ -26,6 +26,18 @@ static double factor_of_unit(int unit)
     return unit == GONIO_VALUE_BRDF ? M_PI : unit == GONIO_VALUE_PERCENT ? 0.01 : 1.0;
 }
 
+static double radians_of_unit(int unit, double usual)
+{
+    return unit == GONIO_RADIANS ? 1.0 : unit == GONIO_GRADIANS ? M_PI / 200.0 : usual;
+}
+
+/* Values without a cosine and not as logarithms. */
+static bool is_factor(const gonio_i_column_name *name)
+{
+    return name->kind == GONIO_I_VALUE && name->scale == 0 && name->unit != GONIO_VALUE_COSINE &&
+           name->unit != GONIO_VALUE_FACTOR_COSINE;
+}
+
 static gonio_status find_columns(const gonio_i_csv_reader *r, reference_columns *c)
 {
     *c = (reference_columns){r->columns, r->columns, M_PI / 180.0, 1.0};
@@ -35,8 +47,8 @@ static gonio_status find_columns(const gonio_i_csv_reader *r, reference_columns 
             name.kind == GONIO_I_ANGLE ? name.index == 2 : strncasecmp(r->name[k], "theta", 5) == 0;
         if (theta && c->theta == r->columns) {
             c->theta = k;
-            c->to_radians = name.unit == GONIO_RADIANS ? 1.0 : c->to_radians;
-        } else if (name.kind == GONIO_I_VALUE && c->factor == r->columns) {
+            c->to_radians = radians_of_unit(name.unit, c->to_radians);
+        } else if (is_factor(&name) && c->factor == r->columns) {
             c->factor = k;
             c->to_factor = factor_of_unit(name.unit);
         }

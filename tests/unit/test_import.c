@@ -42,7 +42,8 @@ static void test_what_is_no_convention(void **state)
         const char *text;
         const char *message;
     } cases[] = {
-        {"angles=gradians", "the choices are degrees, radians"},
+        {"angles=turns", "the choices are degrees, radians, gon"},
+        {"scale=log", "the choices are linear, log10, ln, db"},
         {"angle=degrees", "'angle': KEY=WORD is expected"},
         {"degrees", "'degrees': KEY=WORD is expected"},
         {"sample=0", "the number of a sample, from 1"},

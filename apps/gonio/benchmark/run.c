@@ -74,10 +74,10 @@ static json_t *sizes_json(const benchmark_setting *s)
 static json_t *identity_of(const benchmark_setting *s, const benchmark_subjects *subjects,
                            const benchmark_lessons *lessons)
 {
-    json_t *as = json_pack("{s:s?, s:i, s:i, s:i, s:i, s:i}", "format", s->reading.as.format,
+    json_t *as = json_pack("{s:s?, s:i, s:i, s:i, s:i, s:i, s:i}", "format", s->reading.as.format,
                            "angles", s->reading.as.angles, "values", s->reading.as.values, "mirror",
                            s->reading.as.mirror, "zeros", s->reading.as.zeros, "sample",
-                           s->reading.as.sample);
+                           s->reading.as.sample, "scale", s->reading.as.scale);
     return json_pack("{s:s, s:o, s:o, s:o, s:o, s:I, s:f, s:f, s:f, s:f, s:I, s:I, s:b, s:b, s:s?, "
                      "s:I, s:o, s:I}",
                      "build", GONIO_FINGERPRINT, "subjects", subjects_json(subjects), "lessons",

@@ -8,6 +8,7 @@
 #include "../import.h"
 #include "../long_table.h"
 #include "../rules.h"
+#include "../value_scale.h"
 #include "csv_blocks.h"
 #include "csv_kept.h"
 #include "csv_layout.h"
@@ -123,21 +124,35 @@ static gonio_status take_value(const csv_source *s, size_t column, size_t channe
     if (mark == GONIO_I_DARK && isfinite(s->value[channel])) {
         return GONIO_OK; /* noise about nothing has both signs */
     }
-    const char *problem = gonio_i_value_problem(s->value[channel], &s->readings->options, &status);
+    const double value = gonio_i_scale_value(s->in.how.scale, s->value[channel]);
+    const char *problem = gonio_i_value_problem(value, &s->readings->options, &status);
     return problem == NULL ? GONIO_OK : bad_cell(s, column, status, problem);
 }
 
-/* Takes a deviation. A relative one is multiplied by the value, which was read before. */
+/* A deviation in the unit of its value's number, which was read before. It may be given relative to
+ * the value, or as that of the value where the number is its logarithm. */
+static double absolute_deviation(const csv_source *s, const gonio_i_csv_column *column,
+                                 double number)
+{
+    const int scale = s->in.how.scale;
+    const double given = s->value[column->index];
+    if (!gonio_i_scale_is_logarithm(scale)) {
+        return column->scale == 0.0 ? number : number * column->scale * fabs(given);
+    }
+    const double relative =
+        column->scale != 0.0 ? number * column->scale : number / gonio_i_scale_value(scale, given);
+    return column->scale != 0.0 || column->linear ? relative / gonio_i_scale_slope(scale) : number;
+}
+
 static gonio_status take_deviation(const csv_source *s, size_t column, size_t channel)
 {
     gonio_status status = GONIO_OK;
     if (is_missing(s->reader.cell[column])) {
         return GONIO_OK;
     }
-    const double scale = s->columns->column[column].scale;
     const double number = number_of(s, column);
     const char *problem = gonio_i_deviation_problem(number, &status);
-    s->deviation[channel] = scale == 0.0 ? number : number * scale * fabs(s->value[channel]);
+    s->deviation[channel] = absolute_deviation(s, &s->columns->column[column], number);
     return problem == NULL ? GONIO_OK : bad_cell(s, column, status, problem);
 }
 

@@ -25,7 +25,8 @@ enum {
     PHASE = 1 << 15,
     HALF = 1 << 16,
     DIFFERENCE_VECTOR = 1 << 17, /* "d" behind another word */
-    WRITTEN = 1 << 18            /* a difference that is no delta */
+    WRITTEN = 1 << 18,           /* a difference that is no delta */
+    GRADIANS = 1 << 19
 };
 
 static const gonio_i_known_word angle_words[] = {
@@ -125,6 +126,11 @@ static const gonio_i_known_word angle_words[] = {
     {"rads", RADIANS, 0},
     {"radian", RADIANS, 0},
     {"radians", RADIANS, 0},
+    {"gon", GRADIANS, 0},
+    {"gons", GRADIANS, 0},
+    {"gradian", GRADIANS, 0},
+    {"gradians", GRADIANS, 0},
+    {"grad", DEGREES | GRADIANS, 0},
 };
 
 /* Adds up what words say of angles. Returns whether every word does. */
@@ -150,11 +156,12 @@ static bool hear_angle(const gonio_i_words *words, gonio_i_meaning *s)
 
 static int unit_of_angle(unsigned bits)
 {
-    const bool both = (bits & DEGREES) != 0 && (bits & RADIANS) != 0;
-    return both                    ? 0
-           : (bits & DEGREES) != 0 ? GONIO_DEGREES
-           : (bits & RADIANS) != 0 ? GONIO_RADIANS
-                                   : 0;
+    const unsigned unit = bits & (DEGREES | RADIANS | GRADIANS);
+    return unit == DEGREES                ? GONIO_DEGREES
+           : unit == RADIANS              ? GONIO_RADIANS
+           : unit == GRADIANS             ? GONIO_GRADIANS
+           : unit == (DEGREES | GRADIANS) ? GONIO_I_DEGREES_OR_GRADIANS
+                                          : 0;
 }
 
 /* An angle from the mirror direction in the plane; -1 for none. */

@@ -189,6 +189,17 @@ static void hear_comments(const gonio_i_csv_finder *f)
     }
 }
 
+/* Unless the user says which. */
+static gonio_status refuse_grad(const gonio_i_csv_finder *f)
+{
+    return f->options->as.angles != GONIO_AS_STATED
+               ? GONIO_OK
+               : gonio_i_fail(f->r->context, GONIO_ERROR_FORMAT,
+                              "%s: angles in 'grad' are degrees or gradians: use --as "
+                              "angles=degrees or --as angles=gon",
+                              f->r->path);
+}
+
 gonio_status gonio_i_csv_find_angles(const gonio_i_csv_finder *f)
 {
     const size_t none = f->r->columns;
@@ -213,5 +224,6 @@ gonio_status gonio_i_csv_find_angles(const gonio_i_csv_finder *f)
         }
     }
     hear_comments(f);
-    return status;
+    return status == GONIO_OK && f->c->stated.angles == GONIO_I_DEGREES_OR_GRADIANS ? refuse_grad(f)
+                                                                                    : status;
 }

@@ -167,7 +167,11 @@ static void print_cells(FILE *stream, gonio_i_line l)
 
 static const char *words_of_unit(int unit)
 {
-    return unit == GONIO_RADIANS ? " (rad)" : unit == GONIO_DEGREES ? " (deg)" : "";
+    return unit == GONIO_RADIANS                 ? " (rad)"
+           : unit == GONIO_GRADIANS              ? " (gon)"
+           : unit == GONIO_DEGREES               ? " (deg)"
+           : unit == GONIO_I_DEGREES_OR_GRADIANS ? " (grad)"
+                                                 : "";
 }
 
 /* The name of the first column of rows: theta_o, in the unit of theta_i if it states none, unless

@@ -29,15 +29,27 @@ static int rank(gonio_i_family family)
     return family == GONIO_I_WAVELENGTH ? 2 : family == GONIO_I_COLOUR ? 1 : 0;
 }
 
+static bool has_cosine(const gonio_i_column_name *n)
+{
+    return n->unit == GONIO_VALUE_COSINE || n->unit == GONIO_VALUE_FACTOR_COSINE;
+}
+
+/* Whether a name is that of values as they are: no logarithms, without the cosine. */
+static bool is_plain(const gonio_i_column_name *n)
+{
+    return n->scale == 0 && !has_cosine(n);
+}
+
 /* Whether a name is surer than those before. A name of only a channel and a unit, as gonio's, comes
- * before one that names a quantity. */
+ * before one that names a quantity, and the BRDF before what is made of it. */
 static bool is_surer(const finder *f, const gonio_i_column_name *n)
 {
     if (n->strength != f->strongest) {
         return n->strength > f->strongest;
     }
     return rank(n->family) > rank(f->family) ||
-           (n->family == f->family && n->quantity == 0 && f->quantity != 0);
+           (n->family == f->family && ((n->quantity == 0 && f->quantity != 0) ||
+                                       (is_plain(n) && (f->scale != 0 || f->cosine))));
 }
 
 /* Chooses the family and the quantity of the values: those of the surest name. */
@@ -57,6 +69,8 @@ static gonio_status choose_family(finder *f)
             f->strongest = n->strength;
             f->family = n->family;
             f->quantity = n->quantity;
+            f->scale = n->scale;
+            f->cosine = has_cosine(n);
         }
     }
     return GONIO_OK;
@@ -65,7 +79,8 @@ static gonio_status choose_family(finder *f)
 static bool is_chosen(const finder *f, const gonio_i_column_name *n)
 {
     return n->kind == GONIO_I_VALUE && n->family == f->family &&
-           (n->quantity == f->quantity || n->quantity == 0) &&
+           (n->quantity == f->quantity || n->quantity == 0) && n->scale == f->scale &&
+           has_cosine(n) == f->cosine &&
            (n->strength > GONIO_I_BARE || f->strongest == GONIO_I_BARE);
 }
 
@@ -78,7 +93,8 @@ static gonio_status add_value(const finder *f, size_t k, size_t *unit_by, size_t
     if (n->family == GONIO_I_WAVELENGTH) {
         c->wavelength[index] = n->wavelength;
     }
-    c->column[k] = (gonio_i_csv_column){GONIO_I_VALUE, index, n->wavelength, 0.0};
+    c->column[k] = (gonio_i_csv_column){GONIO_I_VALUE, index, n->wavelength, 0.0, false};
+    c->stated.scale = n->scale;
     c->any_value = true;
     c->own = c->own && n->own;
     if (f->options->as.values == GONIO_AS_STATED) {
@@ -95,10 +111,12 @@ static gonio_status add_value(const finder *f, size_t k, size_t *unit_by, size_t
 static void take_value_comment(gonio_i_csv_columns *c, const char *comment)
 {
     const int kind = comment != NULL ? gonio_i_value_kind_in(comment) : 0;
+    const int scale = comment != NULL ? gonio_i_value_scale_in(comment) : 0;
     const bool by_name = c->stated.values != 0;
     const bool of_angles = comment != NULL && kind == 0 && gonio_i_angle_unit_in(comment) != 0;
     c->stated.values = by_name ? c->stated.values : kind;
-    const bool heeded = by_name ? kind == 0 || kind == c->stated.values : kind != 0;
+    c->stated.scale = c->stated.scale != 0 || by_name ? c->stated.scale : scale;
+    const bool heeded = by_name ? kind == 0 || kind == c->stated.values : kind != 0 || scale != 0;
     c->unclear = heeded || of_angles ? NULL : comment;
 }
 
@@ -211,7 +229,8 @@ static void add_deviation(const finder *f, size_t k, size_t value, bool *taken)
         (gonio_i_csv_column){GONIO_I_DEVIATION, c->column[value].index, c->column[value].wavelength,
                              !relative ? 0.0
                              : percent ? 0.01
-                                       : 1.0};
+                                       : 1.0,
+                             n->scale != f->scale && (n->quantity != 0 || n->unit != 0)};
     c->any_deviation = true;
     c->own = c->own && n->own;
     taken[c->column[value].index] = true;
@@ -220,7 +239,9 @@ static void add_deviation(const finder *f, size_t k, size_t value, bool *taken)
 static void try_deviation(const finder *f, size_t k, const key_list *list, bool *taken)
 {
     const size_t value = value_of(f, list, &f->name[k]);
-    if (value < f->r->columns && !taken[f->c->column[value].index]) {
+    const bool other = (f->name[k].scale != 0 && f->name[k].scale != f->scale) ||
+                       (has_cosine(&f->name[k]) && !f->cosine);
+    if (!other && value < f->r->columns && !taken[f->c->column[value].index]) {
         add_deviation(f, k, value, taken);
     }
 }

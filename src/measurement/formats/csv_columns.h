@@ -12,6 +12,7 @@ typedef struct gonio_i_csv_column {
     double wavelength; /* of a value or deviation, as in the name; 0: none */
     double scale;      /* of a relative deviation: factor to a fraction of the value; 0: absolute.
                         * Of a time: seconds */
+    bool linear;       /* a deviation of the value itself, where the file has its logarithm */
 } gonio_i_csv_column;
 
 typedef struct gonio_i_csv_columns {

@@ -12,6 +12,8 @@ typedef struct gonio_i_csv_finder {
     gonio_i_strength strongest;
     gonio_i_family family; /* of the channels that are read */
     int quantity;
+    int scale;   /* gonio_value_scale of logarithms; 0: linear */
+    bool cosine; /* values contain cos theta_o */
 } gonio_i_csv_finder;
 
 /* Errors: _FORMAT, always, with a message that names both columns. */

@@ -49,6 +49,9 @@ enum {
     GONIO_I_ANGLE_COLUMNS = GONIO_I_VECTORS + 6
 };
 
+/* The unit of "grad", which is German for degrees, and gradians elsewhere. */
+enum { GONIO_I_DEGREES_OR_GRADIANS = 100 };
+
 typedef struct gonio_i_column_name {
     gonio_i_column_kind kind;
     bool own;     /* as gonio writes it */
@@ -58,7 +61,8 @@ typedef struct gonio_i_column_name {
     double wavelength;   /* as written in the name */
     int wavelength_unit; /* gonio_wavelength_unit; 0: not stated */
     int quantity;        /* a number for each quantity; 0: none */
-    int unit;            /* gonio_angle_unit or gonio_value_kind; 0: not stated */
+    int unit;            /* gonio_angle_unit (or both, above) or gonio_value_kind; 0: not stated */
+    int scale;           /* gonio_value_scale of a logarithm; 0: linear */
     bool relative;       /* a deviation divided by its value */
     double seconds;      /* of a unit of time */
 } gonio_i_column_name;
@@ -66,7 +70,8 @@ typedef struct gonio_i_column_name {
 /* Fills in the meaning of a name as an angle (csv_angle_names.c), and as values or deviations
  * (csv_value_names.c). False, with *name undefined, if it means something else. */
 bool gonio_i_take_angle_name(const gonio_i_words *words, gonio_i_column_name *name);
-bool gonio_i_take_value_name(const char *text, gonio_i_words *words, gonio_i_column_name *name);
+bool gonio_i_take_value_name(const char *text, const gonio_i_words *words,
+                             gonio_i_column_name *name);
 
 /* The meaning of a column's name. Numbers in names have decimal points. */
 gonio_i_column_name gonio_i_column_name_of(const char *name);
@@ -78,5 +83,8 @@ bool gonio_i_names_azimuth(const char *text);
  */
 int gonio_i_angle_unit_in(const char *text);
 int gonio_i_value_kind_in(const char *text);
+
+/* The gonio_value_scale of logarithms that a text of nothing but values names; 0: none. */
+int gonio_i_value_scale_in(const char *text);
 
 #endif

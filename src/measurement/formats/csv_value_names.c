@@ -1,4 +1,6 @@
 /* Names of columns of values and deviations: see csv_names.h. */
+#include <ctype.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -6,6 +8,7 @@
 
 #include "csv_meaning.h"
 #include "csv_names.h"
+#include "csv_scale_names.h"
 
 enum {
     COLOUR = 1 << 0,
@@ -187,6 +190,30 @@ int gonio_i_value_kind_in(const char *text)
     return unit_of_value(&s);
 }
 
+static int scale_in(const char *text)
+{
+    gonio_i_words words;
+    gonio_i_meaning s;
+    double number = 0.0;
+    gonio_i_words_split(text, &words);
+    const int scale = gonio_i_take_scale(&words);
+    return words.count == 0 || hear_value(&words, &s, &number) ? scale : 0;
+}
+
+/* "dB" is one word, though a capital begins another. */
+int gonio_i_value_scale_in(const char *text)
+{
+    const char *decibel = strstr(text, "dB");
+    char small[128];
+    const int length = snprintf(small, sizeof small, "%s", text);
+    const bool alone = decibel != NULL && !isalpha((unsigned char)decibel[2]);
+    if (alone && length > 0 && (size_t)length < sizeof small) {
+        small[decibel + 1 - text] = 'b';
+        return scale_in(small);
+    }
+    return scale_in(text);
+}
+
 /* Joins "f_r", the usual symbol of a BRDF, which is not the red channel of f. */
 static void join_f_r(const char *text, gonio_i_words *words)
 {
@@ -269,16 +296,19 @@ static bool take_row_wavelength(const gonio_i_meaning *s, gonio_i_column_name *n
     return true;
 }
 
-bool gonio_i_take_value_name(const char *text, gonio_i_words *words, gonio_i_column_name *name)
+bool gonio_i_take_value_name(const char *text, const gonio_i_words *words,
+                             gonio_i_column_name *name)
 {
     gonio_i_meaning s;
     double number = 0.0;
-    join_f_r(text, words);
-    take_cosine_angle(words);
-    if (!hear_value(words, &s, &number) || (s.twice & (COLOUR | NUMBER | SPREAD)) != 0) {
+    gonio_i_words own = *words;
+    const int scale = gonio_i_take_scale(&own);
+    join_f_r(text, &own);
+    take_cosine_angle(&own);
+    if (!hear_value(&own, &s, &number) || (s.twice & (COLOUR | NUMBER | SPREAD)) != 0) {
         return false;
     }
-    if (take_row_wavelength(&s, name)) {
+    if (scale == 0 && take_row_wavelength(&s, name)) {
         return true;
     }
     const bool spread = (s.bits & SPREAD) != 0;
@@ -292,6 +322,7 @@ bool gonio_i_take_value_name(const char *text, gonio_i_words *words, gonio_i_col
     name->kind = spread ? GONIO_I_DEVIATION : GONIO_I_VALUE;
     name->relative = (s.bits & RELATIVE) != 0;
     name->unit = unit_of_value(&s);
+    name->scale = scale;
     name->strength = strength_of(&s, name);
     return true;
 }
