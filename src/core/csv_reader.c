@@ -268,21 +268,67 @@ static gonio_status fit_cells(gonio_i_csv_reader *r)
                                   : "");
 }
 
+/* Whether the row is the line of names once more, perhaps without the units behind them. */
+static bool are_names(const gonio_i_csv_reader *r)
+{
+    size_t same = 0;
+    while (same < r->cells && same < r->columns &&
+           strncasecmp(r->name[same], r->cell[same], strlen(r->cell[same])) == 0 &&
+           (*r->cell[same] != '\0' || *r->name[same] == '\0')) {
+        same++;
+    }
+    return same == r->columns && r->cells == r->columns;
+}
+
+/* Whether the row is a line of words: too few cells, none of them a number. Digits may be in a
+ * single cell, such as "saved 12:05". */
+static bool are_words(const gonio_i_csv_reader *r)
+{
+    bool digits = false;
+    for (size_t k = 0; k < r->cells; k++) {
+        digits = digits || strpbrk(r->cell[k], "0123456789") != NULL;
+    }
+    return r->cells < r->columns && r->cells > 0 &&
+           (!digits || (r->cells == 1 && r->columns > 1 && isalpha((unsigned char)*r->cell[0])));
+}
+
+static bool is_remark(gonio_i_csv_reader *r)
+{
+    while (r->cells > 1 && r->cell[r->cells - 1][0] == '\0' && r->cells != r->columns) {
+        r->cells--;
+    }
+    if (!r->remarks_allowed || !(are_names(r) || are_words(r))) {
+        return false;
+    }
+    r->first_remark = r->remarks == 0 ? r->line : r->first_remark;
+    r->remarks++;
+    return true;
+}
+
+/* Splits the next line that is a row; *length is 0 behind the last. */
+static gonio_status find_row(gonio_i_csv_reader *r, size_t *length)
+{
+    const char *line = NULL;
+    gonio_status status = GONIO_OK;
+    do {
+        status = find_line(r, &line, length);
+        r->cells = 0;
+        if (status == GONIO_OK && *length > 0) {
+            status = split(r, line, *length);
+        }
+    } while (status == GONIO_OK && *length > 0 && is_remark(r));
+    return status;
+}
+
 gonio_status gonio_i_csv_next(gonio_i_csv_reader *reader)
 {
     if (reader->again) {
         reader->again = false;
         return GONIO_OK;
     }
-    const char *line = NULL;
     size_t length = 0;
-    gonio_status status = find_line(reader, &line, &length);
-    reader->cells = 0;
-    if (status == GONIO_OK && length > 0) {
-        status = split(reader, line, length);
-        status = status == GONIO_OK ? fit_cells(reader) : status;
-    }
-    return status;
+    const gonio_status status = find_row(reader, &length);
+    return status == GONIO_OK && length > 0 ? fit_cells(reader) : status;
 }
 
 void gonio_i_csv_again(gonio_i_csv_reader *reader)
@@ -369,6 +415,18 @@ static bool take_short_number(const char *cell, char delimiter, double *value)
     return true;
 }
 
+/* Makes hyphens of the minus signs and dashes of typesetters. */
+static void plain_minus(char *text)
+{
+    static const char *const signs[] = {"\xe2\x88\x92", "\xe2\x80\x93"};
+    for (size_t k = 0; k < sizeof signs / sizeof *signs; k++) {
+        for (char *at = text; (at = strstr(at, signs[k])) != NULL; at++) {
+            *at = '-';
+            memmove(at + 1, at + 3, strlen(at + 3) + 1);
+        }
+    }
+}
+
 bool gonio_i_csv_is_number(const char *cell, char delimiter, double *value)
 {
     char text[64];
@@ -380,6 +438,7 @@ bool gonio_i_csv_is_number(const char *cell, char delimiter, double *value)
         return false;
     }
     memcpy(text, cell, length + 1);
+    plain_minus(text);
     char *comma = delimiter != ',' ? strchr(text, ',') : NULL;
     if (comma != NULL) {
         *comma = '.';

@@ -25,6 +25,10 @@ typedef struct gonio_i_csv_reader {
     char delimiter;
     gonio_i_csv_lines lines;
     bool again;
+    bool remarks_allowed; /* set by the caller: lines of words between rows, and names that are
+                           * repeated, are no rows */
+    size_t remarks;       /* such lines so far */
+    size_t first_remark;  /* line of the first */
     struct csv_parser *parser;
     char *room; /* what cells point into */
     size_t room_size;

@@ -13,6 +13,7 @@
 #include "csv_kept.h"
 #include "csv_layout.h"
 #include "csv_notes.h"
+#include "csv_numbers.h"
 #include "csv_time.h"
 #include "format.h"
 
@@ -49,6 +50,8 @@ typedef struct csv_source {
     gonio_i_csv_others others;           /* columns that are not read */
     double angle[GONIO_I_ANGLE_COLUMNS]; /* degrees, and components of vectors, of a row */
     double wavelength;                   /* of a row */
+    size_t marks;                        /* cells in place of values, such as "---" */
+    char mark[16];                       /* the first of them */
     gonio_i_long_table table;            /* rows of one wavelength each */
 } csv_source;
 
@@ -59,9 +62,14 @@ static gonio_status bad_cell(const csv_source *s, size_t column, gonio_status st
                         s->reader.name[column], s->reader.cell[column], problem);
 }
 
-static bool is_missing(const char *cell)
+/* Whether nothing was read; counts cells that say so by a mark. */
+static bool is_missing(csv_source *s, const char *cell)
 {
-    return *cell == '\0' || strcasecmp(cell, "na") == 0 || strcasecmp(cell, "nan") == 0;
+    const bool mark = gonio_i_csv_is_mark(cell);
+    if (mark && s->marks++ == 0) {
+        snprintf(s->mark, sizeof s->mark, "%s", cell);
+    }
+    return mark || gonio_i_csv_is_empty(cell);
 }
 
 /* A cell as a number; NaN if it is none. */
@@ -74,8 +82,12 @@ static double number_of(const csv_source *s, size_t column)
 
 static gonio_status take_angle(csv_source *s, size_t column, size_t index)
 {
-    const double number = number_of(s, column);
+    double number = number_of(s, column);
     s->angle[index] = index < GONIO_I_VECTORS ? gonio_i_import_degrees(&s->in, number) : number;
+    if (isnan(number) && s->in.how.angles == GONIO_DEGREES && index < GONIO_I_VECTORS &&
+        gonio_i_csv_is_angle(s->reader.cell[column], s->reader.delimiter, &number)) {
+        s->angle[index] = gonio_i_import_rounded(number);
+    }
     return isfinite(number) ? GONIO_OK
                             : bad_cell(s, column, GONIO_ERROR_FORMAT, "is not a finite number");
 }
@@ -113,11 +125,10 @@ static gonio_status take_planned(const csv_source *s, size_t column, gonio_i_row
                : bad_cell(s, column, GONIO_ERROR_FORMAT, "is not a channel: R, G, B or all");
 }
 
-static gonio_status take_value(const csv_source *s, size_t column, size_t channel,
-                               gonio_i_mark mark)
+static gonio_status take_value(csv_source *s, size_t column, size_t channel, gonio_i_mark mark)
 {
     gonio_status status = GONIO_OK;
-    if (is_missing(s->reader.cell[column])) {
+    if (is_missing(s, s->reader.cell[column])) {
         return GONIO_OK;
     }
     s->value[channel] = number_of(s, column);
@@ -144,10 +155,10 @@ static double absolute_deviation(const csv_source *s, const gonio_i_csv_column *
     return column->scale != 0.0 || column->linear ? relative / gonio_i_scale_slope(scale) : number;
 }
 
-static gonio_status take_deviation(const csv_source *s, size_t column, size_t channel)
+static gonio_status take_deviation(csv_source *s, size_t column, size_t channel)
 {
     gonio_status status = GONIO_OK;
-    if (is_missing(s->reader.cell[column])) {
+    if (is_missing(s, s->reader.cell[column])) {
         return GONIO_OK;
     }
     const double number = number_of(s, column);
@@ -296,14 +307,33 @@ static void take_nanometres(gonio_i_csv_columns *columns, const gonio_readings *
     }
 }
 
+/* Says which cells and lines were taken for no values. */
+static gonio_status note_what_is_skipped(csv_source *s)
+{
+    gonio_status status = GONIO_OK;
+    if (s->marks > 0) {
+        status = gonio_i_readings_note(s->context, s->readings,
+                                       "%zu cell%s such as '%s' taken as not read", s->marks,
+                                       s->marks > 1 ? "s" : "", s->mark);
+    }
+    if (status == GONIO_OK && s->reader.remarks > 0) {
+        status = gonio_i_readings_note(s->context, s->readings,
+                                       "%zu line%s of words among the rows left out (first: line "
+                                       "%zu)",
+                                       s->reader.remarks, s->reader.remarks > 1 ? "s" : "",
+                                       s->reader.first_remark);
+    }
+    return status;
+}
+
 /* Writes the notes that the import cannot know. */
 static gonio_status write_notes(csv_source *s)
 {
-    gonio_status status = GONIO_OK;
+    gonio_status status = note_what_is_skipped(s);
     if (s->readings->options.directions_only) {
-        return GONIO_OK;
+        return status;
     }
-    if (s->columns->unclear != NULL) {
+    if (status == GONIO_OK && s->columns->unclear != NULL) {
         status = gonio_i_readings_note(
             s->context, s->readings,
             s->columns->stated.values == 0
@@ -441,6 +471,7 @@ static gonio_status read(gonio_i_readings_file *file, gonio_readings *readings)
         return status != GONIO_OK ? status : GONIO_ERROR_MEMORY;
     }
     status = gonio_i_csv_open(file->context, file->path, kept->text, kept->size, &s.reader);
+    s.reader.remarks_allowed = true;
     if (status == GONIO_OK) {
         status = read_table(&s, kept);
         gonio_i_csv_close(&s.reader);

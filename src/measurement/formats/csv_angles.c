@@ -121,6 +121,9 @@ static gonio_status find_geometry(const gonio_i_csv_finder *f, size_t chosen[GON
         f->c->geometry = GONIO_I_UNIT_VECTORS;
     } else if (is_half_difference(f, chosen)) {
         f->c->geometry = GONIO_I_HALF_DIFFERENCE;
+    } else if (!has_any(f, chosen, 2, 1) && has_any(f, chosen, GONIO_I_BETA, 2)) {
+        f->c->geometry =
+            has_any(f, chosen, GONIO_I_BETA, 1) ? GONIO_I_SINES : GONIO_I_SIZE_OF_SINES;
     } else if (specular) {
         return find_specular(f, chosen);
     } else {
@@ -144,6 +147,8 @@ static const struct {
     [GONIO_I_TOWARDS_LIGHT] = {0x1U | BIT(GONIO_I_ASPECULAR), 0x2U},
     [GONIO_I_PHASE_ANGLE] = {0x5U | BIT(GONIO_I_PHASE), 0},
     [GONIO_I_HALF_DIFFERENCE] = {HALF_BITS, BIT(GONIO_I_PHI_H)},
+    [GONIO_I_SINES] = {0x1U | BIT(GONIO_I_BETA), 0x2U},
+    [GONIO_I_SIZE_OF_SINES] = {0x1U | BIT(GONIO_I_BETA_SIZE), 0x2U},
     [GONIO_I_UNIT_VECTORS] = {VECTOR_BITS, 0},
 };
 

@@ -106,7 +106,8 @@ static unsigned angles_named(gonio_i_line l)
 
 /* Angles of the light, or of both directions at once: a line that names one is of a table of its
  * own. */
-static const unsigned NOT_IN_BLOCKS = 0x3U | ~((1U << GONIO_I_PHASE) - 1U);
+static const unsigned IN_BLOCKS =
+    (((1U << GONIO_I_PHASE) - 1U) & ~0x3U) | 1U << GONIO_I_BETA | 1U << GONIO_I_BETA_SIZE;
 
 /* ---- the blocks of a text ---- */
 
@@ -116,6 +117,12 @@ typedef struct blocks {
     gonio_i_line names; /* the first line of names in a block; at is NULL: there is none */
     bool azimuths;      /* that of the detector is among them: the light is at 0 */
 } blocks;
+
+/* Whether a line is "key: text". */
+static bool is_key(gonio_i_line l)
+{
+    return separator_of(l) == ' ' && memchr(l.at, ':', l.length) != NULL;
+}
 
 static bool find_blocks(const char *text, size_t size, blocks *b)
 {
@@ -137,9 +144,10 @@ static bool find_blocks(const char *text, size_t size, blocks *b)
             b->first = inside ? b->first : k;
             b->unit = inside ? b->unit : one.unit;
             inside = true;
-        } else if ((angles_named(rest) & NOT_IN_BLOCKS) != 0) {
+        } else if ((angles_named(rest) & ~IN_BLOCKS) != 0) {
             return false;
-        } else if (inside && mark == NULL && b->names.at == NULL && separator_of(rest) != '\0') {
+        } else if (inside && mark == NULL && b->names.at == NULL && separator_of(rest) != '\0' &&
+                   !is_key(rest)) {
             b->names = rest;
             b->azimuths = (angles_named(rest) & 1U << PHI_O) != 0;
         }

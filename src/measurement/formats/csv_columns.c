@@ -7,6 +7,7 @@
 
 #include "../rules.h"
 #include "csv_finder.h"
+#include "csv_numbers.h"
 
 typedef gonio_i_csv_finder finder;
 
@@ -433,7 +434,8 @@ static bool is_unit_row(const gonio_i_csv_reader *r)
     bool angle = false;
     for (size_t k = 0; k < r->cells; k++) {
         double number = 0.0;
-        if (gonio_i_csv_is_number(r->cell[k], r->delimiter, &number) && number != 1.0) {
+        if ((gonio_i_csv_is_number(r->cell[k], r->delimiter, &number) && number != 1.0) ||
+            gonio_i_csv_is_angle(r->cell[k], r->delimiter, &number)) {
             return false;
         }
         angle = angle || gonio_i_angle_unit_in(r->cell[k]) != 0;

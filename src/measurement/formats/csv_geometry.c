@@ -111,6 +111,33 @@ static const char *take_vectors(int mirror, const double *cell, double degrees[4
                : "0, 0, 0 is no direction";
 }
 
+/* Differences that no direction has are below the horizon. */
+static const char *take_difference(int mirror, const double *cell, double difference,
+                                   double degrees[4])
+{
+    take_four(mirror, cell, degrees);
+    const double sine = sin(degrees[0] * DEGREE) + difference;
+    degrees[2] = fabs(sine) < 1.0 ? gonio_i_import_rounded(asin(sine) / DEGREE) : 90.0;
+    degrees[3] = degrees[1] + (mirror == GONIO_MIRROR_0 ? 0.0 : 180.0);
+    return degrees[0] < 0.0 ? "theta_i below zero beside beta - beta0: give it above zero" : NULL;
+}
+
+static const char *take_sines(int mirror, const double *cell, double degrees[4])
+{
+    return take_difference(mirror, cell, cell[GONIO_I_BETA], degrees);
+}
+
+/* Both sides are the same only of light from the normal. */
+static const char *take_size_of_sines(int mirror, const double *cell, double degrees[4])
+{
+    const char *problem = take_difference(mirror, cell, fabs(cell[GONIO_I_BETA_SIZE]), degrees);
+    return problem != NULL ? problem
+           : degrees[0] == 0.0
+               ? NULL
+               : "|beta - beta0| does not say on which side of the mirror direction the detector "
+                 "is; give beta-beta0 with its sign, above zero farther from the normal";
+}
+
 static const struct {
     const char *words;
     const char *(*take)(int mirror, const double *cell, double degrees[4]);
@@ -127,6 +154,9 @@ static const struct {
          take_towards_light},
     [GONIO_I_PHASE_ANGLE] = {", azimuths from the angle between light and detector", take_phase},
     [GONIO_I_HALF_DIFFERENCE] = {", of the half and the difference vector", take_half},
+    [GONIO_I_SINES] = {", sin theta_o - sin theta_i in the plane, positive away from the normal",
+                       take_sines},
+    [GONIO_I_SIZE_OF_SINES] = {", in the plane at normal incidence", take_size_of_sines},
     [GONIO_I_UNIT_VECTORS] = {", directions as vectors", take_vectors},
 };
 

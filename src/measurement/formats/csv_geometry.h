@@ -13,6 +13,8 @@ typedef enum gonio_i_geometry {
     GONIO_I_TOWARDS_LIGHT,   /* the same, the other way */
     GONIO_I_PHASE_ANGLE,     /* the angle between both directions in place of azimuths */
     GONIO_I_HALF_DIFFERENCE, /* theta_h, theta_d, phi_d; phi_h or 0 */
+    GONIO_I_SINES,           /* sin theta_o - sin theta_i */
+    GONIO_I_SIZE_OF_SINES,   /* the same without its sign */
     GONIO_I_UNIT_VECTORS     /* x, y and z of both; their lengths do not count */
 } gonio_i_geometry;
 

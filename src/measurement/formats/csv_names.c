@@ -42,6 +42,9 @@ static gonio_i_column_name name_of(const char *text)
         name.own = is_own_angle(text);
         return name;
     }
+    if (gonio_i_take_beta_name(text, &words, &name)) {
+        return name;
+    }
     if (gonio_i_take_value_name(text, &words, &name)) {
         name.own = is_own_value(text);
         return name;

@@ -33,8 +33,9 @@ typedef enum gonio_i_strength {
 /* Indices behind theta_i, phi_i, theta_o, phi_o: of phi_o - phi_i, of the rotation of the sample,
  * which is added to both azimuths, and of the angle between the detector and the mirror direction,
  * in the plane of incidence: above zero farther from the normal, or nearer to it. Then the angle
- * between light and detector, the half/difference angles (direction.h), and x, y, z of the
- * directions towards light and detector. */
+ * between light and detector, the half/difference angles (direction.h), x, y, z of the directions
+ * towards light and detector, and sin theta_o - sin theta_i in the plane of incidence, with its
+ * sign (above zero farther from the normal than the mirror direction) or without it. */
 enum {
     GONIO_I_AZIMUTH_DIFFERENCE = 4,
     GONIO_I_SAMPLE_ROTATION,
@@ -46,7 +47,9 @@ enum {
     GONIO_I_THETA_D,
     GONIO_I_PHI_D,
     GONIO_I_VECTORS,
-    GONIO_I_ANGLE_COLUMNS = GONIO_I_VECTORS + 6
+    GONIO_I_BETA = GONIO_I_VECTORS + 6,
+    GONIO_I_BETA_SIZE,
+    GONIO_I_ANGLE_COLUMNS
 };
 
 /* The unit of "grad", which is German for degrees, and gradians elsewhere. */
@@ -72,6 +75,10 @@ typedef struct gonio_i_column_name {
 bool gonio_i_take_angle_name(const gonio_i_words *words, gonio_i_column_name *name);
 bool gonio_i_take_value_name(const char *text, const gonio_i_words *words,
                              gonio_i_column_name *name);
+
+/* Fills in the meaning of a name as beta - beta0, |beta - beta0| (csv_beta_names.c). */
+bool gonio_i_take_beta_name(const char *text, const gonio_i_words *words,
+                            gonio_i_column_name *name);
 
 /* The meaning of a column's name. Numbers in names have decimal points. */
 gonio_i_column_name gonio_i_column_name_of(const char *name);

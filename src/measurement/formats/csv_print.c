@@ -349,6 +349,7 @@ static gonio_status print_over(gonio_context *context, printer *p, const gonio_i
     if (status != GONIO_OK) {
         return status;
     }
+    old.remarks_allowed = true;
     p->delimiter = old.delimiter;
     status = choose_columns(context, p, kept, old.name);
     if (status == GONIO_OK) {

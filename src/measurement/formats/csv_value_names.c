@@ -41,7 +41,8 @@ static const gonio_i_known_word value_words[] = {
     {"fr", QUANTITY | SURE, BRDF},
     {"ccbrdf", QUANTITY | SURE | COSINE, BRDF},
     {"ccbsdf", QUANTITY | SURE | COSINE, BRDF},
-    {"cc", COSINE, 0}, /* cosine-corrected */
+    {"cc", COSINE, 0},               /* cosine-corrected */
+    {"frdb", QUANTITY | SURE, BRDF}, /* in French */
     {"brf", QUANTITY | SURE | FACTOR, FACTORS},
     {"value", QUANTITY, VALUE},
     {"values", QUANTITY, VALUE},
@@ -296,6 +297,13 @@ static bool take_row_wavelength(const gonio_i_meaning *s, gonio_i_column_name *n
     return true;
 }
 
+/* L*, a*, b* of CIELAB are no BRDF, and b* is not the blue channel. */
+static bool is_cielab(const char *text)
+{
+    const size_t length = strlen(text);
+    return length > 1 && text[length - 1] == '*';
+}
+
 bool gonio_i_take_value_name(const char *text, const gonio_i_words *words,
                              gonio_i_column_name *name)
 {
@@ -305,7 +313,8 @@ bool gonio_i_take_value_name(const char *text, const gonio_i_words *words,
     const int scale = gonio_i_take_scale(&own);
     join_f_r(text, &own);
     take_cosine_angle(&own);
-    if (!hear_value(&own, &s, &number) || (s.twice & (COLOUR | NUMBER | SPREAD)) != 0) {
+    if (is_cielab(text) || !hear_value(&own, &s, &number) ||
+        (s.twice & (COLOUR | NUMBER | SPREAD)) != 0) {
         return false;
     }
     if (scale == 0 && take_row_wavelength(&s, name)) {

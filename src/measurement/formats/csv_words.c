@@ -14,9 +14,10 @@ static const struct {
     {"\xce\xbcm", " um "},       {"\xb5m", " um "},        {"\xc2\xb9", " 1 "},
     {"\xe2\x81\xbb", " "},       {"\xce\xb8", " theta "},  {"\xcf\x91", " theta "},
     {"\xcf\x86", " phi "},       {"\xcf\x95", " phi "},    {"\xce\x94", " delta "},
-    {"\xe2\x88\x86", " delta "}, {"\xce\xbb", " lambda "}, {"\xcf\x81", " rho "},
-    {"\xcf\x83", " sigma "},     {"%", " percent "},       {"\xc3\x97", " x "},
-    {"\xc2\xb7", " "},           {"\xe2\x8b\x85", " "},
+    {"\xe2\x88\x86", " delta "}, {"\xce\xbb", " lambda "}, {"\xce\xb2", " beta "},
+    {"\xe2\x82\x80", " 0 "},     {"\xcf\x81", " rho "},    {"\xcf\x83", " sigma "},
+    {"%", " percent "},          {"\xc3\x97", " x "},      {"\xc2\xb7", " "},
+    {"\xe2\x8b\x85", " "},
 };
 
 enum { NAME_ROOM = 256 };

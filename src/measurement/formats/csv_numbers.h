@@ -1,0 +1,18 @@
+/* Cells that are no plain numbers: angles with their signs, and what stands for a missing value. */
+#ifndef GONIO_CSV_NUMBERS_H
+#define GONIO_CSV_NUMBERS_H
+
+#include <stdbool.h>
+
+/* An angle with the signs of degrees, minutes and seconds, or with the word deg: 30°, 10.5 deg,
+ * 10°30'. */
+bool gonio_i_csv_is_angle(const char *cell, char delimiter, double *degrees);
+
+/* Whether a cell is empty, or NA or NaN. */
+bool gonio_i_csv_is_empty(const char *cell);
+
+/* Whether a cell has another mark in place of a value that was not read or is out of the
+ * instrument's range: ---, n/a, #N/A, <LOD>, OVRFLW. */
+bool gonio_i_csv_is_mark(const char *cell);
+
+#endif
