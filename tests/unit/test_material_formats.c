@@ -186,12 +186,76 @@ static void test_utia(void **state)
     support_remove(folder);
 }
 
+/* Other steps than the database's, by the size. */
+static void test_utia_of_other_sizes(void **state)
+{
+    (void)state;
+    static const struct {
+        size_t thetas, phis;
+        double theta, phi; /* steps, degrees */
+        const char *said;
+    } cases[] = {{3, 24, 30.0, 15.0, "72 x 72 directions in steps of 30 and 15 degrees"},
+                 {6, 24, 15.0, 15.0, "144 x 144 directions in steps of 15 and 15 degrees"}};
+    char *folder = support_folder();
+    char path[4096];
+    snprintf(path, sizeof path, "%s/x.bin", folder);
+    for (size_t k = 0; k < 2; k++) {
+        const size_t directions = cases[k].thetas * cases[k].phis;
+        double *values = malloc(3 * directions * directions * sizeof *values);
+        assert_non_null(values);
+        for (size_t n = 0; n < 3 * directions * directions; n++) {
+            values[n] = 1e-3 + 1e-6 * (double)n;
+        }
+        write_bytes(path, values, 3 * directions * directions * sizeof *values);
+        gonio_material *material = open_good(path);
+        assert_non_null(strstr(gonio_material_format(material), cases[k].said));
+        const gonio_pair pair = {{cases[k].theta * degree, 5.0 * cases[k].phi * degree},
+                                 {2.0 * cases[k].theta * degree, 23.0 * cases[k].phi * degree}};
+        double value[3];
+        assert_int_equal(gonio_material_evaluate(NULL, material, &pair, 1, value), GONIO_OK);
+        for (size_t c = 0; c < 3; c++) {
+            const size_t in = cases[k].phis + 5;
+            const size_t out = 2 * cases[k].phis + 23;
+            assert_true(fabs(value[c] - values[(c * directions + in) * directions + out]) < 1e-12);
+        }
+        gonio_material_free(&material);
+        free(values);
+    }
+    support_remove(folder);
+}
+
+static void test_utia_of_unknown_sizes(void **state)
+{
+    (void)state;
+    enum { COUNT = 3 * 110 * 110, BYTES = COUNT * (int)sizeof(double) };
+    char *folder = support_folder();
+    char path[4096];
+    double *values = malloc(BYTES);
+    assert_non_null(values);
+    snprintf(path, sizeof path, "%s/x.bin", folder);
+    for (size_t n = 0; n < COUNT; n++) {
+        values[n] = 0.1;
+    }
+    write_bytes(path, values, BYTES);
+    check_refused(path, "290400 bytes are of no known grid: theta in steps of 15 degrees (1990656");
+    memset(values, '7', BYTES); /* a text of digits */
+    write_bytes(path, values, BYTES);
+    check_refused(path, "not a material");
+    memset(values, 0, BYTES);
+    write_bytes(path, values, BYTES);
+    check_refused(path, "not a material");
+    free(values);
+    support_remove(folder);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_kaist),
         cmocka_unit_test(test_kaist_without_data),
         cmocka_unit_test(test_utia),
+        cmocka_unit_test(test_utia_of_other_sizes),
+        cmocka_unit_test(test_utia_of_unknown_sizes),
     };
     return cmocka_run_group_tests_name("material_formats", tests, NULL, NULL);
 }
