@@ -31,6 +31,11 @@ double gonio_i_scale_value(int scale, double number)
     }
 }
 
+double gonio_i_scale_number(int scale, double value)
+{
+    return gonio_i_scale_is_logarithm(scale) ? log(value) / gonio_i_scale_slope(scale) : value;
+}
+
 double gonio_i_scale_deviation(int scale, double value, double deviation)
 {
     return gonio_i_scale_is_logarithm(scale) ? value * gonio_i_scale_slope(scale) * deviation

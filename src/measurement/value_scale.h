@@ -9,6 +9,9 @@ bool gonio_i_scale_is_logarithm(int scale);
 /* The value of a number of the file. */
 double gonio_i_scale_value(int scale, double number);
 
+/* The number of the file for a value. */
+double gonio_i_scale_number(int scale, double value);
+
 /* The change of the value, relative to it, per change of the number. Only of logarithms. */
 double gonio_i_scale_slope(int scale);
 

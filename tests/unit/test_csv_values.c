@@ -232,6 +232,53 @@ static void test_logarithms_that_are_refused(void **state)
     refuse(ANGLES ",log10(BRDF)\n10,0,60,180,x\n", "log10(BRDF) 'x' is not a finite number");
 }
 
+/* ---- polarised light ---- */
+
+static void test_polarised_light(void **state)
+{
+    (void)state;
+    static const char averaged[] = "the values of s and of p polarisation are averaged";
+    static const char one[] = "the values are of one polarisation only";
+    static const struct {
+        const char *columns;
+        const char *row;
+        size_t channels;
+        double value; /* NaN: none */
+        const char *note;
+    } cases[] = {
+        {"BRDF_s,BRDF_p", "0.3,0.2", 1, 0.25, averaged},
+        {"BRDF (p-pol),BRDF (s-pol)", "0.3,0.2", 1, 0.25, averaged},
+        {"BRDF TE,BRDF TM", "0.3,", 1, NAN, averaged},
+        {"BRDF TE,BRDF TM", ",0.3", 1, NAN, averaged},
+        {"550nm s,600nm s,550nm p,600nm p", "0.3,9,0.2,9", 2, 0.25, averaged},
+        {"550nm s,600nm s,550nm p", "0.3,9,0.2", 2, 0.25, "averaged, where there are both"},
+        {"R_s,R_p,G_s,G_p", "0.3,0.2,1,1", 3, 0.25, averaged},
+        {"BRDF*cos s,BRDF*cos p", "0.3,0.2", 1, 0.5, averaged},
+        {"log10 BRDF (s),log10 BRDF (p)", "-1,0", 1, 0.55, averaged},
+        {"BRDF perpendicular", "0.3", 1, 0.3, one},
+        {"BRDF_s,BRDF_p,BRDF", "0.3,0.2,0.4", 1, 0.4, "not read: 'BRDF_s', 'BRDF_p'"},
+        {"unpolarised BRDF", "0.3", 1, 0.3, "values in 1/sr"},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        char text[256];
+        snprintf(text, sizeof text, ANGLES ",%s\n10,0,60,180,%s\n", cases[k].columns, cases[k].row);
+        print_message("%s", text);
+        gonio_readings *readings = read_text(text, false);
+        const double value = gonio_readings_value(readings, 0, 0);
+        assert_int_equal(gonio_readings_describe(readings)->channels, cases[k].channels);
+        assert_true(isnan(value) == isnan(cases[k].value));
+        if (!isnan(value)) {
+            assert_near(value, cases[k].value);
+        }
+        assert_note(readings, cases[k].note);
+        gonio_readings_free(&readings);
+    }
+    refuse(ANGLES ",BRDF_s,BRDF_p,BRDF p-pol\n10,0,60,180,1,1,1\n", "two columns of values");
+    refuse(ANGLES ",BRDF_s,BRDF s-pol\n10,0,60,180,1,1\n", "two columns of values");
+    refuse(ANGLES ",counts/s\n10,0,60,180,1\n", "'counts/s' is not understood");
+    refuse(ANGLES ",BRDF_s,BRDF_p\n10,0,60,180,1,-1\n", "BRDF_p '-1' is negative");
+}
+
 /* ---- angles in gon ---- */
 
 static void test_angles_in_gon(void **state)
@@ -305,6 +352,7 @@ int main(void)
         cmocka_unit_test(test_logarithms_in_other_rows),
         cmocka_unit_test(test_logarithms_are_written_as_values),
         cmocka_unit_test(test_logarithms_that_are_refused),
+        cmocka_unit_test(test_polarised_light),
         cmocka_unit_test(test_angles_in_gon),
         cmocka_unit_test(test_directions_of_any_table),
         cmocka_unit_test(test_directions_without_reference_lines),

@@ -129,13 +129,19 @@ static gonio_status take_value(csv_source *s, size_t column, size_t channel, gon
 {
     gonio_status status = GONIO_OK;
     if (is_missing(s, s->reader.cell[column])) {
+        s->value[channel] = NAN; /* half of an average is none */
         return GONIO_OK;
     }
-    s->value[channel] = number_of(s, column);
-    if (mark == GONIO_I_DARK && isfinite(s->value[channel])) {
+    const int scale = s->in.how.scale;
+    const double number = number_of(s, column);
+    const double value = gonio_i_scale_value(scale, number);
+    const double before = gonio_i_scale_value(scale, s->value[channel]);
+    s->value[channel] = s->columns->column[column].second
+                            ? gonio_i_scale_number(scale, 0.5 * (before + value))
+                            : number;
+    if (mark == GONIO_I_DARK && isfinite(value)) {
         return GONIO_OK; /* noise about nothing has both signs */
     }
-    const double value = gonio_i_scale_value(s->in.how.scale, s->value[channel]);
     const char *problem = gonio_i_value_problem(value, &s->readings->options, &status);
     return problem == NULL ? GONIO_OK : bad_cell(s, column, status, problem);
 }
@@ -307,6 +313,22 @@ static void take_nanometres(gonio_i_csv_columns *columns, const gonio_readings *
     }
 }
 
+/* Says what was made of polarised light. */
+static gonio_status note_polarisation(const csv_source *s)
+{
+    const gonio_i_csv_columns *c = s->columns;
+    return c->polarised == 0
+               ? GONIO_OK
+               : gonio_i_readings_note(
+                     s->context, s->readings, "%s",
+                     c->averaged == c->polarised
+                         ? "the values of s and of p polarisation are averaged"
+                     : c->averaged > 0 ? "the values of s and of p polarisation are averaged, "
+                                         "where there are both"
+                                       : "the values are of one polarisation only; they are taken "
+                                         "as those of unpolarised light");
+}
+
 /* Says which cells and lines were taken for no values. */
 static gonio_status note_what_is_skipped(csv_source *s)
 {
@@ -333,6 +355,7 @@ static gonio_status write_notes(csv_source *s)
     if (s->readings->options.directions_only) {
         return status;
     }
+    status = status == GONIO_OK ? note_polarisation(s) : status;
     if (status == GONIO_OK && s->columns->unclear != NULL) {
         status = gonio_i_readings_note(
             s->context, s->readings,

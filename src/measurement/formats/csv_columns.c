@@ -35,10 +35,11 @@ static bool has_cosine(const gonio_i_column_name *n)
     return n->unit == GONIO_VALUE_COSINE || n->unit == GONIO_VALUE_FACTOR_COSINE;
 }
 
-/* Whether a name is that of values as they are: no logarithms, without the cosine. */
+/* Whether a name is that of values as they are: no logarithms, without the cosine, of
+ * unpolarised light. */
 static bool is_plain(const gonio_i_column_name *n)
 {
-    return n->scale == 0 && !has_cosine(n);
+    return n->scale == 0 && !has_cosine(n) && n->polarisation == 0;
 }
 
 /* Whether a name is surer than those before. A name of only a channel and a unit, as gonio's, comes
@@ -49,8 +50,9 @@ static bool is_surer(const finder *f, const gonio_i_column_name *n)
         return n->strength > f->strongest;
     }
     return rank(n->family) > rank(f->family) ||
-           (n->family == f->family && ((n->quantity == 0 && f->quantity != 0) ||
-                                       (is_plain(n) && (f->scale != 0 || f->cosine))));
+           (n->family == f->family &&
+            ((n->quantity == 0 && f->quantity != 0) ||
+             (is_plain(n) && (f->scale != 0 || f->cosine || f->polarised))));
 }
 
 /* Chooses the family and the quantity of the values: those of the surest name. */
@@ -72,6 +74,7 @@ static gonio_status choose_family(finder *f)
             f->quantity = n->quantity;
             f->scale = n->scale;
             f->cosine = has_cosine(n);
+            f->polarised = n->polarisation != 0;
         }
     }
     return GONIO_OK;
@@ -81,7 +84,7 @@ static bool is_chosen(const finder *f, const gonio_i_column_name *n)
 {
     return n->kind == GONIO_I_VALUE && n->family == f->family &&
            (n->quantity == f->quantity || n->quantity == 0) && n->scale == f->scale &&
-           has_cosine(n) == f->cosine &&
+           has_cosine(n) == f->cosine && (n->polarisation != 0) == f->polarised &&
            (n->strength > GONIO_I_BARE || f->strongest == GONIO_I_BARE);
 }
 
@@ -89,12 +92,19 @@ static gonio_status add_value(const finder *f, size_t k, size_t *unit_by, size_t
 {
     gonio_i_csv_columns *c = f->c;
     const gonio_i_column_name *n = &f->name[k];
-    const size_t index = n->family == GONIO_I_COLOUR ? n->index : c->channels++;
+    const size_t other = gonio_i_csv_other_polarisation(f, k);
+    const bool second = other < f->r->columns;
+    const size_t index = n->family == GONIO_I_COLOUR ? n->index
+                         : second                    ? c->column[other].index
+                                                     : c->channels++;
     gonio_status status = GONIO_OK;
     if (n->family == GONIO_I_WAVELENGTH) {
         c->wavelength[index] = n->wavelength;
     }
-    c->column[k] = (gonio_i_csv_column){GONIO_I_VALUE, index, n->wavelength, 0.0, false};
+    c->column[k] = (gonio_i_csv_column){
+        .kind = GONIO_I_VALUE, .index = index, .wavelength = n->wavelength, .second = second};
+    c->polarised += n->polarisation != 0;
+    c->averaged += second ? 2 : 0;
     c->stated.scale = n->scale;
     c->any_value = true;
     c->own = c->own && n->own;
@@ -171,7 +181,7 @@ static gonio_status list_values(const finder *f, key_list *list)
         return GONIO_ERROR_MEMORY;
     }
     for (size_t k = 0; k < f->r->columns; k++) {
-        if (f->c->column[k].kind == GONIO_I_VALUE) {
+        if (f->c->column[k].kind == GONIO_I_VALUE && !f->c->column[k].second) {
             list->item[list->count++] = (keyed){key_of(&f->name[k]), k};
         }
     }
@@ -227,11 +237,13 @@ static void add_deviation(const finder *f, size_t k, size_t value, bool *taken)
     const bool percent = n->unit == GONIO_VALUE_PERCENT;
     const bool relative = n->relative || (percent && c->stated.values != GONIO_VALUE_PERCENT);
     c->column[k] =
-        (gonio_i_csv_column){GONIO_I_DEVIATION, c->column[value].index, c->column[value].wavelength,
-                             !relative ? 0.0
-                             : percent ? 0.01
-                                       : 1.0,
-                             n->scale != f->scale && (n->quantity != 0 || n->unit != 0)};
+        (gonio_i_csv_column){.kind = GONIO_I_DEVIATION,
+                             .index = c->column[value].index,
+                             .wavelength = c->column[value].wavelength,
+                             .scale = !relative ? 0.0
+                                      : percent ? 0.01
+                                                : 1.0,
+                             .linear = n->scale != f->scale && (n->quantity != 0 || n->unit != 0)};
     c->any_deviation = true;
     c->own = c->own && n->own;
     taken[c->column[value].index] = true;

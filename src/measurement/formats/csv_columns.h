@@ -12,6 +12,7 @@ typedef struct gonio_i_csv_column {
     double wavelength; /* of a value or deviation, as in the name; 0: none */
     double scale;      /* of a relative deviation: factor to a fraction of the value; 0: absolute.
                         * Of a time: seconds */
+    bool second;       /* a value that is averaged with that of the channel's first column */
     bool linear;       /* a deviation of the value itself, where the file has its logarithm */
 } gonio_i_csv_column;
 
@@ -27,6 +28,8 @@ typedef struct gonio_i_csv_columns {
     const char *unclear; /* a comment on values that is not understood or not heeded; belongs to the
                           * reader */
     gonio_i_geometry geometry; /* how the columns of angles give the directions */
+    size_t polarised;          /* columns of values of one polarisation; */
+    size_t averaged;           /* of them, those averaged with another */
     bool by_wavelength;        /* a row has one value of one wavelength */
     bool own_angles;           /* named as gonio does */
     bool own;                  /* all are */

@@ -14,6 +14,7 @@ typedef struct gonio_i_csv_finder {
     int quantity;
     int scale;   /* gonio_value_scale of logarithms; 0: linear */
     bool cosine; /* values contain cos theta_o */
+    bool polarised;
 } gonio_i_csv_finder;
 
 /* Errors: _FORMAT, always, with a message that names both columns. */
@@ -32,5 +33,9 @@ const char *gonio_i_csv_comment_of(const gonio_i_csv_finder *f, const char *cons
 /* Finds the columns of angles, and what the comments say of them (csv_angles.c). Errors: _FORMAT.
  */
 gonio_status gonio_i_csv_find_angles(const gonio_i_csv_finder *f);
+
+/* The column before this one that has the same values of the other polarisation; the number of
+ * columns if there is none (csv_polarised.c). */
+size_t gonio_i_csv_other_polarisation(const gonio_i_csv_finder *f, size_t k);
 
 #endif

@@ -66,6 +66,7 @@ typedef struct gonio_i_column_name {
     int quantity;        /* a number for each quantity; 0: none */
     int unit;            /* gonio_angle_unit (or both, above) or gonio_value_kind; 0: not stated */
     int scale;           /* gonio_value_scale of a logarithm; 0: linear */
+    int polarisation;    /* of the light: 1 s, 2 p; 0: not stated */
     bool relative;       /* a deviation divided by its value */
     double seconds;      /* of a unit of time */
 } gonio_i_column_name;

@@ -249,7 +249,8 @@ static void add_old_columns(printer *p, const gonio_i_csv_kept *kept, char *cons
             continue;
         }
         const size_t channel = channel_now(p, old, column);
-        if (channel < p->readings->channels && (!deviation || p->readings->deviation != NULL)) {
+        if (!column->second && channel < p->readings->channels &&
+            (!deviation || p->readings->deviation != NULL)) {
             add_column(p, column->kind, channel);
         }
     }

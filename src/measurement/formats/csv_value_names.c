@@ -24,7 +24,8 @@ enum {
     MICROMETRE = 1 << 10,
     LAMBDA = 1 << 11,
     NUMBER = 1 << 12,
-    FILL = 1 << 13
+    FILL = 1 << 13,
+    POLARISED = 1 << 14
 };
 
 enum { NO_QUANTITY, BRDF, FACTORS, VALUE, RHO, REFLECTANCE, F, COUNTS };
@@ -58,6 +59,23 @@ static const gonio_i_known_word value_words[] = {
     {"costheta", COSINE, 0},
     {"brdfcos", QUANTITY | SURE | COSINE, BRDF},
     {"bsdfcos", QUANTITY | SURE | COSINE, BRDF},
+    {"s", POLARISED, 1},
+    {"spol", POLARISED, 1},
+    {"te", POLARISED, 1},
+    {"perpendicular", POLARISED, 1},
+    {"perp", POLARISED, 1},
+    {"p", POLARISED, 2},
+    {"ppol", POLARISED, 2},
+    {"tm", POLARISED, 2},
+    {"parallel", POLARISED, 2},
+    {"par", POLARISED, 2},
+    {"pol", FILL, 0},
+    {"polarised", FILL, 0},
+    {"polarized", FILL, 0},
+    {"polarisation", FILL, 0},
+    {"polarization", FILL, 0},
+    {"unpolarised", FILL, 0},
+    {"unpolarized", FILL, 0},
     {"deviation", SPREAD, 0},
     {"dev", SPREAD, 0},
     {"stddev", SPREAD, 0},
@@ -304,6 +322,15 @@ static bool is_cielab(const char *text)
     return length > 1 && text[length - 1] == '*';
 }
 
+/* Whether "s" or "p" can be a polarisation: that of a BRDF, and not the second of "counts/s". */
+static bool may_be_polarised(const gonio_i_meaning *s)
+{
+    const int quantity = value_of(s, QUANTITY);
+    const bool channel = (s->bits & (COLOUR | NANOMETRE | MICROMETRE | LAMBDA)) != 0;
+    return (s->bits & (POLARISED | SPREAD)) == POLARISED && quantity != COUNTS && quantity != F &&
+           (quantity != NO_QUANTITY || channel);
+}
+
 bool gonio_i_take_value_name(const char *text, const gonio_i_words *words,
                              gonio_i_column_name *name)
 {
@@ -314,7 +341,8 @@ bool gonio_i_take_value_name(const char *text, const gonio_i_words *words,
     join_f_r(text, &own);
     take_cosine_angle(&own);
     if (is_cielab(text) || !hear_value(&own, &s, &number) ||
-        (s.twice & (COLOUR | NUMBER | SPREAD)) != 0) {
+        (s.twice & (COLOUR | NUMBER | SPREAD | POLARISED)) != 0 ||
+        ((s.bits & POLARISED) != 0 && !may_be_polarised(&s))) {
         return false;
     }
     if (scale == 0 && take_row_wavelength(&s, name)) {
@@ -332,6 +360,7 @@ bool gonio_i_take_value_name(const char *text, const gonio_i_words *words,
     name->relative = (s.bits & RELATIVE) != 0;
     name->unit = unit_of_value(&s);
     name->scale = scale;
+    name->polarisation = value_of(&s, POLARISED);
     name->strength = strength_of(&s, name);
     return true;
 }
