@@ -131,6 +131,24 @@ static void test_tables(void **state)
          {30, 0, 40, 180},
          0.31,
          "'Detector angle"},
+        /* names in two lines */
+        {"Incident,,Reflected,,BRDF,\ntheta,phi,theta,phi,450 nm,550 nm\n"
+         "deg,deg,deg,deg,1/sr,1/sr\n10,0,20,180,0.3,0.4\n",
+         1,
+         {10, 0, 20, 180},
+         0.3,
+         "'Incident theta (deg)'"},
+        {"Lamp 3\nIncident;;Reflected;;;\nZenith [" DEGREE "];Azimuth [" DEGREE "];Zenith [" DEGREE
+         "];Azimuth [" DEGREE "];BRDF [1/sr];u(BRDF) [%]\n10;0;20;180;0,3;1\n",
+         1,
+         {10, 0, 20, 180},
+         0.3,
+         "values 'BRDF [1/sr]'; deviations 'u(BRDF) [%]'"},
+        {"aoi,aos,azimuth,BRDF mean,BRDF std,n\n10,20,170,0.3,0.01,5\n",
+         1,
+         {10, 0, 20, 170},
+         0.3,
+         "values 'BRDF mean'; deviations 'BRDF std'"},
         /* the difference of sines */
         {"theta_i,beta-beta0,BSDF\n30,0.25,12\n30,0.6,1\n",
          1,

@@ -97,6 +97,7 @@ static const gonio_i_known_word angle_words[] = {
     {"beobachtung", OUTGOING, 0},
     {"beobachtungswinkel", OUTGOING | ANY_ANGLE, 0},
     {"streuwinkel", OUTGOING | ANY_ANGLE, 0},
+    {"aos", OUTGOING | ANY_ANGLE, 0},
     {"vza", OUTGOING | POLAR, 0},
     {"vaa", OUTGOING | AZIMUTH, 0},
     {"emission", OUTGOING | ANY_ANGLE, 0},

@@ -49,10 +49,69 @@ static char separator_of_names(gonio_i_line l)
     return '\0';
 }
 
+/* ---- names in two lines ---- */
+
+/* The name of a cell below the cell of a group: "Incident" above "theta". A cell that says all by
+ * itself stands alone. */
+static void join_names(gonio_i_line group, gonio_i_line cell, char name[NAME_ROOM])
+{
+    char joined[NAME_ROOM] = "";
+    snprintf(name, NAME_ROOM, "%.*s", (int)cell.length, cell.at);
+    snprintf(joined, sizeof joined, "%.*s %.*s", (int)group.length, group.at, (int)cell.length,
+             cell.at);
+    if (cell.length > 0 && (gonio_i_column_name_of(joined).kind == GONIO_I_ANGLE ||
+                            gonio_i_column_name_of(name).kind == GONIO_I_OTHER)) {
+        memcpy(name, joined, sizeof joined);
+    }
+}
+
+/* The next name of both lines. A group reaches to the next one. *group: at first a line without
+ * cells. */
+static bool next_joined(gonio_i_line *groups, gonio_i_line *cells, char separator,
+                        gonio_i_line *group, char name[NAME_ROOM])
+{
+    gonio_i_line above = {NULL, 0};
+    gonio_i_line cell;
+    if (!gonio_i_next_cell(cells, separator, &cell)) {
+        return false;
+    }
+    if (gonio_i_next_cell(groups, separator, &above) && above.length > 0) {
+        *group = above;
+    }
+    join_names(*group, cell, name);
+    return true;
+}
+
+/* The separator of names in two lines; 0 if these are none, or the lower line has as many by
+ * itself.
+ */
+static char separator_of_joined(gonio_i_line groups, gonio_i_line cells)
+{
+    static const char separators[] = "\t;,|";
+    for (size_t k = 0; separators[k] != '\0' && groups.at != NULL; k++) {
+        char name[NAME_ROOM];
+        gonio_i_line above = groups;
+        gonio_i_line below = cells;
+        gonio_i_line group = {"", 0};
+        size_t angles = 0;
+        if (gonio_i_count_cells(groups, separators[k]) < LEAST_ANGLES) {
+            continue;
+        }
+        while (next_joined(&above, &below, separators[k], &group, name)) {
+            angles += gonio_i_column_name_of(name).kind == GONIO_I_ANGLE;
+        }
+        if (angles >= LEAST_ANGLES && angles > count_angles(cells, separators[k])) {
+            return separators[k];
+        }
+    }
+    return '\0';
+}
+
 /* ---- where the names are ---- */
 
 typedef struct names {
-    size_t number; /* of the line, from 0 */
+    gonio_i_line group; /* the line above the names that says whose they are; at NULL: none */
+    size_t number;      /* of the line, from 0 */
     const char *mark;
     char separator;
     size_t cells;
@@ -86,12 +145,16 @@ static bool find_names(const char *text, size_t size, names *n)
         return false;
     }
     while (n->number < MOST_LINES && gonio_i_next_line(&at, end, &l)) {
+        const gonio_i_line above = n->group;
         l = without_frame(gonio_i_without_mark(l, &n->mark));
-        n->separator = separator_of_names(l);
+        n->separator = separator_of_joined(above, l);
+        n->group = n->separator != '\0' ? above : (gonio_i_line){NULL, 0};
+        n->separator = n->separator != '\0' ? n->separator : separator_of_names(l);
         if (n->separator != '\0') {
             n->cells = gonio_i_count_cells(l, n->separator);
             return at < end;
         }
+        n->group = l;
         n->number++;
     }
     return false;
@@ -144,6 +207,23 @@ static void print_cells(FILE *stream, gonio_i_line l, char separator)
     fputc('\n', stream);
 }
 
+static void print_names(FILE *stream, gonio_i_line l, const names *n)
+{
+    char name[NAME_ROOM];
+    gonio_i_line above = n->group;
+    gonio_i_line group = {"", 0};
+    const char *between = "";
+    if (n->group.at == NULL) {
+        print_cells(stream, l, n->separator);
+        return;
+    }
+    while (next_joined(&above, &l, n->separator, &group, name)) {
+        fprintf(stream, "%s%s", between, name);
+        between = "\t";
+    }
+    fputc('\n', stream);
+}
+
 /* Rows that do not fit the names are for the reader to refuse, by their line. */
 static void print_row(FILE *stream, gonio_i_line l, const names *n)
 {
@@ -175,7 +255,7 @@ static void print_table(FILE *stream, const char *text, size_t size, const void 
         if (number > n->number) {
             print_row(stream, l, n);
         } else if (number == n->number) {
-            print_cells(stream, without_frame(rest), n->separator);
+            print_names(stream, without_frame(rest), n);
         } else if (rest.length > 0) {
             print_comment(stream, rest);
         } else {

@@ -95,8 +95,9 @@ static double stamp_of(const char *cell)
     int month = 0;
     int day = 0;
     int end = 0;
-    if (sscanf(cell, "%4d-%2d-%2d%n", &year, &month, &day, &end) != 3 || month < 1 || month > 12 ||
-        (cell[end] != 'T' && cell[end] != ' ')) {
+    const bool read = sscanf(cell, "%4d-%2d-%2d%n", &year, &month, &day, &end) == 3 ||
+                      sscanf(cell, "%2d.%2d.%4d%n", &day, &month, &year, &end) == 3;
+    if (!read || year < 1970 || month < 1 || month > 12 || (cell[end] != 'T' && cell[end] != ' ')) {
         return NAN;
     }
     return 86400.0 * days_of(year, month, day) + clock_of(cell + end + 1);

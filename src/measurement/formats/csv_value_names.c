@@ -124,6 +124,10 @@ static const gonio_i_known_word value_words[] = {
     {"corrected", FILL, 0},
     {"linear", FILL, 0},
     {"measured", FILL, 0},
+    {"mean", FILL, 0},
+    {"average", FILL, 0},
+    {"averaged", FILL, 0},
+    {"avg", FILL, 0},
 };
 
 /* Adds up what words say of values. Returns whether every word does. *number: the number in the
