@@ -89,6 +89,7 @@ static void test_tables(void **state)
          {10, 0, 20, 180},
          0.3,
          "1 cell such as 'n/a'"},
+        {NAMES ROW "1,0,2,0,-999\n", 2, {10, 0, 20, 180}, 0.3, "1 cell such as '-999' taken as"},
         /* angles with signs */
         {NAMES "10" DEGREE ",0" DEGREE ",20" DEGREE ",180" DEGREE ",1\n15,0,20,180,0.3\n",
          2,
@@ -181,7 +182,9 @@ static void test_what_is_refused(void **state)
         {NAMES "10' ,0,20,180,0.3\n", "theta_i '10'' is not a finite number"},
         {NAMES "10" DEGREE "5" DEGREE ",0,20,180,0.3\n", "is not a finite number"},
         {"theta_i (rad),phi_i,theta_r,phi_r,BRDF\n1" DEGREE ",0,1,1,0.3\n", "is not a finite"},
-        {NAMES "10,0,20,180,-999\n", "BRDF '-999' is negative"},
+        {NAMES "10,0,20,180,-998\n", "BRDF '-998' is negative"},
+        {"theta_i,phi_i,theta_t,phi_t,BTDF\n10,0,20,180,0.3\n",
+         "no column 'theta_o_deg', but one of transmission; gonio reads reflection"},
         {"theta_i,phi_i,theta_r,phi_r,L*,a*,b*\n10,0,20,180,50,1,2\n", "'L*' is not understood"},
         {"theta_i,|beta-beta0|,BSDF\n5,0.02,12\n", "r.csv:2: |beta - beta0| does not say on which"},
         {"theta_i,abs(beta-beta0),BSDF\n5,0.02,12\n", "give beta-beta0 with its sign"},

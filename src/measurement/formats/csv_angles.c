@@ -22,8 +22,25 @@ static gonio_status choose_angles(const gonio_i_csv_finder *f, size_t chosen[GON
     return GONIO_OK;
 }
 
+static bool has_transmission(const gonio_i_csv_finder *f)
+{
+    bool any = false;
+    for (size_t k = 0; k < f->r->columns; k++) {
+        const char *name = f->r->name[k];
+        any = any || strcasestr(name, "btdf") != NULL || strcasestr(name, "theta_t") != NULL ||
+              strcasestr(name, "transm") != NULL;
+    }
+    return any;
+}
+
 static gonio_status refuse_missing(const gonio_i_csv_finder *f, size_t angle)
 {
+    if (angle == 2 && has_transmission(f)) {
+        return gonio_i_fail(f->r->context, GONIO_ERROR_FORMAT,
+                            "%s: no column 'theta_o_deg', but one of transmission; gonio reads "
+                            "reflection",
+                            f->r->path);
+    }
     return gonio_i_fail(f->r->context, GONIO_ERROR_FORMAT,
                         "%s: no column '%s'; theta_i_deg, phi_i_deg, theta_o_deg and phi_o_deg "
                         "are needed, or no azimuth at all in the plane of incidence",

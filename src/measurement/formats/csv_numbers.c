@@ -83,11 +83,12 @@ bool gonio_i_csv_is_empty(const char *cell)
 bool gonio_i_csv_is_mark(const char *cell)
 {
     static const char *const words[] = {
-        "n/a",     "n.a.",         "null",        "none",      "missing",   "#n/a",  "#na",
-        "#div/0!", "#value!",      "#num!",       "#ref!",     "#null!",    "lod",   "bdl",
-        "<lod>",   "<lod",         "< lod",       "ovrflw",    "overflow",  "ovfl",  "ovrng",
-        "sat",     "sat.",         "over",        "saturated", "overrange", "undef", "*",
-        "?",       "\xe2\x80\x93", "\xe2\x80\x94"};
+        "-999",      "-999.0",  "-9999", "-9999.0", "-99999",       "n/a",
+        "n.a.",      "null",    "none",  "missing", "#n/a",         "#na",
+        "#div/0!",   "#value!", "#num!", "#ref!",   "#null!",       "lod",
+        "bdl",       "<lod>",   "<lod",  "< lod",   "ovrflw",       "overflow",
+        "ovfl",      "ovrng",   "sat",   "sat.",    "over",         "saturated",
+        "overrange", "undef",   "*",     "?",       "\xe2\x80\x93", "\xe2\x80\x94"};
     const size_t dashes = strspn(cell, "-");
     return (dashes > 0 && cell[dashes] == '\0') ||
            is_one_of(cell, words, sizeof words / sizeof *words);

@@ -12,7 +12,7 @@ bool gonio_i_csv_is_angle(const char *cell, char delimiter, double *degrees);
 bool gonio_i_csv_is_empty(const char *cell);
 
 /* Whether a cell has another mark in place of a value that was not read or is out of the
- * instrument's range: ---, n/a, #N/A, <LOD>, OVRFLW. */
+ * instrument's range: ---, n/a, #N/A, -999, <LOD>, OVRFLW. */
 bool gonio_i_csv_is_mark(const char *cell);
 
 #endif
