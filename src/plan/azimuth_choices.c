@@ -29,7 +29,8 @@ static const double LEFT = 1e-4;
 /* Pairs nearer than this, radians, are the same. */
 static const double SAME = 1e-3;
 
-enum { MOST_RANK = 500, MOST_COMPONENTS = 150, MOST_STRETCHES = 24, RATIOS = 3, ROTATIONS = 4 };
+enum { MOST_RANK = 500, MOST_COMPONENTS = 150, RATIOS = 3, ROTATIONS = 4 };
+enum { MOST_STRETCHES = 1 + RATIOS * ROTATIONS + GONIO_I_MOST_HYPOTHESES };
 
 /* Before readings: ratios of axes, each with the azimuths of the grain alike, and how much of the
  * covariance is that of isotropic lobes. */
@@ -135,8 +136,9 @@ static void list_pairs(maker *m, const gonio_plan_options *options, size_t choic
 static void fill_row(maker *m, size_t row, double *f)
 {
     const gonio_i_choices *p = m->p;
+    const gonio_i_stretch turning = {.symmetry = SYMMETRY};
     m->seen[row] = gonio_i_place_of(p->at[row]);
-    m->azimuth[row] = gonio_i_azimuth_of(SYMMETRY, m->place[row]);
+    m->azimuth[row] = gonio_i_azimuth_of(&turning, m->place[row]);
     for (size_t s = 0; s < m->stretches; s++) {
         const double root = sqrt(m->stretch[s].weight);
         double mean = 0.0;

@@ -206,7 +206,7 @@ static gonio_status create_azimuths(gonio_i_anisotropic *a, gonio_i_part *p, siz
     for (size_t i = 0; made != NULL && i < column->count; i++) {
         const gonio_i_oriented here =
             gonio_i_oriented_of(a->given->pair[column->observation[i].reading]);
-        made[i] = gonio_i_azimuth_of(p->hypothesis.stretch.symmetry, here);
+        made[i] = gonio_i_azimuth_of(&p->hypothesis.stretch, here);
     }
     p->azimuth[c] = made;
     return made != NULL ? GONIO_OK : GONIO_ERROR_MEMORY;
@@ -437,7 +437,7 @@ static void add_part(const gonio_i_anisotropic *a, const gonio_i_part *p, gonio_
     const double weight = p->hypothesis.weight;
     const gonio_half_difference there = gonio_i_stretch_apply(stretch, here);
     v->place = gonio_i_place_of(there);
-    v->azimuth = gonio_i_azimuth_of(stretch->symmetry, here);
+    v->azimuth = gonio_i_azimuth_of(stretch, here);
     gonio_i_prior_at(a->prior, there, 0, &v->mean, v->f);
     for (size_t c = 0; c < a->columns; c++) {
         const gonio_i_solution *s = &p->solution[c];

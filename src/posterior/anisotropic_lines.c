@@ -64,7 +64,7 @@ static void place_node(const gonio_i_anisotropic_lines *l, const group *g, size_
     const gonio_half_difference centre = gonio_bin_centre((gonio_bin){(int32_t)theta, 0, 0});
     const gonio_i_oriented here = {centre, l->period * (double)node / (double)l->nodes};
     const gonio_half_difference there = gonio_i_stretch_apply(stretch, here);
-    const gonio_i_azimuth_point azimuth = gonio_i_azimuth_of(stretch->symmetry, here);
+    const gonio_i_azimuth_point azimuth = gonio_i_azimuth_of(stretch, here);
     const double bins = THETAS * sqrt(there.theta_h / (0.5 * M_PI)) - 0.5;
     g->position[at] = fmin(fmax(bins, 0.0), THETAS - 1);
     for (size_t i = 0; i < g->sites->n; i++) {

@@ -20,7 +20,7 @@ gonio_status gonio_i_stretches_notice(gonio_context *context,
     gonio_i_trial *trials = gonio_i_allocate(context, GONIO_I_MOST_TRIALS, sizeof *trials);
     status = trials == NULL ? GONIO_ERROR_MEMORY : status;
     if (status == GONIO_OK) {
-        size_t count = gonio_i_trials_grid(&s, trials);
+        size_t count = gonio_i_trials_grid(&s, false, trials);
         for (size_t k = 1; k < GONIO_I_TRIAL_SHARES; k++) {
             const gonio_i_stretch stretch = {.share = gonio_i_trial_shares[k], .symmetry = 2};
             trials[count++] =
@@ -130,7 +130,7 @@ static const double SEEN = 0.15;
 
 bool gonio_i_azimuths_are_same(const gonio_i_oriented_columns *columns)
 {
-    const int symmetry = columns->symmetry > 0 ? columns->symmetry : 2;
+    const gonio_i_stretch round = {.symmetry = columns->symmetry > 0 ? columns->symmetry : 2};
     bool same = true;
     for (size_t c = 0; c < columns->count; c++) {
         const gonio_i_column *column = &columns->column[c];
@@ -145,9 +145,9 @@ bool gonio_i_azimuths_are_same(const gonio_i_oriented_columns *columns)
         for (size_t i = 0; i < column->count && same; i++) {
             const gonio_i_oriented here =
                 gonio_i_oriented_of(columns->pair[column->observation[i].reading]);
-            const gonio_i_azimuth_point a = gonio_i_azimuth_of(symmetry, here);
+            const gonio_i_azimuth_point a = gonio_i_azimuth_of(&round, here);
             const gonio_i_azimuth_point b =
-                gonio_i_azimuth_of(symmetry, (gonio_i_oriented){here.at, phi_h});
+                gonio_i_azimuth_of(&round, (gonio_i_oriented){here.at, phi_h});
             same = hypot(a.x - b.x, a.y - b.y) < SEEN;
         }
     }
@@ -156,7 +156,7 @@ bool gonio_i_azimuths_are_same(const gonio_i_oriented_columns *columns)
 
 /* ---- ratios ---- */
 
-/* The mean over the azimuths of the grain of the weights of each ratio. */
+/* The mean over the azimuths of the grain of the weights of each ratio, were ratios alike. */
 static void average_rotations(const gonio_i_trial *trials, size_t count,
                               const gonio_i_trial *isotropic, double *odds)
 {
@@ -166,11 +166,14 @@ static void average_rotations(const gonio_i_trial *trials, size_t count,
         for (size_t p = 0; p < GONIO_I_ROTATIONS; p++) {
             most = fmax(most, gonio_i_trial_weight(&trials[r * GONIO_I_ROTATIONS + p]));
         }
+        const double prior =
+            gonio_i_log_ratio_prior(trials[r * GONIO_I_ROTATIONS].stretch.log_ratio);
         for (size_t p = 0; p < GONIO_I_ROTATIONS; p++) {
             sum += exp(gonio_i_trial_weight(&trials[r * GONIO_I_ROTATIONS + p]) - most) /
                    GONIO_I_ROTATIONS;
         }
-        odds[r] = most + log(sum) - (gonio_i_trial_weight(isotropic) - gonio_i_for_isotropic);
+        odds[r] =
+            most - prior + log(sum) - (gonio_i_trial_weight(isotropic) - gonio_i_for_isotropic);
     }
 }
 
@@ -185,9 +188,10 @@ gonio_status gonio_i_stretches_compare_ratios(gonio_context *context,
         gonio_i_allocate(context, count * GONIO_I_ROTATIONS + 1, sizeof *trials);
     status = trials == NULL ? GONIO_ERROR_MEMORY : status;
     for (size_t k = 0; k < count * GONIO_I_ROTATIONS && status == GONIO_OK; k++) {
-        const gonio_i_stretch stretch = {log_ratios[k / GONIO_I_ROTATIONS],
-                                         M_PI * (double)(k % GONIO_I_ROTATIONS) / GONIO_I_ROTATIONS,
-                                         0.0, gonio_i_search_symmetry(&s)};
+        const gonio_i_stretch stretch = {.log_ratio = log_ratios[k / GONIO_I_ROTATIONS],
+                                         .rotation = M_PI * (double)(k % GONIO_I_ROTATIONS) /
+                                                     GONIO_I_ROTATIONS,
+                                         .symmetry = gonio_i_search_symmetry(&s)};
         trials[k] = gonio_i_trial_of(stretch, gonio_i_trial_models, GONIO_I_TRIAL_MODELS);
     }
     if (status == GONIO_OK) {

@@ -124,9 +124,15 @@ static double log_prior(const gonio_i_model *model)
            (model->h < 1.0 ? 0.0 : FOR_PLAIN);
 }
 
+double gonio_i_log_ratio_prior(double log_ratio)
+{
+    return log_ratio > 0.0 ? log(log_ratio) + 0.5 * (1.0 - log_ratio * log_ratio) : 0.0;
+}
+
 double gonio_i_trial_model_weight(const gonio_i_trial *t, size_t m)
 {
     return gonio_i_score_share * t->score[m] + log_prior(&t->model[m]) +
+           gonio_i_log_ratio_prior(t->stretch.log_ratio) +
            (gonio_i_stretch_is_isotropic(&t->stretch) ? gonio_i_for_isotropic : 0.0);
 }
 
@@ -158,13 +164,18 @@ int gonio_i_search_symmetry(const gonio_i_search *s)
     return s->symmetry > 0 && s->symmetry < 2 ? s->symmetry : 2;
 }
 
-size_t gonio_i_trials_grid(const gonio_i_search *s, gonio_i_trial *trials)
+size_t gonio_i_trials_grid(const gonio_i_search *s, bool mirrored, gonio_i_trial *trials)
 {
+    const int symmetry = gonio_i_search_symmetry(s);
+    const size_t ratios = s->symmetry == 4 || (mirrored && symmetry != 2) ? 0 : RATIOS;
     size_t count = 0;
-    for (size_t r = 0; r < RATIOS && s->symmetry != 4; r++) {
+    for (size_t r = 0; r < ratios; r++) {
         for (size_t p = 0; p < GONIO_I_ROTATIONS; p++) {
-            const gonio_i_stretch stretch = {LOG_RATIOS[r], M_PI * (double)p / GONIO_I_ROTATIONS,
-                                             SEARCHED_SHARE, gonio_i_search_symmetry(s)};
+            const gonio_i_stretch stretch = {.log_ratio = LOG_RATIOS[r],
+                                             .rotation = M_PI * (double)p / GONIO_I_ROTATIONS,
+                                             .share = SEARCHED_SHARE,
+                                             .symmetry = symmetry,
+                                             .mirrored = mirrored};
             trials[count++] =
                 gonio_i_trial_of(stretch, gonio_i_searched_models, GONIO_I_SEARCHED_MODELS);
         }

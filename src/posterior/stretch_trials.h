@@ -61,12 +61,17 @@ int gonio_i_search_symmetry(const gonio_i_search *s);
 
 gonio_i_trial gonio_i_trial_of(gonio_i_stretch stretch, const gonio_i_model *models, size_t count);
 
-/* trials[GONIO_I_MOST_TRIALS]: the grid of ratios and azimuths. A quarter turn's symmetry has none.
- * Returns how many. */
-size_t gonio_i_trials_grid(const gonio_i_search *s, gonio_i_trial *trials);
+/* trials[GONIO_I_MOST_TRIALS]: the grid of ratios and azimuths. A quarter turn's symmetry has none,
+ * nor has a mirrored one without that of half a turn. Returns how many. */
+size_t gonio_i_trials_grid(const gonio_i_search *s, bool mirrored, gonio_i_trial *trials);
 
 /* Finds the scores of trials. Errors: _MEMORY, _NUMERICAL, _CANCELLED. */
 gonio_status gonio_i_trials_score(gonio_i_search *s, gonio_i_trial *trials, size_t count);
+
+/* The log prior of ln r: that of a Gaussian of deviation 1 in the plane of ln r (cos 2 psi, sin 2
+ * psi), whose azimuths are alike. 0 at its largest, which is ln r = 1, and at 0, where there is no
+ * stretch. */
+double gonio_i_log_ratio_prior(double log_ratio);
 
 /* The logarithm of a model's weight, the model of the largest, and that weight. */
 double gonio_i_trial_model_weight(const gonio_i_trial *t, size_t m);

@@ -40,7 +40,7 @@ gonio_status gonio_i_stretched_sites_create(gonio_context *context, const gonio_
         const gonio_i_oriented here = gonio_i_oriented_of(pair[column->observation[i].reading]);
         there.observation[i] = column->observation[i];
         there.observation[i].at = gonio_i_stretch_apply(stretch, here);
-        azimuth[i] = gonio_i_azimuth_of(stretch->symmetry, here);
+        azimuth[i] = gonio_i_azimuth_of(stretch, here);
     }
     const gonio_status status =
         done ? gonio_i_sites_create(context, prior, &there, sites) : GONIO_ERROR_MEMORY;

@@ -4,14 +4,17 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "stretch_trials.h"
+#include "stretch_spread.h"
 
 enum {
-    NEIGHBOURS = 6, /* stretches beside the best that are weighed too */
-    BEST_MIXED = 3, /* models that are tried as mixtures too */
+    BEST_MIXED = 3, /* models that are tried as mixtures too, mirrored ones and others each */
     REFINEMENTS = 7,
-    MOST_POOL = 256,
+    STARTS = 2, /* of either kind, that are refined */
+    MOST_POOL = 320,
 };
+
+/* Azimuths of starts are farther apart, radians: more than a step of the grid. */
+static const double APART = 1.5 * M_PI / GONIO_I_ROTATIONS;
 
 /* Hypotheses of less weight are left out. */
 static const double NEGLIGIBLE = 0.02;
@@ -24,11 +27,19 @@ typedef struct pool {
     size_t count;
 } pool;
 
+/* Whether it is the same mirrored or not, as nothing of it depends on the azimuth. */
+static bool is_twin(const gonio_i_stretch *stretch, const gonio_i_model *model)
+{
+    return stretch->mirrored && stretch->share == 0.0 && model->alpha == 0.0;
+}
+
 static void add_to_pool(pool *p, const gonio_i_trial *t)
 {
     for (size_t m = 0; m < t->count && p->count < MOST_POOL; m++) {
-        p->hypothesis[p->count++] =
-            (gonio_i_hypothesis){t->stretch, t->model[m], gonio_i_trial_model_weight(t, m)};
+        if (!is_twin(&t->stretch, &t->model[m])) {
+            p->hypothesis[p->count++] =
+                (gonio_i_hypothesis){t->stretch, t->model[m], gonio_i_trial_model_weight(t, m)};
+        }
     }
 }
 
@@ -58,21 +69,6 @@ static void sort_pool(pool *p)
 
 /* ---- rounds of the search ---- */
 
-static double wrapped(double rotation)
-{
-    const double folded = fmod(rotation, M_PI);
-    return folded < 0.0 ? folded + M_PI : folded;
-}
-
-/* A step in the ratio or in the azimuth; the ratio of the axes stays at least 1. */
-static gonio_i_stretch moved(gonio_i_stretch from, double ratio, double rotation)
-{
-    gonio_i_stretch to = from;
-    to.log_ratio = fabs(from.log_ratio + ratio);
-    to.rotation = wrapped(from.rotation + rotation);
-    return to;
-}
-
 /* Steps around the best trial, which become smaller where none is better. */
 static gonio_status refine(gonio_i_search *s, gonio_i_trial *best)
 {
@@ -82,10 +78,10 @@ static gonio_status refine(gonio_i_search *s, gonio_i_trial *best)
     for (int k = 0; k < REFINEMENTS && status == GONIO_OK; k++) {
         const gonio_i_model model = best->model[gonio_i_trial_best(best)];
         gonio_i_trial around[] = {
-            gonio_i_trial_of(moved(best->stretch, ratio, 0.0), &model, 1),
-            gonio_i_trial_of(moved(best->stretch, -ratio, 0.0), &model, 1),
-            gonio_i_trial_of(moved(best->stretch, 0.0, rotation), &model, 1),
-            gonio_i_trial_of(moved(best->stretch, 0.0, -rotation), &model, 1)};
+            gonio_i_trial_of(gonio_i_stretch_moved(best->stretch, ratio, 0.0), &model, 1),
+            gonio_i_trial_of(gonio_i_stretch_moved(best->stretch, -ratio, 0.0), &model, 1),
+            gonio_i_trial_of(gonio_i_stretch_moved(best->stretch, 0.0, rotation), &model, 1),
+            gonio_i_trial_of(gonio_i_stretch_moved(best->stretch, 0.0, -rotation), &model, 1)};
         const size_t count = sizeof around / sizeof *around;
         const double before = gonio_i_trial_weight(best);
         status = gonio_i_trials_score(s, around, count);
@@ -101,43 +97,46 @@ static gonio_status refine(gonio_i_search *s, gonio_i_trial *best)
     return status;
 }
 
-/* The stretches that are weighed with every model: the best of the grid with every share, none, and
- * none with a covariance of every symmetry. */
-static size_t list_candidates(const gonio_i_search *s, const gonio_i_trial *best,
+static size_t list_shares(gonio_i_stretch stretch, size_t first, gonio_i_trial *trials)
+{
+    for (size_t k = first; k < GONIO_I_TRIAL_SHARES; k++) {
+        stretch.share = gonio_i_trial_shares[k];
+        *trials++ = gonio_i_trial_of(stretch, gonio_i_trial_models, GONIO_I_TRIAL_MODELS);
+    }
+    return GONIO_I_TRIAL_SHARES - first;
+}
+
+/* The stretches that are weighed with every model: those found with every share, none, and none
+ * with a covariance of every symmetry. */
+static size_t list_candidates(const gonio_i_search *s, const gonio_i_trial *found, size_t count,
                               gonio_i_trial *trials)
 {
     static const int symmetries[] = {2, 4, 1};
-    size_t count = 0;
-    trials[count++] =
-        gonio_i_trial_of((gonio_i_stretch){0}, gonio_i_trial_models, GONIO_I_TRIAL_MODELS);
-    for (size_t k = 0; k < GONIO_I_TRIAL_SHARES && best != NULL; k++) {
-        gonio_i_stretch stretch = best->stretch;
-        stretch.share = gonio_i_trial_shares[k];
-        trials[count++] = gonio_i_trial_of(stretch, gonio_i_trial_models, GONIO_I_TRIAL_MODELS);
+    size_t listed = 1;
+    trials[0] = gonio_i_trial_of((gonio_i_stretch){0}, gonio_i_trial_models, GONIO_I_TRIAL_MODELS);
+    for (size_t k = 0; k < count; k++) {
+        listed += list_shares(found[k].stretch, 0, trials + listed);
     }
     for (size_t n = 0; n < sizeof symmetries / sizeof *symmetries; n++) {
-        for (size_t k = 1; k < GONIO_I_TRIAL_SHARES; k++) {
-            const gonio_i_stretch stretch = {0.0, 0.0, gonio_i_trial_shares[k], symmetries[n]};
-            if (s->symmetry == 0 || s->symmetry == symmetries[n]) {
-                trials[count++] =
-                    gonio_i_trial_of(stretch, gonio_i_trial_models, GONIO_I_TRIAL_MODELS);
-            }
+        if (s->symmetry == 0 || s->symmetry == symmetries[n]) {
+            const gonio_i_stretch stretch = {.symmetry = symmetries[n]};
+            listed += list_shares(stretch, 1, trials + listed);
         }
     }
-    return count;
+    return listed;
 }
 
-/* Mixtures of the best hypotheses so far, and of every isotropic one. */
+/* Mixtures of the best hypotheses of either kind so far, and of every isotropic one. */
 static gonio_status mix(pool *p)
 {
     gonio_i_trial trials[GONIO_I_MOST_TRIALS];
     size_t count = 0;
-    size_t anisotropic = 0;
+    size_t anisotropic[2] = {0, 0}; /* others, mirrored */
     sort_pool(p);
     for (size_t k = 0; k < p->count; k++) {
         const gonio_i_hypothesis *h = &p->hypothesis[k];
         const bool isotropic = gonio_i_stretch_is_isotropic(&h->stretch);
-        if (isotropic || anisotropic++ < BEST_MIXED) {
+        if (isotropic || anisotropic[h->stretch.mirrored]++ < BEST_MIXED) {
             const gonio_i_model model = {p->search.h, h->model.alpha, h->model.peak, 0.0};
             trials[count++] = gonio_i_trial_of(h->stretch, &model, 1);
         }
@@ -150,72 +149,7 @@ static gonio_status mix(pool *p)
     return status;
 }
 
-static int compare_trials(const void *a, const void *b)
-{
-    const double x = gonio_i_trial_weight(a);
-    const double y = gonio_i_trial_weight(b);
-    return (x < y) - (x > y);
-}
-
-/* Stretches of the grid beside the best, under its share and model, so that what a few readings
- * leave open of the ratio and the azimuth counts. */
-static gonio_status add_neighbours(pool *p, gonio_i_trial *grid, size_t count)
-{
-    const gonio_i_hypothesis *best = p->hypothesis;
-    if (count == 0 || best->stretch.log_ratio == 0.0) {
-        return GONIO_OK;
-    }
-    gonio_i_trial trials[NEIGHBOURS];
-    qsort(grid, count, sizeof *grid, compare_trials);
-    for (size_t k = 0; k < NEIGHBOURS; k++) {
-        gonio_i_stretch stretch = grid[k].stretch;
-        stretch.share = best->stretch.share;
-        trials[k] = gonio_i_trial_of(stretch, &best->model, 1);
-    }
-    const gonio_status status = gonio_i_trials_score(&p->search, trials, NEIGHBOURS);
-    for (size_t k = 0; k < NEIGHBOURS && status == GONIO_OK; k++) {
-        add_to_pool(p, &trials[k]);
-    }
-    sort_pool(p);
-    return status;
-}
-
-static gonio_status fill_pool(pool *p)
-{
-    gonio_i_trial *grid =
-        gonio_i_allocate(p->search.context, 2 * (size_t)GONIO_I_MOST_TRIALS, sizeof *grid);
-    if (grid == NULL) {
-        return GONIO_ERROR_MEMORY;
-    }
-    gonio_i_trial *trials = grid + GONIO_I_MOST_TRIALS;
-    const size_t count = gonio_i_trials_grid(&p->search, grid);
-    gonio_i_trial best = {0};
-    gonio_status status = gonio_i_trials_score(&p->search, grid, count);
-    for (size_t k = 0; k < count && status == GONIO_OK; k++) {
-        best =
-            k == 0 || gonio_i_trial_weight(&grid[k]) > gonio_i_trial_weight(&best) ? grid[k] : best;
-    }
-    if (status == GONIO_OK && count > 0) {
-        status = refine(&p->search, &best);
-    }
-    const size_t candidates = list_candidates(&p->search, count > 0 ? &best : NULL, trials);
-    if (status == GONIO_OK) {
-        status = gonio_i_trials_score(&p->search, trials, candidates);
-    }
-    for (size_t k = 0; k < candidates && status == GONIO_OK; k++) {
-        add_to_pool(p, &trials[k]);
-    }
-    if (status == GONIO_OK) {
-        status = mix(p);
-    }
-    if (status == GONIO_OK) {
-        status = add_neighbours(p, grid, count);
-    }
-    free(grid);
-    return status;
-}
-
-/* ---- results ---- */
+/* ---- odds ---- */
 
 static void find_odds(const pool *p, gonio_i_stretches *found)
 {
@@ -231,12 +165,144 @@ static void find_odds(const pool *p, gonio_i_stretches *found)
     found->odds = best[0] - best[1];
 }
 
+/* ---- what is left open of a stretch ---- */
+
+static bool is_same_grain(const gonio_i_stretch *a, const gonio_i_stretch *b)
+{
+    return a->log_ratio == b->log_ratio && a->rotation == b->rotation && a->mirrored == b->mirrored;
+}
+
+/* Takes a hypothesis and all others of its ratio and azimuth out; *taken is the likeliest of them
+ * with the weight of all. */
+static void take_out(pool *p, size_t first, gonio_i_hypothesis *taken)
+{
+    double sum = 0.0;
+    size_t kept = 0;
+    *taken = p->hypothesis[first];
+    for (size_t k = 0; k < p->count; k++) {
+        const gonio_i_hypothesis h = p->hypothesis[k];
+        if (is_same_grain(&h.stretch, &taken->stretch)) {
+            sum += exp(h.weight - taken->weight);
+        } else {
+            p->hypothesis[kept++] = h;
+        }
+    }
+    p->count = kept;
+    taken->weight += log(sum);
+}
+
+/* The likeliest hypothesis of a stretch, mirrored or not. */
+static size_t find_grain(const pool *p, bool mirrored)
+{
+    size_t k = 0;
+    while (k < p->count && (p->hypothesis[k].stretch.mirrored != mirrored ||
+                            p->hypothesis[k].stretch.log_ratio == 0.0)) {
+        k++;
+    }
+    return k;
+}
+
+static gonio_status spread(pool *p, bool mirrored)
+{
+    gonio_i_hypothesis taken;
+    const size_t first = find_grain(p, mirrored);
+    const double least = p->hypothesis[0].weight + log(NEGLIGIBLE);
+    if (first == p->count || p->hypothesis[first].weight < least) {
+        return GONIO_OK;
+    }
+    take_out(p, first, &taken);
+    const gonio_status status =
+        gonio_i_stretch_spread(&p->search, &taken, p->hypothesis + p->count);
+    p->count += status == GONIO_OK ? GONIO_I_SPREAD : 0;
+    sort_pool(p);
+    return status;
+}
+
+/* ---- all of it ---- */
+
+/* The best of a grid whose azimuth is far from those of found[count]; NULL: there is none. */
+static const gonio_i_trial *best_apart(const gonio_i_trial *grid, size_t size,
+                                       const gonio_i_trial *found, size_t count)
+{
+    const gonio_i_trial *best = NULL;
+    for (size_t k = 0; k < size; k++) {
+        const double rotation = grid[k].stretch.rotation;
+        bool apart = true;
+        for (size_t j = 0; j < count; j++) {
+            apart = apart && fabs(remainder(rotation - found[j].stretch.rotation, M_PI)) > APART;
+        }
+        if (apart &&
+            (best == NULL || gonio_i_trial_weight(&grid[k]) > gonio_i_trial_weight(best))) {
+            best = &grid[k];
+        }
+    }
+    return best;
+}
+
+/* The best of the grid at azimuths apart, refined, to found[STARTS]. grid[GONIO_I_MOST_TRIALS]:
+ * scratch. Adds to *count. */
+static gonio_status search_grid(gonio_i_search *s, bool mirrored, gonio_i_trial *grid,
+                                gonio_i_trial *found, size_t *count)
+{
+    const size_t size = gonio_i_trials_grid(s, mirrored, grid);
+    gonio_status status = gonio_i_trials_score(s, grid, size);
+    size_t starts = 0;
+    while (starts < STARTS && status == GONIO_OK) {
+        const gonio_i_trial *best = best_apart(grid, size, found, starts);
+        if (best == NULL) {
+            break;
+        }
+        found[starts++] = *best;
+    }
+    for (size_t k = 0; k < starts && status == GONIO_OK; k++) {
+        status = refine(s, &found[k]);
+    }
+    *count += starts;
+    return status;
+}
+
+/* Searches the grid with and without a plane of symmetry, and weighs what is best.
+ * trials[GONIO_I_MOST_TRIALS]: scratch. */
+static gonio_status fill_from(pool *p, gonio_i_trial *trials)
+{
+    gonio_i_search *s = &p->search;
+    gonio_i_trial found[2 * STARTS];
+    size_t count = 0;
+    gonio_status status = search_grid(s, false, trials, found, &count);
+    if (status == GONIO_OK) {
+        status = search_grid(s, true, trials, found + count, &count);
+    }
+    const size_t listed = list_candidates(s, found, count, trials);
+    if (status == GONIO_OK) {
+        status = gonio_i_trials_score(s, trials, listed);
+    }
+    for (size_t k = 0; k < listed && status == GONIO_OK; k++) {
+        add_to_pool(p, &trials[k]);
+    }
+    return status == GONIO_OK ? mix(p) : status;
+}
+
+static gonio_status fill_pool(pool *p)
+{
+    gonio_i_trial *trials =
+        gonio_i_allocate(p->search.context, GONIO_I_MOST_TRIALS, sizeof *trials);
+    const gonio_status status = trials == NULL ? GONIO_ERROR_MEMORY : fill_from(p, trials);
+    free(trials);
+    return status;
+}
+
+static gonio_status spread_all(pool *p)
+{
+    const gonio_status status = spread(p, false);
+    return status == GONIO_OK ? spread(p, true) : status;
+}
+
+/* ---- results ---- */
+
 /* The pool is sorted. */
 static void hand_out(const pool *p, gonio_i_stretches *found)
 {
     double sum = 0.0;
-    *found = (gonio_i_stretches){0};
-    find_odds(p, found);
     for (size_t k = 0; k < p->count && k < GONIO_I_MOST_HYPOTHESES; k++) {
         const double weight = exp(p->hypothesis[k].weight - p->hypothesis[0].weight);
         if (weight > NEGLIGIBLE) {
@@ -262,6 +328,11 @@ gonio_status gonio_i_stretches_weigh(gonio_context *context,
     }
     if (status == GONIO_OK) {
         status = fill_pool(&p);
+    }
+    if (status == GONIO_OK) {
+        *stretches = (gonio_i_stretches){0};
+        find_odds(&p, stretches);
+        status = spread_all(&p);
     }
     if (status == GONIO_OK) {
         hand_out(&p, stretches);

@@ -3,8 +3,9 @@
  * The ratio of the axes, the azimuth of the grain, the share of the covariance that depends on the
  * azimuth, and alpha, peak and h of the model (fit.h) are weighed together by leave-one-out
  * prediction, as isotropic models are (models.h). Isotropic models are among them and are the
- * likelier ones before any reading. A coarse grid of ratios and azimuths is refined about its best.
- */
+ * likelier ones before any reading. A coarse grid of ratios and azimuths is refined about its best,
+ * once with the grain a plane of symmetry and once without. What readings leave open of the best is
+ * kept by stretches around it, which share its weight (stretch_spread.h). */
 #ifndef GONIO_STRETCHES_H
 #define GONIO_STRETCHES_H
 
@@ -26,8 +27,6 @@ typedef struct gonio_i_oriented_columns {
     size_t count;
     int symmetry; /* stated: 1, 2 or 4; 0: found */
 } gonio_i_oriented_columns;
-
-enum { GONIO_I_MOST_HYPOTHESES = 8 };
 
 typedef struct gonio_i_stretches {
     size_t count;

@@ -76,10 +76,22 @@ gonio_half_difference gonio_i_stretch_apply(const gonio_i_stretch *stretch, goni
     return there;
 }
 
-gonio_i_azimuth_point gonio_i_azimuth_of(int symmetry, gonio_i_oriented here)
+/* Where the half vector's azimuth is taken to, from that of the grain. */
+static double azimuth_from_grain(const gonio_i_stretch *stretch, double phi_h)
 {
-    const double t = symmetry > 0 ? sqrt(fmax(sin(here.at.theta_h), 0.0)) / LENGTH : 0.0;
-    return (gonio_i_azimuth_point){t * cos(symmetry * here.phi_h), t * sin(symmetry * here.phi_h)};
+    const double root = exp(0.5 * stretch->log_ratio);
+    const double phi = phi_h - stretch->rotation;
+    return atan2(sin(phi) / root, cos(phi) * root);
+}
+
+gonio_i_azimuth_point gonio_i_azimuth_of(const gonio_i_stretch *stretch, gonio_i_oriented here)
+{
+    const int n = stretch->symmetry;
+    const double theta = gonio_i_stretch_apply(stretch, here).theta_h;
+    const double t = n > 0 ? sqrt(fmax(sin(theta), 0.0)) / LENGTH : 0.0;
+    const double phi = n * azimuth_from_grain(stretch, here.phi_h);
+    const double y = t * sin(phi);
+    return (gonio_i_azimuth_point){t * cos(phi), stretch->mirrored ? fabs(y) : y};
 }
 
 double gonio_i_azimuth_kernel(gonio_i_azimuth_point a, gonio_i_azimuth_point b)

@@ -14,10 +14,15 @@
  * isotropic prior are multiplied by
  *
  *     1 - share + share kappa,   kappa = exp(-|q - q'|^2/2),
- *     q = t (cos n phi_h, sin n phi_h),   t = (sin theta_h)^(1/2) / LENGTH,
+ *     q = t (cos n phi_h', sin n phi_h'),   t = (sin theta_h')^(1/2) / LENGTH,
  *
- * those of the remainder by kappa. n is the symmetry: the number of turns of the sample that change
- * nothing. t becomes 0 towards the mirror direction, where the half vector has no azimuth. */
+ * those of the remainder by kappa. phi_h' is the azimuth of the stretched half vector, counted from
+ * the grain: tan phi_h' = tan (phi_h - psi) / r. n is the symmetry: the number of turns of the
+ * sample that change nothing. t becomes 0 towards the mirror direction, where the half vector has
+ * no azimuth.
+ *
+ * A mirrored stretch has the grain for a plane of symmetry: half vectors to either side of it are
+ * alike, with |sin n phi_h'| in q. */
 #ifndef GONIO_STRETCH_H
 #define GONIO_STRETCH_H
 
@@ -43,7 +48,11 @@ typedef struct gonio_i_stretch {
     double rotation;  /* psi, radians */
     double share;     /* of the isotropic covariance that depends on phi_h; 0 .. 1 */
     int symmetry;     /* n: 1, 2 or 4; 0: kappa is 1, with share 0 the isotropic prior */
+    bool mirrored;    /* psi is the azimuth of a plane of symmetry: |sin| in q */
 } gonio_i_stretch;
+
+/* Stretches that readings leave open, at most. */
+enum { GONIO_I_MOST_HYPOTHESES = 12 };
 
 bool gonio_i_stretch_is_isotropic(const gonio_i_stretch *stretch);
 
@@ -56,7 +65,7 @@ typedef struct gonio_i_azimuth_point {
     double y;
 } gonio_i_azimuth_point;
 
-gonio_i_azimuth_point gonio_i_azimuth_of(int symmetry, gonio_i_oriented here);
+gonio_i_azimuth_point gonio_i_azimuth_of(const gonio_i_stretch *stretch, gonio_i_oriented here);
 
 /* kappa. */
 double gonio_i_azimuth_kernel(gonio_i_azimuth_point a, gonio_i_azimuth_point b);

@@ -86,15 +86,57 @@ static void test_azimuths_follow_the_symmetry(void **state)
     static const int symmetry[] = {1, 2, 4};
     for (int k = 0; k < 3; k++) {
         const double turn = 2.0 * M_PI / symmetry[k];
-        const gonio_i_azimuth_point a = gonio_i_azimuth_of(symmetry[k], at(0.6, 0.3));
-        const gonio_i_azimuth_point b = gonio_i_azimuth_of(symmetry[k], at(0.6, 0.3 + turn));
-        const gonio_i_azimuth_point c = gonio_i_azimuth_of(symmetry[k], at(0.6, 0.3 + 0.5 * turn));
+        const gonio_i_stretch stretch = {.symmetry = symmetry[k]};
+        const gonio_i_azimuth_point a = gonio_i_azimuth_of(&stretch, at(0.6, 0.3));
+        const gonio_i_azimuth_point b = gonio_i_azimuth_of(&stretch, at(0.6, 0.3 + turn));
+        const gonio_i_azimuth_point c = gonio_i_azimuth_of(&stretch, at(0.6, 0.3 + 0.5 * turn));
         assert_close(gonio_i_azimuth_kernel(a, b), 1.0, 1e-12);
         assert_true(gonio_i_azimuth_kernel(a, c) < 0.2);
-        const gonio_i_azimuth_point mirror = gonio_i_azimuth_of(symmetry[k], at(0.0, 0.3));
-        const gonio_i_azimuth_point turned = gonio_i_azimuth_of(symmetry[k], at(0.0, 1.3));
+        const gonio_i_azimuth_point mirror = gonio_i_azimuth_of(&stretch, at(0.0, 0.3));
+        const gonio_i_azimuth_point turned = gonio_i_azimuth_of(&stretch, at(0.0, 1.3));
         assert_close(gonio_i_azimuth_kernel(mirror, turned), 1.0, 1e-12);
     }
+}
+
+/* A half vector and its image in a plane of symmetry are one to a mirrored stretch alone. */
+static void test_azimuths_are_mirrored_in_the_grain(void **state)
+{
+    (void)state;
+    const gonio_i_stretch mirrored = {
+        .log_ratio = 0.7, .rotation = 0.4, .symmetry = 2, .mirrored = true};
+    const gonio_i_stretch plain = {.log_ratio = 0.7, .rotation = 0.4, .symmetry = 2};
+    for (int k = 0; k < 8; k++) {
+        const double phi = 0.4 + 0.3 + 0.14 * k; /* 0.3 .. 1.28 from the plane */
+        const gonio_i_oriented here = at(0.6, phi);
+        const gonio_i_oriented image = at(0.6, 0.8 - phi);
+        const gonio_i_azimuth_point a = gonio_i_azimuth_of(&mirrored, here);
+        const gonio_i_azimuth_point b = gonio_i_azimuth_of(&mirrored, image);
+        assert_close(gonio_i_azimuth_kernel(a, b), 1.0, 1e-12);
+        assert_true(gonio_i_azimuth_kernel(gonio_i_azimuth_of(&plain, here),
+                                           gonio_i_azimuth_of(&plain, image)) < 0.95);
+    }
+}
+
+/* Azimuths are those of the stretched half vector. So along the grain and across it differ, which a
+ * plane of symmetry alone does not tell apart. */
+static void test_azimuths_are_stretched(void **state)
+{
+    (void)state;
+    const gonio_i_stretch none = {.symmetry = 2};
+    const gonio_i_stretch stretch = {
+        .log_ratio = log(4.0), .rotation = 0.4, .symmetry = 2, .mirrored = true};
+    const double phi = 0.5; /* from the grain */
+    const double stretched = atan(tan(phi) / 4.0);
+    const gonio_half_difference there = gonio_i_stretch_apply(&stretch, at(0.6, 0.4 + phi));
+    const gonio_i_azimuth_point a = gonio_i_azimuth_of(&stretch, at(0.6, 0.4 + phi));
+    const gonio_i_azimuth_point b = gonio_i_azimuth_of(&none, at(there.theta_h, stretched));
+    assert_close(a.x, b.x, 1e-12);
+    assert_close(a.y, b.y, 1e-12);
+    const gonio_i_azimuth_point between = gonio_i_azimuth_of(&stretch, at(0.6, 0.4 + 0.25 * M_PI));
+    const gonio_i_azimuth_point along = gonio_i_azimuth_of(&stretch, at(0.6, 0.4));
+    const gonio_i_azimuth_point across = gonio_i_azimuth_of(&stretch, at(0.6, 0.4 + 0.5 * M_PI));
+    assert_true(gonio_i_azimuth_kernel(between, along) >
+                2.0 * gonio_i_azimuth_kernel(between, across));
 }
 
 int main(void)
@@ -106,6 +148,8 @@ int main(void)
         cmocka_unit_test(test_isotropic_lobes_stay),
         cmocka_unit_test(test_the_horizon_stays),
         cmocka_unit_test(test_azimuths_follow_the_symmetry),
+        cmocka_unit_test(test_azimuths_are_mirrored_in_the_grain),
+        cmocka_unit_test(test_azimuths_are_stretched),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
