@@ -285,7 +285,7 @@ static bool are_names(const gonio_i_csv_reader *r)
 static bool are_words(const gonio_i_csv_reader *r)
 {
     bool digits = false;
-    for (size_t k = 0; k < r->cells; k++) {
+    for (size_t k = 0; k < r->cells && r->cells < r->columns; k++) {
         digits = digits || strpbrk(r->cell[k], "0123456789") != NULL;
     }
     return r->cells < r->columns && r->cells > 0 &&

@@ -77,7 +77,7 @@ static bool is_one_of(const char *cell, const char *const *words, size_t count)
 bool gonio_i_csv_is_empty(const char *cell)
 {
     static const char *const words[] = {"", "na", "nan"};
-    return is_one_of(cell, words, sizeof words / sizeof *words);
+    return !isdigit((unsigned char)*cell) && is_one_of(cell, words, sizeof words / sizeof *words);
 }
 
 bool gonio_i_csv_is_mark(const char *cell)
@@ -89,6 +89,10 @@ bool gonio_i_csv_is_mark(const char *cell)
         "bdl",       "<lod>",   "<lod",  "< lod",   "ovrflw",       "overflow",
         "ovfl",      "ovrng",   "sat",   "sat.",    "over",         "saturated",
         "overrange", "undef",   "*",     "?",       "\xe2\x80\x93", "\xe2\x80\x94"};
+    const bool number = isdigit((unsigned char)(*cell == '-' ? cell[1] : *cell));
+    if (number && strncmp(cell, "-999", 4) != 0) {
+        return false;
+    }
     const size_t dashes = strspn(cell, "-");
     return (dashes > 0 && cell[dashes] == '\0') ||
            is_one_of(cell, words, sizeof words / sizeof *words);
