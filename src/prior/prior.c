@@ -11,11 +11,16 @@
 /* Of the mirror direction, of what comes back, and where that begins to differ from the mirror
  * direction. */
 static const double WIDTH = 1.0 * DEGREE;
+static const double MOST_OBLIQUE = 0.15; /* cos theta_d */
 static const double BACK_WIDTH = 3.0 * DEGREE;
 static const double BACK_FROM = 10.0 * DEGREE;
 
 /* b from which on a place is near the light. */
 static const double BACK = 0.05;
+
+/* How much the azimuth matters in narrow peaks, and from where on. */
+static const double PEAK_TURN = 0.6;
+static const double PEAK_TURN_FROM = 0.5 * DEGREE;
 
 static double bell(double angle, double width)
 {
@@ -112,10 +117,13 @@ gonio_i_place gonio_i_place_of(gonio_half_difference at)
 {
     const double quarter = M_PI / 2.0;
     const double turn = sqrt(fmax(sin(at.theta_h) * sin(at.theta_d), 0.0)) / 1.5;
+    const double peak_turn = PEAK_TURN * sin(at.theta_d) * (1.0 - bell(at.theta_h, PEAK_TURN_FROM));
+    const double width = WIDTH / sqrt(fmax(cos(at.theta_d), MOST_OBLIQUE));
     return (gonio_i_place){{GONIO_THETA_H_BINS / 10.0 * sqrt(fmax(at.theta_h, 0.0) / quarter),
                             at.theta_d / quarter * 90.0 / 20.0, turn * cos(2.0 * at.phi_d),
                             turn * sin(2.0 * at.phi_d)},
-                           bell(at.theta_h, WIDTH),
+                           {peak_turn * cos(2.0 * at.phi_d), peak_turn * sin(2.0 * at.phi_d)},
+                           bell(at.theta_h, width),
                            bell(at.theta_d, BACK_WIDTH) * (1.0 - bell(at.theta_h, BACK_FROM))};
 }
 
@@ -136,7 +144,10 @@ double gonio_i_smooth(const gonio_i_place *a, const gonio_i_place *b)
 double gonio_i_peaked(const gonio_i_place *a, const gonio_i_place *b)
 {
     const double both = a->peak * b->peak;
-    return both > 1e-12 ? both * exp(-2.0 * gonio_i_place_distance(a, b)) : 0.0;
+    const double across = a->u[0] - b->u[0];
+    const double along = a->u[1] - b->u[1];
+    const double square = gonio_i_place_distance(a, b) + across * across + along * along;
+    return both > 1e-12 ? both * exp(-2.0 * square) : 0.0;
 }
 
 /* Peaks towards the light change little with the angle of incidence. */

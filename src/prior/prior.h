@@ -36,9 +36,9 @@ void gonio_i_prior_row(const gonio_i_prior *prior, size_t row, double *f);
 
 /* The remainder has covariance alpha^2 k(x, x'),
  *
- *     k = exp(-|p - p'|^2/2) + peak^2 q q' exp(-2 |p - p'|^2) + retro^2 b b' r,
+ *     k = exp(-|p - p'|^2/2) + peak^2 q q' exp(-2 |p - p'|^2 - 2 |u - u'|^2) + retro^2 b b' r,
  *
- *     q = exp(-(theta_h/1 deg)^2/2),   r = exp(-(p_0 - p_0')^2/8),
+ *     q = exp(-(theta_h/1 deg)^2 cos(theta_d)/2),   r = exp(-(p_0 - p_0')^2/8),
  *
  *     b = exp(-(theta_d/3 deg)^2/2) (1 - exp(-(theta_h/10 deg)^2/2)):
  *
@@ -47,9 +47,16 @@ void gonio_i_prior_row(const gonio_i_prior *prior, size_t row, double *f);
  *
  * p are half/difference coordinates scaled by the length scales: 10 bins of theta_h (which are
  * dense around the mirror direction) and 20 degrees of theta_d. The distance in phi_d becomes small
- * where phi_d matters little: where h is near the normal, or d near h. */
+ * where phi_d matters little: where h is near the normal, or d near h.
+ *
+ * Narrow peaks are an exception. At oblique incidence they are longer across the plane of incidence
+ * than along it, by up to 1/cos(theta_d): an instrument that blurs directions by a constant angle
+ * makes them so. u is how phi_d matters there,
+ *
+ *     u = 0.6 sin(theta_d) (1 - exp(-(theta_h/0.5 deg)^2/2)) (cos 2 phi_d, sin 2 phi_d). */
 typedef struct gonio_i_place {
     double p[4];
+    double u[2];
     double peak;  /* q */
     double retro; /* b */
 } gonio_i_place;
