@@ -162,7 +162,7 @@ static void test_the_mean_over_the_models(void **state)
     for (size_t i = 0, taken = 0; taken < N; i++) {
         assert_in_range(i, 0, MOST - 1);
         const gonio_half_difference at = d.reading[i].at;
-        if (at.theta_h > 0.1 && at.theta_d > 0.15) { /* where a remainder has no peak */
+        if (at.theta_h > 0.3 && at.theta_d > 0.15) { /* where a remainder has no peak */
             d.reading[taken++] = d.reading[i];
         }
     }
