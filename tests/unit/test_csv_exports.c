@@ -183,6 +183,7 @@ static void test_what_is_refused(void **state)
         {NAMES "10" DEGREE "5" DEGREE ",0,20,180,0.3\n", "is not a finite number"},
         {"theta_i (rad),phi_i,theta_r,phi_r,BRDF\n1" DEGREE ",0,1,1,0.3\n", "is not a finite"},
         {NAMES "10,0,20,180,-998\n", "BRDF '-998' is negative"},
+        {"theta_i,phi_i,theta_r,phi_r,BRDF\nmotor stalled\n", "r.csv:2: words, not a reading"},
         {"theta_i,phi_i,theta_t,phi_t,BTDF\n10,0,20,180,0.3\n",
          "no column 'theta_o_deg', but one of transmission; gonio reads reflection"},
         {"theta_i,phi_i,theta_r,phi_r,L*,a*,b*\n10,0,20,180,50,1,2\n", "'L*' is not understood"},

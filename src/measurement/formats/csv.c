@@ -260,6 +260,17 @@ static gonio_status take_row(csv_source *s)
     return s->columns->by_wavelength ? add_long(s, &row) : gonio_i_import_add(&s->in, &row);
 }
 
+static gonio_status refuse_empty(const csv_source *s)
+{
+    return s->reader.remarks == 0
+               ? gonio_i_fail(s->context, GONIO_ERROR_DATA, "%s: no lines below the column names",
+                              s->reader.path)
+               : gonio_i_fail(
+                     s->context, GONIO_ERROR_DATA,
+                     "%s:%zu: words, not a reading, and no readings below the column names",
+                     s->reader.path, s->reader.first_remark);
+}
+
 static gonio_status take_rows(csv_source *s)
 {
     const size_t channels = s->columns->channels;
@@ -270,8 +281,7 @@ static gonio_status take_rows(csv_source *s)
         status = gonio_i_csv_next(&s->reader);
     }
     if (status == GONIO_OK && s->reader.cells == 0) {
-        status = gonio_i_fail(s->context, GONIO_ERROR_DATA, "%s: no lines below the column names",
-                              s->reader.path);
+        status = refuse_empty(s);
     }
     while (status == GONIO_OK && s->reader.cells > 0) {
         status = take_row(s);
