@@ -17,10 +17,8 @@
 /* Standard deviation of a reading, log units, beside a remainder. */
 static const double NOISE = 0.05;
 
-/* Of the isotropic covariance, and the remainder. */
+/* Of the isotropic covariance. */
 static const double SHARE = 0.2;
-static const double ALPHA = 0.2;
-static const double PEAK = 8.0;
 enum { SYMMETRY = 2 };
 
 /* Variance that the factor may omit. */
@@ -180,7 +178,7 @@ static double covariance(const maker *m, size_t a, size_t b)
     const double kernel = gonio_i_azimuth_kernel(m->azimuth[a], m->azimuth[b]);
     const double known = dot(m->f + a * m->length, m->f + b * m->length, m->length);
     return (1.0 - SHARE + SHARE * kernel) * known +
-           ALPHA * ALPHA * kernel * gonio_i_remainder(&m->seen[a], &m->seen[b], PEAK, 0.0);
+           kernel * gonio_i_planned_remainder(&m->seen[a], &m->seen[b]);
 }
 
 static size_t largest(const double *values, size_t count)

@@ -14,10 +14,10 @@
 const double gonio_i_noise_of_readings = 0.08;
 static const double NOISE_BESIDE_REMAINDER = 0.05;
 
-/* alpha and peak of the remainder between candidates, log units (prior.h). Peaks are less likely
- * than in the models of a posterior, which the readings choose: with a peak of 4 or 8 plans spend
- * too many readings near the mirror direction (docs/experiments.md). */
-static const double SMOOTHNESS = 0.2;
+/* alpha and peak of the remainder between candidates, log units (prior/prior.h). Peaks are less
+ * likely than in the models of a posterior, which the readings choose: with a peak of 4 or 8 plans
+ * spend too many readings near the mirror direction (docs/experiments.md). */
+static const double ALPHA = 0.2;
 static const double PEAK = 2.5;
 
 /* Variance that the factor of the candidates' covariance may omit. */
@@ -30,6 +30,11 @@ static const double SAME = 1e-6;
 static const double POLE = 1e-6;
 
 enum { MOST_RANK = 500 };
+
+double gonio_i_planned_remainder(const gonio_i_place *a, const gonio_i_place *b)
+{
+    return ALPHA * ALPHA * gonio_i_remainder(a, b, PEAK, 0.0);
+}
 
 static void to_float(const double *from, size_t count, float *to)
 {
@@ -135,8 +140,7 @@ static void factorise(gonio_i_choices *p, const float *f, const gonio_i_place *p
     const size_t most = p->components;
     const size_t k = p->prior->components;
     for (size_t i = 0; i < p->rows; i++) {
-        left[i] = dot(f + i * k, f + i * k, k) +
-                  SMOOTHNESS * SMOOTHNESS * gonio_i_remainder(&place[i], &place[i], PEAK, 0.0);
+        left[i] = dot(f + i * k, f + i * k, k) + gonio_i_planned_remainder(&place[i], &place[i]);
     }
     size_t rank = 0;
     for (; rank < most; rank++) {
@@ -150,9 +154,8 @@ static void factorise(gonio_i_choices *p, const float *f, const gonio_i_place *p
         const double root = sqrt(left[pivot]);
 #pragma omp parallel for schedule(static) num_threads(gonio_context_threads(p->context))
         for (size_t i = 0; i < p->rows; i++) {
-            const double c =
-                dot(f + i * k, f + pivot * k, k) +
-                SMOOTHNESS * SMOOTHNESS * gonio_i_remainder(&place[i], &place[pivot], PEAK, 0.0);
+            const double c = dot(f + i * k, f + pivot * k, k) +
+                             gonio_i_planned_remainder(&place[i], &place[pivot]);
             const double known = dot(p->f + i * most, p->f + pivot * most, rank);
             const float entry = (float)((c - known) / root);
             p->f[i * most + rank] = entry;

@@ -24,6 +24,10 @@ typedef struct gonio_i_choices {
 
 /* Standard deviation of a reading that plans reckon with, log units. */
 extern const double gonio_i_noise_of_readings;
+
+/* The covariance of the remainder that plans among pairs of directions reckon with. */
+double gonio_i_planned_remainder(const gonio_i_place *a, const gonio_i_place *b);
+
 /* f, mean, loss, allowed and at, for p->rows rows of p->components. Errors: _MEMORY. */
 gonio_status gonio_i_choices_allocate(gonio_i_choices *p);
 

@@ -38,7 +38,7 @@ if writes_hdf5; then
     expect_output ', albedo at most ' reconstruct b.gonio r.csv --anisotropic -o m.h5
     expect_output 'gonio anisotropic BRDF table 90 x 90 x 36, 7 orders of phi_h, 2-fold, 3 channels' info m.h5
     expect_true 'the table is the prediction' \
-        test "$(error truth.csv m.h5)" -eq "$(error truth.csv at.csv)"
+        test "$(error at.csv m.h5)" -eq 0
     expect_output '"largest_albedo": 0.' reconstruct b.gonio r.csv --anisotropic --json --threads 1 \
         -o same.h5
     expect_same m.h5 same.h5
