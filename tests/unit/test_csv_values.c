@@ -2,9 +2,12 @@
 #include "../support.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "made_readings.h"
+#include "measurement/formats/csv_keys.h"
 
 #define ANGLES "theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg"
 
@@ -279,6 +282,40 @@ static void test_polarised_light(void **state)
     refuse(ANGLES ",BRDF_s,BRDF_p\n10,0,60,180,1,-1\n", "BRDF_p '-1' is negative");
 }
 
+static bool is_any(const gonio_i_csv_finder *f, size_t column)
+{
+    return column < f->r->columns;
+}
+
+/* Columns of s polarised light of very many wavelengths, then of p polarised light. Comparing each
+ * with all others would take minutes. */
+static void test_polarised_light_of_many_wavelengths(void **state)
+{
+    (void)state;
+    enum { WAVELENGTHS = 150000, COLUMNS = 2 * WAVELENGTHS };
+    const gonio_i_csv_reader reader = {.columns = COLUMNS};
+    gonio_i_column_name *name = calloc(COLUMNS, sizeof *name);
+    size_t *other = calloc(COLUMNS, sizeof *other);
+    const gonio_i_csv_finder f = {.r = &reader, .name = name};
+    gonio_i_csv_keys keys;
+    assert_true(name != NULL && other != NULL);
+    for (int k = 0; k < COLUMNS; k++) {
+        name[k] = (gonio_i_column_name){.family = GONIO_I_WAVELENGTH,
+                                        .wavelength = 400.0 + k % WAVELENGTHS,
+                                        .polarisation = 1 + k / WAVELENGTHS};
+    }
+    const clock_t begin = clock();
+    assert_int_equal(gonio_i_csv_list_keys(&f, is_any, &keys), GONIO_OK);
+    gonio_i_csv_find_partners(&f, &keys, other);
+    assert_true((double)(clock() - begin) / CLOCKS_PER_SEC < 5.0);
+    for (size_t k = 0; k < COLUMNS; k++) {
+        assert_int_equal(other[k], k < WAVELENGTHS ? COLUMNS : k - WAVELENGTHS);
+    }
+    free(keys.item);
+    free(other);
+    free(name);
+}
+
 /* ---- angles in gon ---- */
 
 static void test_angles_in_gon(void **state)
@@ -353,6 +390,7 @@ int main(void)
         cmocka_unit_test(test_logarithms_are_written_as_values),
         cmocka_unit_test(test_logarithms_that_are_refused),
         cmocka_unit_test(test_polarised_light),
+        cmocka_unit_test(test_polarised_light_of_many_wavelengths),
         cmocka_unit_test(test_angles_in_gon),
         cmocka_unit_test(test_directions_of_any_table),
         cmocka_unit_test(test_directions_without_reference_lines),

@@ -6,7 +6,7 @@
 #include <strings.h>
 
 #include "../rules.h"
-#include "csv_finder.h"
+#include "csv_keys.h"
 #include "csv_numbers.h"
 
 typedef gonio_i_csv_finder finder;
@@ -80,19 +80,21 @@ static gonio_status choose_family(finder *f)
     return GONIO_OK;
 }
 
-static bool is_chosen(const finder *f, const gonio_i_column_name *n)
+static bool is_chosen(const finder *f, size_t column)
 {
+    const gonio_i_column_name *n = &f->name[column];
     return n->kind == GONIO_I_VALUE && n->family == f->family &&
            (n->quantity == f->quantity || n->quantity == 0) && n->scale == f->scale &&
            has_cosine(n) == f->cosine && (n->polarisation != 0) == f->polarised &&
            (n->strength > GONIO_I_BARE || f->strongest == GONIO_I_BARE);
 }
 
-static gonio_status add_value(const finder *f, size_t k, size_t *unit_by, size_t *wave_by)
+/* other: the column before of the other polarisation; the number of columns for none. */
+static gonio_status add_value(const finder *f, size_t k, size_t other, size_t *unit_by,
+                              size_t *wave_by)
 {
     gonio_i_csv_columns *c = f->c;
     const gonio_i_column_name *n = &f->name[k];
-    const size_t other = gonio_i_csv_other_polarisation(f, k);
     const bool second = other < f->r->columns;
     const size_t index = n->family == GONIO_I_COLOUR ? n->index
                          : second                    ? c->column[other].index
@@ -131,68 +133,49 @@ static void take_value_comment(gonio_i_csv_columns *c, const char *comment)
     c->unclear = heeded || of_angles ? NULL : comment;
 }
 
-static gonio_status find_values(const finder *f)
+static gonio_status add_values(const finder *f, const size_t *other)
 {
-    static const char *const keys[] = {"values", "unit", "units", "value unit", "quantity", NULL};
-    gonio_i_csv_columns *c = f->c;
     gonio_status status = GONIO_OK;
     size_t unit_by = 0;
     size_t wave_by = 0;
-    c->channels = f->family == GONIO_I_COLOUR ? GONIO_CHANNELS : 0;
+    f->c->channels = f->family == GONIO_I_COLOUR ? GONIO_CHANNELS : 0;
     for (size_t k = 0; k < f->r->columns && status == GONIO_OK; k++) {
-        if (is_chosen(f, &f->name[k])) {
-            status = add_value(f, k, &unit_by, &wave_by);
+        if (is_chosen(f, k)) {
+            status = add_value(f, k, other[k], &unit_by, &wave_by);
         }
     }
-    take_value_comment(c, gonio_i_csv_comment_of(f, keys));
+    return status;
+}
+
+static gonio_status find_values(const finder *f)
+{
+    static const char *const words[] = {"values", "unit", "units", "value unit", "quantity", NULL};
+    gonio_i_csv_keys chosen = {0};
+    size_t *other = gonio_i_allocate(f->r->context, f->r->columns, sizeof *other);
+    gonio_status status =
+        other != NULL ? gonio_i_csv_list_keys(f, is_chosen, &chosen) : GONIO_ERROR_MEMORY;
+    if (status == GONIO_OK) {
+        gonio_i_csv_find_partners(f, &chosen, other);
+        status = add_values(f, other);
+    }
+    take_value_comment(f->c, gonio_i_csv_comment_of(f, words));
+    free(chosen.item);
+    free(other);
     return status;
 }
 
 /* ---- deviations, by the key of their channel ---- */
 
-typedef struct keyed {
-    double key; /* colour, wavelength or number */
-    size_t column;
-} keyed;
-
-typedef struct key_list {
-    size_t count;
-    keyed *item; /* [count], ascending */
-} key_list;
-
-static double key_of(const gonio_i_column_name *n)
+/* Whether a column has values that no column before it has of the other polarisation. */
+static bool is_first(const finder *f, size_t column)
 {
-    return n->family == GONIO_I_WAVELENGTH ? n->wavelength : (double)n->index;
+    return f->c->column[column].kind == GONIO_I_VALUE && !f->c->column[column].second;
 }
 
-static int compare_keys(const void *a, const void *b)
-{
-    const keyed *x = a;
-    const keyed *y = b;
-    const int order = (x->key > y->key) - (x->key < y->key);
-    return order != 0 ? order : (x->column > y->column) - (x->column < y->column);
-}
-
-static gonio_status list_values(const finder *f, key_list *list)
-{
-    list->count = 0;
-    list->item = gonio_i_allocate(f->r->context, f->r->columns, sizeof *list->item);
-    if (list->item == NULL) {
-        return GONIO_ERROR_MEMORY;
-    }
-    for (size_t k = 0; k < f->r->columns; k++) {
-        if (f->c->column[k].kind == GONIO_I_VALUE && !f->c->column[k].second) {
-            list->item[list->count++] = (keyed){key_of(&f->name[k]), k};
-        }
-    }
-    qsort(list->item, list->count, sizeof *list->item, compare_keys);
-    return GONIO_OK;
-}
-
-static gonio_status refuse_twice(const finder *f, const key_list *list)
+static gonio_status refuse_twice(const finder *f, const gonio_i_csv_keys *list)
 {
     for (size_t k = 1; k < list->count; k++) {
-        const keyed *a = &list->item[k - 1];
+        const gonio_i_csv_keyed *a = &list->item[k - 1];
         if (a->key == list->item[k].key) {
             char what[64] = "values";
             if (f->family == GONIO_I_WAVELENGTH) {
@@ -210,23 +193,24 @@ static gonio_status refuse_twice(const finder *f, const key_list *list)
 static int compare_to_key(const void *key, const void *item)
 {
     const double wanted = *(const double *)key;
-    const double has = ((const keyed *)item)->key;
+    const double has = ((const gonio_i_csv_keyed *)item)->key;
     return (wanted > has) - (wanted < has);
 }
 
 /* The column of values that a deviation belongs to; the number of columns if there is none. A
  * deviation without a channel belongs to the only channel. */
-static size_t value_of(const finder *f, const key_list *list, const gonio_i_column_name *n)
+static size_t value_of(const finder *f, const gonio_i_csv_keys *list, const gonio_i_column_name *n)
 {
-    const double key = key_of(n);
+    const double key = gonio_i_csv_key_of(n);
     const bool same = n->family == f->family &&
                       (n->quantity == 0 || f->quantity == 0 || n->quantity == f->quantity);
     const bool only = list->count == 1 && n->family == GONIO_I_UNNAMED && n->index == 0 &&
                       (n->quantity == 0 || n->quantity == f->quantity);
-    const keyed *found = only ? list->item
-                         : same && list->count > 0
-                             ? bsearch(&key, list->item, list->count, sizeof(keyed), compare_to_key)
-                             : NULL;
+    const gonio_i_csv_keyed *found =
+        only ? list->item
+        : same && list->count > 0
+            ? bsearch(&key, list->item, list->count, sizeof(gonio_i_csv_keyed), compare_to_key)
+            : NULL;
     return found != NULL ? found->column : f->r->columns;
 }
 
@@ -249,7 +233,7 @@ static void add_deviation(const finder *f, size_t k, size_t value, bool *taken)
     taken[c->column[value].index] = true;
 }
 
-static void try_deviation(const finder *f, size_t k, const key_list *list, bool *taken)
+static void try_deviation(const finder *f, size_t k, const gonio_i_csv_keys *list, bool *taken)
 {
     const size_t value = value_of(f, list, &f->name[k]);
     const bool other = (f->name[k].scale != 0 && f->name[k].scale != f->scale) ||
@@ -263,9 +247,10 @@ static void try_deviation(const finder *f, size_t k, const key_list *list, bool 
  * comes first. */
 static gonio_status find_deviations(const finder *f)
 {
-    key_list list;
+    gonio_i_csv_keys list;
     bool *taken = gonio_i_allocate(f->r->context, f->c->channels + 1, sizeof *taken);
-    gonio_status status = taken != NULL ? list_values(f, &list) : GONIO_ERROR_MEMORY;
+    gonio_status status =
+        taken != NULL ? gonio_i_csv_list_keys(f, is_first, &list) : GONIO_ERROR_MEMORY;
     if (status != GONIO_OK) {
         free(taken);
         return status;

@@ -34,8 +34,4 @@ const char *gonio_i_csv_comment_of(const gonio_i_csv_finder *f, const char *cons
  */
 gonio_status gonio_i_csv_find_angles(const gonio_i_csv_finder *f);
 
-/* The column before this one that has the same values of the other polarisation; the number of
- * columns if there is none (csv_polarised.c). */
-size_t gonio_i_csv_other_polarisation(const gonio_i_csv_finder *f, size_t k);
-
 #endif

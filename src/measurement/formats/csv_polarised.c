@@ -1,23 +1,20 @@
-/* Columns of values of s and of p polarisation: see csv_finder.h. */
-#include "csv_finder.h"
+/* Columns of values of s and of p polarisation: see csv_keys.h. */
+#include "csv_keys.h"
 
-static bool are_same_channel(const gonio_i_column_name *a, const gonio_i_column_name *b)
+/* A third column of a channel has no partner, and is refused. */
+void gonio_i_csv_find_partners(const gonio_i_csv_finder *f, const gonio_i_csv_keys *keys,
+                               size_t *other)
 {
-    return a->family == b->family && a->quantity == b->quantity && a->index == b->index &&
-           a->wavelength == b->wavelength;
-}
-
-/* A column that would be the third of its channel has no partner left, and is refused. */
-size_t gonio_i_csv_other_polarisation(const gonio_i_csv_finder *f, size_t k)
-{
-    const gonio_i_column_name *n = &f->name[k];
-    size_t found = f->r->columns;
-    size_t before = 0;
-    for (size_t j = 0; j < k && n->polarisation != 0; j++) {
-        if (f->c->column[j].kind == GONIO_I_VALUE && are_same_channel(&f->name[j], n)) {
-            found = f->name[j].polarisation + n->polarisation == 3 ? j : found;
-            before++;
+    for (size_t k = 0; k < f->r->columns; k++) {
+        other[k] = f->r->columns;
+    }
+    for (size_t k = 1; k < keys->count; k++) {
+        const gonio_i_csv_keyed *a = &keys->item[k - 1];
+        const gonio_i_csv_keyed *b = &keys->item[k];
+        const bool first = k == 1 || keys->item[k - 2].key != a->key;
+        const int both = f->name[a->column].polarisation + f->name[b->column].polarisation;
+        if (first && a->key == b->key && both == 3) {
+            other[b->column] = a->column;
         }
     }
-    return before == 1 ? found : f->r->columns;
 }
