@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "angle_unit.h"
 #include "convention.h"
 #include "horizon.h"
 #include "rules.h"
@@ -123,33 +124,21 @@ double gonio_i_import_rounded(double degrees)
 
 double gonio_i_import_degrees(const gonio_i_import *import, double angle)
 {
-    return import->how.angles == GONIO_RADIANS    ? gonio_i_import_rounded(angle * 180.0 / M_PI)
-           : import->how.angles == GONIO_GRADIANS ? gonio_i_import_rounded(angle * 0.9)
-                                                  : angle;
-}
-
-static double as_in_file(const gonio_i_import *in, double degrees)
-{
-    return in->how.angles == GONIO_RADIANS    ? degrees * M_PI / 180.0
-           : in->how.angles == GONIO_GRADIANS ? degrees / 0.9
-                                              : degrees;
+    const double degrees = gonio_i_degrees_of(import->how.angles, angle);
+    return degrees == angle ? angle : gonio_i_import_rounded(degrees);
 }
 
 static gonio_status refuse_angle(const gonio_i_import *in, const gonio_i_row *row, int which)
 {
     static const char *const names[4] = {"theta_i", "phi_i", "theta_o", "phi_o"};
     const bool radians = in->how.angles == GONIO_RADIANS;
-    const double number = as_in_file(in, row->degrees[which]);
+    const double number = gonio_i_angle_of(in->how.angles, row->degrees[which]);
     const char *advice = radians && fabs(number) <= 360.0 ? "; these look like degrees: use --as "
                                                             "angles=degrees"
                                                           : "";
     return gonio_i_fail(in->context, isfinite(number) ? GONIO_ERROR_DATA : GONIO_ERROR_FORMAT,
                         "%s:%zu: %s = %.7g is impossible in %s%s", in->readings->path, row->line,
-                        names[which], number,
-                        radians                            ? "radians"
-                        : in->how.angles == GONIO_GRADIANS ? "gon"
-                                                           : "degrees",
-                        advice);
+                        names[which], number, gonio_i_angle_unit_word(in->how.angles), advice);
 }
 
 /* Makes theta positive, which turns phi by 180 degrees. Limits phi to one turn. */

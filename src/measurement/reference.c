@@ -8,6 +8,7 @@
 #include "../core/number.h"
 #include "../core/text_encoding.h"
 #include "../core/text_file.h"
+#include "angle_unit.h"
 #include "formats/csv_names.h"
 #include "readings.h"
 
@@ -17,18 +18,13 @@
 typedef struct reference_columns {
     size_t theta;
     size_t factor;
-    double to_radians;
+    int angles;       /* gonio_angle_unit of theta */
     double to_factor; /* pi where the column is a BRDF, 1/100 where it is per cent */
 } reference_columns;
 
 static double factor_of_unit(int unit)
 {
     return unit == GONIO_VALUE_BRDF ? M_PI : unit == GONIO_VALUE_PERCENT ? 0.01 : 1.0;
-}
-
-static double radians_of_unit(int unit, double usual)
-{
-    return unit == GONIO_RADIANS ? 1.0 : unit == GONIO_GRADIANS ? M_PI / 200.0 : usual;
 }
 
 /* Values without a cosine and not as logarithms. */
@@ -40,14 +36,16 @@ static bool is_factor(const gonio_i_column_name *name)
 
 static gonio_status find_columns(const gonio_i_csv_reader *r, reference_columns *c)
 {
-    *c = (reference_columns){r->columns, r->columns, M_PI / 180.0, 1.0};
+    *c = (reference_columns){r->columns, r->columns, GONIO_DEGREES, 1.0};
     for (size_t k = 0; k < r->columns; k++) {
         const gonio_i_column_name name = gonio_i_column_name_of(r->name[k]);
         const bool theta =
             name.kind == GONIO_I_ANGLE ? name.index == 2 : strncasecmp(r->name[k], "theta", 5) == 0;
         if (theta && c->theta == r->columns) {
             c->theta = k;
-            c->to_radians = radians_of_unit(name.unit, c->to_radians);
+            c->angles = name.kind == GONIO_I_ANGLE && name.unit != GONIO_I_DEGREES_OR_GRADIANS
+                            ? name.unit
+                            : c->angles;
         } else if (is_factor(&name) && c->factor == r->columns) {
             c->factor = k;
             c->to_factor = factor_of_unit(name.unit);
@@ -68,7 +66,8 @@ static gonio_status take_row(const gonio_i_csv_reader *r, const reference_column
     double factor = NAN;
     const bool numbers = gonio_i_csv_is_number(r->cell[c->theta], r->delimiter, &theta) &&
                          gonio_i_csv_is_number(r->cell[c->factor], r->delimiter, &factor);
-    *row = (gonio_reference_row){fabs(theta * c->to_radians), factor * c->to_factor};
+    const double degrees = gonio_i_degrees_of(c->angles, theta);
+    *row = (gonio_reference_row){fabs(degrees * M_PI / 180.0), factor * c->to_factor};
     return numbers && row->theta <= M_PI / 2.0 && row->factor > 0.0 && row->factor < 1e6
                ? GONIO_OK
                : gonio_i_fail(r->context, GONIO_ERROR_DATA,

@@ -195,6 +195,24 @@ static void test_conventions_of_json(void **state)
     gonio_readings_free(&readings);
 }
 
+static void test_angles_in_gon(void **state)
+{
+    (void)state;
+    gonio_readings_options options = {.size = sizeof options};
+    options.as.angles = GONIO_GRADIANS;
+    gonio_readings *readings =
+        read_text("{\"data\":{\"theta_i\":{\"unit\":\"gon\",\"values\":[50]},"
+                  "\"phi_i\":[0],\"theta_r\":{\"unit\":\"deg\",\"values\":[40]"
+                  "},\"phi_r\":[200],\"BRDF\":[0.3]}}",
+                  &options);
+    const gonio_readings_view *view = gonio_readings_describe(readings);
+    assert_near(view->pair[0].incident.theta, M_PI / 4.0);
+    assert_near(view->pair[0].outgoing.theta, M_PI / 5.0);
+    assert_near(view->pair[0].outgoing.phi, M_PI);
+    assert_non_null(strstr(view->note[0], "angles in gon"));
+    gonio_readings_free(&readings);
+}
+
 /* Values of another sensor in each channel; NaN where nothing was read. */
 static void round_trip(const double *wavelength, size_t channels, bool deviations)
 {
@@ -361,6 +379,7 @@ int main(void)
         cmocka_unit_test(test_repeats_stay),
         cmocka_unit_test(test_channels_of_other_programs),
         cmocka_unit_test(test_conventions_of_json),
+        cmocka_unit_test(test_angles_in_gon),
         cmocka_unit_test(test_json_round_trips),
         cmocka_unit_test(test_json_keeps_to_the_schema),
         cmocka_unit_test(test_sparse_tables),

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "../angle_unit.h"
 #include "../import.h"
 #include "../long_table.h"
 #include "brdf_json.h"
@@ -18,6 +19,7 @@ enum { ANGLES = 4, MOST_CHANNELS = 4096 };
 typedef struct column {
     const json_t *values; /* NULL: there is none */
     double scale;         /* to degrees; 1 */
+    int angles;           /* gonio_angle_unit of angles */
     bool relative;        /* deviations are fractions of their values */
 } column;
 
@@ -49,28 +51,35 @@ static const char *unit_of(const json_t *object)
     return unit != NULL ? unit : "";
 }
 
+/* The unit of an angle; 0 for an unknown one. */
+static int angle_unit(const char *unit)
+{
+    return *unit == '\0' || strncasecmp(unit, "deg", 3) == 0 || strcmp(unit, "\u00B0") == 0
+               ? GONIO_DEGREES
+           : strncasecmp(unit, "rad", 3) == 0 ? GONIO_RADIANS
+                                              : GONIO_AS_STATED;
+}
+
 /* Finds a column of angles. The user's unit (as) comes before that of the file. */
 static gonio_status find_angle(const gonio_i_readings_file *file, const json_t *data,
                                const char *name, const gonio_convention *as, column *c)
 {
     const json_t *object = gonio_i_json_member(data, name);
-    const char *unit = as->angles == GONIO_AS_STATED ? unit_of(object)
-                       : as->angles == GONIO_RADIANS ? "rad"
-                                                     : "deg";
+    const int unit = as->angles != GONIO_AS_STATED ? as->angles : angle_unit(unit_of(object));
     c->values = values_of(object);
-    c->scale = strncasecmp(unit, "rad", 3) == 0 ? 180.0 / M_PI : 1.0;
+    c->angles = unit;
     if (c->values == NULL) {
         return gonio_i_fail(file->context, GONIO_ERROR_FORMAT,
                             "%s: no data.%s with values; theta_i, phi_i, theta_r and phi_r are "
                             "needed",
                             file->path, name);
     }
-    if (c->scale == 1.0 && *unit != '\0' && strncasecmp(unit, "deg", 3) != 0 &&
-        strcmp(unit, "\u00B0") != 0) {
+    if (unit == GONIO_AS_STATED) {
         return gonio_i_fail(file->context, GONIO_ERROR_FORMAT,
                             "%s: data.%s: the unit '%.20s' is neither degrees nor radians",
-                            file->path, name, unit);
+                            file->path, name, unit_of(object));
     }
+    c->scale = gonio_i_degrees_of(unit, 1.0);
     return GONIO_OK;
 }
 
@@ -91,7 +100,7 @@ static gonio_status find_wavelength(const gonio_i_readings_file *file, const jso
     const json_t *object = gonio_i_json_member(data, "wavelength_i");
     object = object != NULL ? object : gonio_i_json_member(data, "wavelength_r");
     object = object != NULL ? object : gonio_i_json_member(data, "wavelength");
-    c->wavelength = (column){values_of(object), 1.0, false};
+    c->wavelength = (column){.values = values_of(object), .scale = 1.0};
     c->wavelengths = wavelength_unit(unit_of(object));
     return c->wavelengths != GONIO_AS_STATED
                ? GONIO_OK
@@ -109,7 +118,7 @@ static bool is_per_steradian(const char *unit)
 static gonio_status find_values(const gonio_i_readings_file *file, const json_t *brdf,
                                 const gonio_convention *as, column *c)
 {
-    *c = (column){values_of(brdf), 1.0, false};
+    *c = (column){.values = values_of(brdf), .scale = 1.0};
     if (!json_is_array(c->values)) {
         return gonio_i_fail(file->context, GONIO_ERROR_FORMAT, "%s: no data.BRDF with values",
                             file->path);
@@ -156,7 +165,9 @@ static gonio_status find_deviation(const gonio_i_readings_file *file, const json
     object = object != NULL ? object : gonio_i_json_member(brdf, "uncertainty");
     const char *unit = unit_of(object);
     const bool relative = strcmp(unit, "%") == 0;
-    *c = (column){values_of(object), (relative ? 0.01 : 1.0) / coverage_factor(object), relative};
+    *c = (column){.values = values_of(object),
+                  .scale = (relative ? 0.01 : 1.0) / coverage_factor(object),
+                  .relative = relative};
     return relative || is_per_steradian(unit)
                ? GONIO_OK
                : gonio_i_fail(file->context, GONIO_ERROR_FORMAT,
@@ -388,11 +399,11 @@ static gonio_status read_rows(const gonio_i_readings_file *file, const columns *
 
 static int unit_of_angles(const columns *c)
 {
-    bool radians = true;
-    for (int k = 0; k < ANGLES; k++) {
-        radians = radians && c->angle[k].scale != 1.0;
+    bool same = true;
+    for (int k = 1; k < ANGLES; k++) {
+        same = same && c->angle[k].angles == c->angle[0].angles;
     }
-    return radians ? GONIO_RADIANS : GONIO_DEGREES;
+    return same ? c->angle[0].angles : GONIO_DEGREES;
 }
 
 static gonio_status read_notes(const gonio_i_readings_file *file, const columns *c,
