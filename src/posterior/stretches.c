@@ -10,7 +10,11 @@ enum {
     BEST_MIXED = 3, /* models that are tried as mixtures too, mirrored ones and others each */
     REFINEMENTS = 7,
     STARTS = 2, /* of either kind, that are refined */
-    MOST_POOL = 320,
+    SYMMETRIES = 3,
+    MOST_POOL = (1 + 2 * STARTS * GONIO_I_TRIAL_SHARES + SYMMETRIES * (GONIO_I_TRIAL_SHARES - 1)) *
+                    GONIO_I_TRIAL_MODELS + /* list_candidates */
+                GONIO_I_MOST_TRIALS +      /* mix */
+                2 * GONIO_I_SPREAD,
 };
 
 /* Azimuths of starts are farther apart, radians: more than a step of the grid. */
@@ -111,13 +115,13 @@ static size_t list_shares(gonio_i_stretch stretch, size_t first, gonio_i_trial *
 static size_t list_candidates(const gonio_i_search *s, const gonio_i_trial *found, size_t count,
                               gonio_i_trial *trials)
 {
-    static const int symmetries[] = {2, 4, 1};
+    static const int symmetries[SYMMETRIES] = {2, 4, 1};
     size_t listed = 1;
     trials[0] = gonio_i_trial_of((gonio_i_stretch){0}, gonio_i_trial_models, GONIO_I_TRIAL_MODELS);
     for (size_t k = 0; k < count; k++) {
         listed += list_shares(found[k].stretch, 0, trials + listed);
     }
-    for (size_t n = 0; n < sizeof symmetries / sizeof *symmetries; n++) {
+    for (size_t n = 0; n < SYMMETRIES; n++) {
         if (s->symmetry == 0 || s->symmetry == symmetries[n]) {
             const gonio_i_stretch stretch = {.symmetry = symmetries[n]};
             listed += list_shares(stretch, 1, trials + listed);
