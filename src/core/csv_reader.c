@@ -347,11 +347,11 @@ static char *print_name(char *to, char *name, const char *unit)
            1;
 }
 
-gonio_status gonio_i_csv_units_behind_names(gonio_i_csv_reader *reader)
+gonio_status gonio_i_csv_units_behind_names(gonio_i_csv_reader *reader, char *const *unit)
 {
     size_t size = 0;
     for (size_t k = 0; k < reader->columns; k++) {
-        size += strlen(reader->name[k]) + strlen(reader->cell[k]) + sizeof " ()";
+        size += strlen(reader->name[k]) + strlen(unit[k]) + sizeof " ()";
     }
     char *room = malloc(size + 1);
     if (room == NULL) {
@@ -359,8 +359,8 @@ gonio_status gonio_i_csv_units_behind_names(gonio_i_csv_reader *reader)
     }
     char *at = room;
     for (size_t k = 0; k < reader->columns; k++) {
-        gonio_i_csv_blank_controls(reader->cell[k], strlen(reader->cell[k]));
-        char *next = print_name(at, reader->name[k], reader->cell[k]);
+        gonio_i_csv_blank_controls(unit[k], strlen(unit[k]));
+        char *next = print_name(at, reader->name[k], unit[k]);
         reader->name[k] = at;
         at = next;
     }

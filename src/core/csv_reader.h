@@ -50,9 +50,9 @@ gonio_status gonio_i_csv_next(gonio_i_csv_reader *reader);
 /* The next call of _next finds the row read last once more, if there is one. */
 void gonio_i_csv_again(gonio_i_csv_reader *reader);
 
-/* The row read last holds units: they are put behind the names, "theta_i (deg)". Errors: _MEMORY.
+/* Puts units behind the names, "theta_i (deg)"; unit[columns], "" or "-" for none. Errors: _MEMORY.
  */
-gonio_status gonio_i_csv_units_behind_names(gonio_i_csv_reader *reader);
+gonio_status gonio_i_csv_units_behind_names(gonio_i_csv_reader *reader, char *const *unit);
 
 void gonio_i_csv_close(gonio_i_csv_reader *reader);
 

@@ -20,6 +20,8 @@ static const struct {
     {"csv-strokes",
      "Instrument, X\n| AOI | scatter angle | brdf |\n|---|:-:|---|\n| 20 | -30 | 0.5 "
      "|\n| 20 | 30 | 0.25 |\n"},
+    {"csv-forms",
+     "theta_i;theta_o;brf;R\n30;20 deg;98,5 % ± 1 %;0.31(2)\n30;-20 deg;97 %;0,3 ± 1\n"},
     {"scattered", "2\n500 600\n0.5 0 1.0 3.14 0.5 0.25\n0.5 0 0.2 0 0.1 0.1\n"},
     {"alta", "#SAMPLE \"x\"\n#DIM 3 1\n#VS 0\n#PARAM_IN ISOTROPIC_TL_TV_PROJ_DPHI\n"
              "0.25 0.3 -0.4 0.7\n0.25 -0.2 0 0.1\n"},

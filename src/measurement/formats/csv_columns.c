@@ -435,7 +435,11 @@ static bool is_unit_row(const gonio_i_csv_reader *r)
             gonio_i_csv_is_angle(r->cell[k], r->delimiter, &number)) {
             return false;
         }
-        angle = angle || gonio_i_angle_unit_in(r->cell[k]) != 0;
+        const bool unit = gonio_i_angle_unit_in(r->cell[k]) != 0;
+        if (unit && strtod(r->cell[k], NULL) != 0.0) {
+            return false; /* 0.3 rad */
+        }
+        angle = angle || unit;
     }
     return angle;
 }
@@ -459,7 +463,7 @@ gonio_status gonio_i_csv_take_units(gonio_i_csv_reader *reader)
 {
     gonio_status status = gonio_i_csv_next(reader);
     if (status == GONIO_OK && is_unit_row(reader)) {
-        status = gonio_i_csv_units_behind_names(reader);
+        status = gonio_i_csv_units_behind_names(reader, reader->cell);
         if (status != GONIO_OK) {
             return status;
         }
