@@ -22,6 +22,11 @@ static const struct {
      "|\n| 20 | 30 | 0.25 |\n"},
     {"csv-forms",
      "theta_i;theta_o;brf;R\n30;20 deg;98,5 % ± 1 %;0.31(2)\n30;-20 deg;97 %;0,3 ± 1\n"},
+    {"crossed", "# AOI: 30 deg\nBRF\ntheta\\phi\t0\t90\t180\n0\t1\t1\t1\n30\t0.5\t\t9\nAOI 40\n"
+                "theta\\phi\t0\t90\n30\t.1\t---\n"},
+    {"crossed-spectra", "unit: %\nwavelength_nm;45as15;r45as-15;45/0\n400;1,5;2;3\n500;1;2;3\n"},
+    {"crossed-stack", "theta_i,45,,30\ntheta_o,0,15,30\nphi_o,0,180,90\nnm,,,\n400,1,2,3\n"},
+    {"csv-geometry", "# unit: %\ngeometry,400nm,500nm\n45as15,1,2\n45/0,3,4\n"},
     {"scattered", "2\n500 600\n0.5 0 1.0 3.14 0.5 0.25\n0.5 0 0.2 0 0.1 0.1\n"},
     {"alta", "#SAMPLE \"x\"\n#DIM 3 1\n#VS 0\n#PARAM_IN ISOTROPIC_TL_TV_PROJ_DPHI\n"
              "0.25 0.3 -0.4 0.7\n0.25 -0.2 0 0.1\n"},

@@ -141,6 +141,8 @@ static gonio_status find_geometry(const gonio_i_csv_finder *f, size_t chosen[GON
     } else if (!has_any(f, chosen, 2, 1) && has_any(f, chosen, GONIO_I_BETA, 2)) {
         f->c->geometry =
             has_any(f, chosen, GONIO_I_BETA, 1) ? GONIO_I_SINES : GONIO_I_SIZE_OF_SINES;
+    } else if (!has_any(f, chosen, 0, 4) && has_any(f, chosen, GONIO_I_NAMED_GEOMETRY, 1)) {
+        f->c->geometry = GONIO_I_NAMED_DIRECTIONS;
     } else if (specular) {
         return find_specular(f, chosen);
     } else {
@@ -167,6 +169,7 @@ static const struct {
     [GONIO_I_SINES] = {0x1U | BIT(GONIO_I_BETA), 0x2U},
     [GONIO_I_SIZE_OF_SINES] = {0x1U | BIT(GONIO_I_BETA_SIZE), 0x2U},
     [GONIO_I_UNIT_VECTORS] = {VECTOR_BITS, 0},
+    [GONIO_I_NAMED_DIRECTIONS] = {BIT(GONIO_I_NAMED_GEOMETRY), 0},
 };
 
 /* Leaves out the columns that the geometry does not read. Errors: _FORMAT for one that is missing.

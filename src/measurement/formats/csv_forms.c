@@ -260,8 +260,12 @@ typedef struct search {
 
 static bool is_wanted(const gonio_readings_options *options, const char *name)
 {
-    const gonio_i_column_kind kind = gonio_i_column_name_of(name).kind;
+    const gonio_i_column_name meaning = gonio_i_column_name_of(name);
+    const gonio_i_column_kind kind = meaning.kind;
     const bool value = kind == GONIO_I_VALUE || kind == GONIO_I_DEVIATION;
+    if (kind == GONIO_I_ANGLE && meaning.index == GONIO_I_NAMED_GEOMETRY) {
+        return false;
+    }
     return kind == GONIO_I_ANGLE || (!options->directions_only && value) ||
            kind == GONIO_I_ROW_WAVELENGTH;
 }

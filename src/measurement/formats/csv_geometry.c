@@ -138,6 +138,13 @@ static const char *take_size_of_sines(int mirror, const double *cell, double deg
                  "is; give beta-beta0 with its sign, above zero farther from the normal";
 }
 
+static const char *take_named(int mirror, const double *cell, double degrees[4])
+{
+    take_four(mirror, cell, degrees);
+    degrees[3] = mirror == GONIO_MIRROR_0 ? 0.0 : 180.0;
+    return NULL;
+}
+
 static const struct {
     const char *words;
     const char *(*take)(int mirror, const double *cell, double degrees[4]);
@@ -158,6 +165,8 @@ static const struct {
                        take_sines},
     [GONIO_I_SIZE_OF_SINES] = {", in the plane at normal incidence", take_size_of_sines},
     [GONIO_I_UNIT_VECTORS] = {", directions as vectors", take_vectors},
+    [GONIO_I_NAMED_DIRECTIONS] = {", in the plane, the light first, aspecular angles towards it",
+                                  take_named},
 };
 
 const char *gonio_i_geometry_words(gonio_i_geometry geometry, int mirror)

@@ -15,7 +15,8 @@ typedef enum gonio_i_geometry {
     GONIO_I_HALF_DIFFERENCE, /* theta_h, theta_d, phi_d; phi_h or 0 */
     GONIO_I_SINES,           /* sin theta_o - sin theta_i */
     GONIO_I_SIZE_OF_SINES,   /* the same without its sign */
-    GONIO_I_UNIT_VECTORS     /* x, y and z of both; their lengths do not count */
+    GONIO_I_UNIT_VECTORS,    /* x, y and z of both; their lengths do not count */
+    GONIO_I_NAMED_DIRECTIONS /* by names of geometries: theta_i, and theta_o on the mirror's side */
 } gonio_i_geometry;
 
 /* What notes say of a geometry, behind the names of its columns; mirror: gonio_mirror_azimuth. */

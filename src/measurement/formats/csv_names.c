@@ -77,6 +77,9 @@ gonio_i_column_name gonio_i_column_name_of(const char *text)
     if (strcasecmp(text, "mark") == 0 || strcasecmp(text, "target") == 0) {
         return (gonio_i_column_name){.kind = GONIO_I_MARK, .own = true};
     }
+    if (strcasecmp(text, "geometry") == 0 || strcasecmp(text, "measurement geometry") == 0) {
+        return (gonio_i_column_name){.kind = GONIO_I_ANGLE, .index = GONIO_I_NAMED_GEOMETRY};
+    }
     const gonio_i_column_name name = name_of(text);
     return name.kind != GONIO_I_OTHER ? name : name_of_small(text);
 }

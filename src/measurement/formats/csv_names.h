@@ -35,7 +35,8 @@ typedef enum gonio_i_strength {
  * in the plane of incidence: above zero farther from the normal, or nearer to it. Then the angle
  * between light and detector, the half/difference angles (direction.h), x, y, z of the directions
  * towards light and detector, and sin theta_o - sin theta_i in the plane of incidence, with its
- * sign (above zero farther from the normal than the mirror direction) or without it. */
+ * sign (above zero farther from the normal than the mirror direction) or without it; and both
+ * directions by the name of a geometry, "45as15" (crossed.h). */
 enum {
     GONIO_I_AZIMUTH_DIFFERENCE = 4,
     GONIO_I_SAMPLE_ROTATION,
@@ -49,6 +50,7 @@ enum {
     GONIO_I_VECTORS,
     GONIO_I_BETA = GONIO_I_VECTORS + 6,
     GONIO_I_BETA_SIZE,
+    GONIO_I_NAMED_GEOMETRY,
     GONIO_I_ANGLE_COLUMNS
 };
 

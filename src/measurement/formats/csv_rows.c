@@ -8,6 +8,7 @@
 #include "../../plan/plan_file.h"
 #include "../rules.h"
 #include "../value_scale.h"
+#include "crossed.h"
 #include "csv_kept.h"
 #include "csv_numbers.h"
 #include "csv_time.h"
@@ -48,8 +49,40 @@ static gonio_status bad_number(const gonio_i_csv_source *s, size_t column, gonio
                         : bad_cell(s, column, status, problem);
 }
 
+/* Spectrophotometers with several angles give reflectance factors, as such or in per cent: a factor
+ * of 100 is not to be guessed. */
+static gonio_status refuse_factors(const gonio_i_csv_source *s)
+{
+    return gonio_i_fail(s->context, GONIO_ERROR_FORMAT,
+                        "%s: reflectance factors or per cent? A line '# unit: reflectance factor' "
+                        "or '# unit: %%' says it, or --as values=factor or --as values=percent",
+                        s->reader.path);
+}
+
+static gonio_status take_geometry(gonio_i_csv_source *s, size_t column)
+{
+    const char *cell = s->reader.cell[column];
+    const gonio_readings_options *options = &s->readings->options;
+    gonio_i_settings named;
+    if (!gonio_i_geometry_of((gonio_i_line){cell, strlen(cell)}, &named)) {
+        return bad_cell(s, column, GONIO_ERROR_FORMAT, "is not a geometry such as 45/0 or 45as15");
+    }
+    const bool aspecular = (named.bits & 1U << GONIO_I_ASPECULAR) != 0;
+    s->angle[0] = named.angle[0];
+    s->angle[2] = aspecular
+                      ? gonio_i_import_rounded(named.angle[0] - named.angle[GONIO_I_ASPECULAR])
+                      : named.angle[2];
+    return aspecular && s->columns->stated.values == 0 && options->as.values == GONIO_AS_STATED &&
+                   !options->directions_only
+               ? refuse_factors(s)
+               : GONIO_OK;
+}
+
 static gonio_status take_angle(gonio_i_csv_source *s, size_t column, size_t index)
 {
+    if (index == GONIO_I_NAMED_GEOMETRY) {
+        return take_geometry(s, column);
+    }
     double number = number_of(s, column);
     s->angle[index] = index < GONIO_I_VECTORS ? gonio_i_import_degrees(&s->in, number) : number;
     if (isnan(number) && s->in.how.angles == GONIO_DEGREES && index < GONIO_I_VECTORS &&

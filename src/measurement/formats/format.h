@@ -43,7 +43,7 @@ typedef struct gonio_i_readings_format {
 #define GONIO_I_READINGS_FORMATS(FORMAT) \
     FORMAT(rgl) FORMAT(scattered) FORMAT(alta) FORMAT(pab) FORMAT(astm) FORMAT(tracepro) \
     FORMAT(zemax) FORMAT(fred) FORMAT(curet) FORMAT(openmaterial) FORMAT(brdf_json) \
-    FORMAT(in_plane) FORMAT(csv)
+    FORMAT(in_plane) FORMAT(crossed) FORMAT(csv)
 /* clang-format on */
 
 #define GONIO_I_DECLARE_FORMAT(name) extern const gonio_i_readings_format gonio_i_readings_##name;

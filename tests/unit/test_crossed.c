@@ -1,0 +1,156 @@
+/* Tables with angles, geometries or wavelengths along both sides. */
+#include "../support.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "made_readings.h"
+
+static gonio_readings *read_text(gonio_context *context, const char *text)
+{
+    gonio_readings_options options;
+    gonio_readings *readings = NULL;
+    print_message("%s", text);
+    gonio_readings_options_default(&options);
+    gonio_readings_read_text(context, "r.csv", text, strlen(text), &options, &readings);
+    return readings;
+}
+
+static void assert_near(double value, double expected)
+{
+    if (!(fabs(value - expected) <= 1e-8)) {
+        fail_msg("%.17g where %.17g is expected", value, expected);
+    }
+}
+
+/* A table: how many readings and channels it has, and the last of them. */
+typedef struct table {
+    const char *text;
+    size_t count;
+    size_t channels;
+    double degrees[4];
+    double value; /* in the last channel */
+    const char *note;
+} table;
+
+#define AOI "Instrument: X\ntheta_i = 30\n"
+#define CELLS "0,0.1,0.1,0.1\n30,0.1,0.2,0.9\n"
+
+static const table tables[] = {
+    {AOI "theta\\phi,0,90,180\n" CELLS, 4, 1, {30, 0, 30, 180}, 0.9, "theta_o in rows, phi_o in"},
+    {"# AOI: 30 deg\n# rows: theta_o\n# columns: phi_o\n;0;90;180\n0;0,1;0,1;0,1\n30;0,1;0,2;0,9\n",
+     4,
+     1,
+     {30, 0, 30, 180},
+     0.9,
+     "the light at phi 0"},
+    {"AOI,20,,\nphi_o/theta_o,0,30,60,\n180,0.1,0.2,0.9,\nAOI,40,,\nphi_o/theta_o,0,30,60,\n"
+     "180,0.1,,0.8,\n",
+     5,
+     1,
+     {40, 0, 60, 180},
+     0.8,
+     "1 not measured"},
+    {"BRF\nwavelength: 550 nm\ntheta_i (deg)\\theta_o (deg)\t-30\t30\n10\t0.1\t0.1\n"
+     "wavelength: 650 nm\ntheta_i (deg)\\theta_o (deg)\t-30\t30\n10\t0.1\t0.5\n",
+     2,
+     2,
+     {10, 0, 30, 180},
+     0.5 / M_PI,
+     "reflectance factors (divided by pi)"},
+    {"wavelength_nm,45/0,45:-15\n400,0.1,0.2\n500,0.1,0.3\n", 2, 2, {45, 0, 15, 0}, 0.3, "plane"},
+    {"unit: %\nwavelength_nm,45as15,r45as75\n400,10,20\n500,11,12\n",
+     2,
+     2,
+     {45, 0, 30, 0},
+     0.12 / M_PI,
+     "per cent"},
+    {"theta_i,45,,30\nphi_i,0,0,0\n# x\ntheta_o,0,15,30\nphi_o,0,180,90\nwavelength [nm],R [%],R "
+     "[%],"
+     "R [%]\n400,10,20,30\n500,10,20,40\n",
+     3,
+     2,
+     {30, 0, 30, 90},
+     0.4 / M_PI,
+     "wavelength in rows, geometries"},
+    {"theta_i,45,,30\ntheta_o,0,15,30\n400,0.1,0.2,0.3\n", 3, 1, {30, 0, 30, 180}, 0.3, "plane"},
+    {"geometry,wavelength,brdf\n45/0,400,0.5\n30:-10,400,0.1\n",
+     2,
+     1,
+     {30, 0, 10, 0},
+     0.1,
+     "first"},
+    {"# unit: %\ngeometry,400nm\n45as15,0.3\n15as-15,10\n",
+     2,
+     1,
+     {15, 0, 30, 180},
+     0.1 / M_PI,
+     "first"},
+};
+
+static void test_tables(void **state)
+{
+    (void)state;
+    for (size_t k = 0; k < sizeof tables / sizeof *tables; k++) {
+        const table *t = &tables[k];
+        gonio_context *context = support_context();
+        gonio_readings *readings = read_text(context, t->text);
+        assert_non_null(readings);
+        const gonio_readings_view *view = gonio_readings_describe(readings);
+        assert_int_equal(view->count, t->count);
+        assert_int_equal(view->channels, t->channels);
+        const gonio_pair *last = &view->pair[view->count - 1];
+        assert_near(last->incident.theta * 180.0 / M_PI, t->degrees[0]);
+        assert_near(last->incident.phi * 180.0 / M_PI, t->degrees[1]);
+        assert_near(last->outgoing.theta * 180.0 / M_PI, t->degrees[2]);
+        assert_near(last->outgoing.phi * 180.0 / M_PI, t->degrees[3]);
+        assert_near(view->value[view->count * view->channels - 1], t->value);
+        assert_true(view->notes > 0);
+        if (strstr(view->note[0], t->note) == NULL) {
+            fail_msg("%s", view->note[0]);
+        }
+        gonio_readings_free(&readings);
+        gonio_context_free(&context);
+    }
+}
+
+/* What is not told is not guessed: the message says what to add. */
+static void test_what_is_refused(void **state)
+{
+    static const struct {
+        const char *text;
+        const char *message;
+    } cases[] = {
+        {"theta_o\\phi_o,0,90,180\n" CELLS, "r.csv:2: no angle of incidence: give it in a line"},
+        {AOI ",0,90,180\n" CELLS, "r.csv:3: a table of values with numbers along both sides"},
+        {AOI "theta_o,0,30,60\n" CELLS, "name rows and columns in its corner cell"},
+        {AOI "wavelength,0,10,20\n400,1,1,1\n", "name rows and columns in its corner cell"},
+        {"theta_i,45,30\ntheta_o,0,15\n10,0.1,0.2\n", "name rows and columns in its corner cell"},
+        {AOI "theta\\phi,0,90\n0,0.1,x\n", "r.csv:4: 'x' is not a finite number"},
+        {AOI "theta\\phi,0,90\n0,0.1\n", "r.csv:4: 2 cells where the line of columns has 3"},
+        {AOI "theta\\phi,0,90\n0,0.1,1,1\n", "r.csv:4: 4 cells where the line of columns has 3"},
+        {AOI "BTDF\ntheta\\phi,0,90\n0,0.1,1\n", "r.csv:3: a table of transmission"},
+        {"theta_i = 0.5 rad\ntheta (deg)\\phi (deg),0,90\n0,1,1\n", "r.csv:2: another unit"},
+        {"wavelength_nm,45as15,45as25\n400,0.1,0.2\n", "reflectance factors or per cent?"},
+        {"geometry,400nm\n45as15,0.1\n", "reflectance factors or per cent?"},
+        {"geometry,brdf\n45as15az90,0.1\n", "'45as15az90' is not a geometry"},
+    };
+    (void)state;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        gonio_context *context = support_context();
+        assert_null(read_text(context, cases[k].text));
+        if (strstr(support_message(), cases[k].message) == NULL) {
+            fail_msg("%s", support_message());
+        }
+        gonio_context_free(&context);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_tables),
+        cmocka_unit_test(test_what_is_refused),
+    };
+    return cmocka_run_group_tests_name("crossed tables", tests, NULL, NULL);
+}
