@@ -1,9 +1,6 @@
 /* The posterior of an anisotropic material: see anisotropic.h.
  *
- * Under a hypothesis, with f and k where the stretch takes the half vectors, and
- *     w_i = h^2 (1 - share + share kappa_i) f f_i' + alpha^2 kappa_i k_i,
- * the mean is m + f z + w S^-1 (y - F z), and the variance
- *     h^2 f f' + alpha^2 k - w S^-1 w' + sum_j q_j (a f (z_j - z) - w S^-1 a F (z_j - z))^2. */
+ * How it is solved for; anisotropic_at.c predicts. */
 #include "anisotropic.h"
 
 #include <math.h>
@@ -21,13 +18,7 @@ static const double NEGLIGIBLE = 1e-3;
 /* What fits take in all, bytes. */
 static const double MOST_BYTES = 6e8;
 
-enum { MOST_READINGS = 1200, SAMPLE = 512 };
-
-/* From the variances to those of materials that were left out, as in variance.c. */
-static const double BAND_FACTOR = 1.5;
-static const double BAND_LEFT_OPEN = 0.01;
-static const double SQUARE_FACTOR = 1.44;
-static const double SQUARE_LEFT_OPEN = 0.05;
+enum { MOST_READINGS = 1200 };
 
 size_t gonio_i_anisotropic_most_readings(size_t columns)
 {
@@ -85,10 +76,33 @@ static void find_linear(const gonio_i_stretch *stretch, gonio_i_solution *s)
 }
 
 /* The variances that the likeliest hypothesis gives to outliers hold under the others too. */
-static void judge_alike(const gonio_i_fit *judged, gonio_i_fit *e)
+static void judge_alike(const gonio_i_anisotropic *a, size_t p, size_t c)
 {
-    memcpy(e->variance, judged->variance, e->n * sizeof *e->variance);
+    const gonio_i_fit *judged = &a->part[0].solution[c].fit;
+    const gonio_i_stretch *first = &a->part[0].hypothesis.stretch;
+    const gonio_i_stretch *own = &a->part[p].hypothesis.stretch;
+    gonio_i_fit *e = &a->part[p].solution[c].fit;
     memcpy(e->left_out, judged->left_out, e->n * sizeof *e->left_out);
+    for (size_t i = 0; i < e->n; i++) {
+        const gonio_i_observation *o = &a->given->column[c].observation[i];
+        const double slope = gonio_i_stretched_slope(o, a->given->pair, own) /
+                             gonio_i_stretched_slope(o, a->given->pair, first);
+        e->variance[i] = judged->variance[i] * slope * slope;
+    }
+}
+
+/* Begins the fit of a column under a hypothesis. */
+static gonio_status begin_fit(const gonio_i_anisotropic *a, gonio_context *context,
+                              const gonio_i_part *p, size_t c, gonio_i_fit *fit)
+{
+    gonio_i_column there = {0};
+    gonio_status status = gonio_i_stretched_column(context, &a->given->column[c], a->given->pair,
+                                                   &p->hypothesis.stretch, &there);
+    if (status == GONIO_OK) {
+        status = gonio_i_fit_begin(context, p->sites[c], p->hypothesis.model.h >= 1.0, &there, fit);
+    }
+    free(there.observation);
+    return status;
 }
 
 static gonio_status solve_part(gonio_i_anisotropic *a, gonio_context *context, size_t p, size_t c)
@@ -100,11 +114,10 @@ static gonio_status solve_part(gonio_i_anisotropic *a, gonio_context *context, s
     s->sites = here->sites[c];
     s->azimuth = here->azimuth[c];
     s->linear = gonio_i_allocate(context, a->prior->components, sizeof *s->linear);
-    gonio_status status = s->linear == NULL ? GONIO_ERROR_MEMORY
-                                            : gonio_i_fit_begin(context, s->sites, model->h >= 1.0,
-                                                                &a->given->column[c], &s->fit);
+    gonio_status status =
+        s->linear == NULL ? GONIO_ERROR_MEMORY : begin_fit(a, context, here, c, &s->fit);
     if (status == GONIO_OK && p > 0) {
-        judge_alike(&a->part[0].solution[c].fit, &s->fit);
+        judge_alike(a, p, c);
     }
     if (status == GONIO_OK) {
         status = gonio_i_fit_solve(&s->fit, model);
@@ -166,13 +179,15 @@ static gonio_status judge_column(void *data, gonio_context *context, size_t c)
     const gonio_i_model *model = &first->hypothesis.model;
     size_t none = 0;
     gonio_i_fit fit = {0};
-    gonio_status status =
-        gonio_i_fit_begin(context, first->sites[c], model->h >= 1.0, &a->given->column[c], &fit);
+    gonio_status status = begin_fit(a, context, first, c, &fit);
     if (status == GONIO_OK) {
         status = score_settled(&fit, model, true, &a->gain[c], &a->outlying[c]);
     }
     if (status == GONIO_OK && a->outlying[c] > 0) {
-        gonio_i_fit_read(&fit, &a->given->column[c]);
+        gonio_i_fit_end(&fit);
+        status = begin_fit(a, context, first, c, &fit);
+    }
+    if (status == GONIO_OK && a->outlying[c] > 0) {
         status = score_settled(&fit, model, false, &a->gain[c], &none);
     }
     gonio_i_fit_end(&fit);
@@ -358,176 +373,4 @@ size_t gonio_i_anisotropic_outlying(const gonio_i_anisotropic *a)
         outlying += a->outlying[c];
     }
     return outlying;
-}
-
-/* ---- prediction ---- */
-
-/* What a place is under a hypothesis; the arrays are scratch. */
-typedef struct view_of_place {
-    gonio_i_place place;
-    gonio_i_azimuth_point azimuth;
-    double mean;
-    double *f; /* [K] */
-    double *w; /* [n] */
-} view_of_place;
-
-size_t gonio_i_anisotropic_scratch(const gonio_i_anisotropic *a)
-{
-    return a->prior->components + a->most + 2 * a->columns;
-}
-
-/* f f_i' is known to be needed where the covariance depends on the azimuth, or for variances. */
-static void see_readings(const gonio_i_stretch *stretch, const gonio_i_solution *s, bool variance,
-                         view_of_place *v)
-{
-    const gonio_i_sites *sites = s->sites;
-    const gonio_i_model *m = &s->fit.model;
-    const double turning = m->h * m->h * stretch->share;
-    const double common = variance ? m->h * m->h * (1.0 - stretch->share) : 0.0;
-    for (size_t i = 0; i < sites->n; i++) {
-        const double kernel = gonio_i_azimuth_kernel(v->azimuth, s->azimuth[i]);
-        const double amount = turning * kernel + common;
-        v->w[i] = amount > 1e-9 ? amount * gonio_i_dot(v->f, sites->f + i * sites->components,
-                                                       sites->components)
-                                : 0.0;
-        v->w[i] += m->alpha > 0.0
-                       ? m->alpha * m->alpha * kernel *
-                             gonio_i_remainder(&v->place, &sites->place[i], m->peak, m->retro)
-                       : 0.0;
-    }
-}
-
-static double mean_of(const gonio_i_solution *s, const view_of_place *v)
-{
-    const gonio_i_fit *e = &s->fit;
-    return v->mean + gonio_i_dot(v->f, s->linear, e->components) +
-           gonio_i_dot(v->w, e->solved, e->n);
-}
-
-/* The mean again, from z alone: w has what `linear` has otherwise. */
-static double mean_with_all(const gonio_i_solution *s, const view_of_place *v)
-{
-    const gonio_i_fit *e = &s->fit;
-    return v->mean + gonio_i_dot(v->f, e->centre, e->components) +
-           gonio_i_dot(v->w, e->solved, e->n);
-}
-
-/* Overwrites w. */
-static double variance_of(const gonio_i_solution *s, view_of_place *v)
-{
-    const gonio_i_fit *e = &s->fit;
-    const gonio_i_model *m = &e->model;
-    double sum = m->h * m->h * gonio_i_dot(v->f, v->f, e->components) +
-                 m->alpha * m->alpha * gonio_i_remainder(&v->place, &v->place, m->peak, m->retro);
-    for (size_t j = 0; j < s->samples; j++) {
-        const double apart = gonio_i_dot(v->f, s->move + j * e->components, e->components) -
-                             gonio_i_dot(v->w, s->answered + j * e->n, e->n);
-        sum += s->weight[j] * apart * apart;
-    }
-    gonio_i_divide_triangle(v->w, 1, e->n, e->lower);
-    sum -= gonio_i_dot(v->w, v->w, e->n);
-    return e->misfit * fmax(sum, 0.0);
-}
-
-/* Under one hypothesis: adds to g, and to the variance its own plus the square of the mean. */
-static void add_part(const gonio_i_anisotropic *a, const gonio_i_part *p, gonio_i_oriented here,
-                     view_of_place *v, double *g, double *variance)
-{
-    const gonio_i_stretch *stretch = &p->hypothesis.stretch;
-    const double weight = p->hypothesis.weight;
-    const gonio_half_difference there = gonio_i_stretch_apply(stretch, here);
-    v->place = gonio_i_place_of(there);
-    v->azimuth = gonio_i_azimuth_of(stretch, here);
-    gonio_i_prior_at(a->prior, there, 0, &v->mean, v->f);
-    for (size_t c = 0; c < a->columns; c++) {
-        const gonio_i_solution *s = &p->solution[c];
-        if (variance != NULL || c == 0 || s->sites != p->solution[c - 1].sites) {
-            see_readings(stretch, s, variance != NULL, v);
-        }
-        const double mean = variance != NULL ? mean_with_all(s, v) : mean_of(s, v);
-        g[c] += weight * mean;
-        if (variance != NULL) {
-            variance[c] += weight * (variance_of(s, v) + mean * mean);
-        }
-    }
-}
-
-void gonio_i_anisotropic_at(const gonio_i_anisotropic *a, gonio_i_oriented here, double *scratch,
-                            double *g, double *variance)
-{
-    view_of_place v = {.f = scratch, .w = scratch + a->prior->components};
-    memset(g, 0, a->columns * sizeof *g);
-    if (variance != NULL) {
-        memset(variance, 0, a->columns * sizeof *variance);
-    }
-    for (size_t p = 0; p < a->parts; p++) {
-        add_part(a, &a->part[p], here, &v, g, variance);
-    }
-    for (size_t c = 0; variance != NULL && c < a->columns; c++) {
-        variance[c] = fmax(variance[c] - g[c] * g[c], 0.0);
-    }
-}
-
-double gonio_i_anisotropic_band(double variance)
-{
-    return sqrt(BAND_FACTOR * variance + BAND_LEFT_OPEN * BAND_LEFT_OPEN);
-}
-
-double gonio_i_anisotropic_square(double variance)
-{
-    return SQUARE_FACTOR * variance + SQUARE_LEFT_OPEN * SQUARE_LEFT_OPEN;
-}
-
-/* ---- the error to expect ---- */
-
-typedef struct expectation {
-    const gonio_i_anisotropic *a;
-    const gonio_i_oriented *place;
-    double *error;  /* [SAMPLE] */
-    double *square; /* [SAMPLE] */
-} expectation;
-
-static gonio_status expect_at(void *data, gonio_context *context, size_t k)
-{
-    const expectation *x = data;
-    const size_t columns = x->a->columns;
-    const size_t size = gonio_i_anisotropic_scratch(x->a);
-    double *scratch = gonio_i_allocate(context, size + 2 * columns, sizeof *scratch);
-    if (scratch == NULL) {
-        return GONIO_ERROR_MEMORY;
-    }
-    double *g = scratch + size;
-    double *variance = g + columns;
-    gonio_i_anisotropic_at(x->a, x->place[k], scratch, g, variance);
-    for (size_t c = 0; c < columns; c++) {
-        x->error[k] += gonio_i_anisotropic_square(variance[c]);
-        x->square[k] += fmax(g[c], 0.0) * fmax(g[c], 0.0);
-    }
-    free(scratch);
-    return GONIO_OK;
-}
-
-gonio_status gonio_i_anisotropic_expect(gonio_context *context, const gonio_i_anisotropic *a,
-                                        double *e6, double *norm)
-{
-    gonio_i_steps steps = {.task = NULL};
-    gonio_i_oriented *place = gonio_i_allocate(context, SAMPLE, sizeof *place);
-    double *sums = gonio_i_allocate(context, 2 * (size_t)SAMPLE, sizeof *sums);
-    gonio_status status = place == NULL || sums == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
-    if (status == GONIO_OK) {
-        expectation x = {a, place, sums, sums + SAMPLE};
-        gonio_i_oriented_sample(0, SAMPLE, place);
-        status = gonio_i_parallel_for(context, &steps, SAMPLE, expect_at, &x);
-    }
-    double error = 0.0;
-    double square = 0.0;
-    for (size_t k = 0; k < SAMPLE && status == GONIO_OK; k++) {
-        error += sums[k];
-        square += sums[SAMPLE + k];
-    }
-    *e6 = status == GONIO_OK ? 100.0 * sqrt(error / (square + error)) : 0.0;
-    *norm = sqrt((square + error) / (SAMPLE * fmax((double)a->columns, 1.0)));
-    free(place);
-    free(sums);
-    return status;
 }

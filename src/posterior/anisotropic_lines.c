@@ -2,9 +2,11 @@
  *
  * Under a hypothesis, with f and k where the stretch takes the half vector, the mean is
  *     m + f z + sum_i kappa_i (h^2 share f f_i' + alpha^2 k_i) (S^-1 (y - F z))_i,
- * with the part of the covariance that does not depend on azimuths in z already. The stretch moves
- * theta_h alone: m, f z and what is in brackets are found at the centres of theta_h, and kappa_i
- * depends on theta_h and phi_h only, so that it is the same for all lines. */
+ * with the part of the covariance that does not depend on azimuths in z already; values of facets
+ * are multiplied by a factor of theta_h and phi_h. The stretch moves theta_h alone: m, f z and what
+ * is in brackets are found at the centres of theta_h, and kappa_i depends on theta_h and phi_h
+ * only, so that it is the same for all lines. That of fibres depends on sin theta_h cos theta_d and
+ * phi_h, and has a factor of theta_d: it is looked up at another theta_h. */
 #include "anisotropic_lines.h"
 
 #include <math.h>
@@ -24,7 +26,8 @@ typedef struct group {
     size_t count;
     double *solved;   /* [count][n] */
     double *linear;   /* [count][K] */
-    double *kernel;   /* [THETAS][nodes][n]: kappa */
+    double *kernel;   /* [THETAS][nodes][n]: kappa; of fibres, where theta_d is 0 */
+    double *factor;   /* [THETAS][nodes]: ln of that of the values */
     double *position; /* [THETAS][nodes]: where the stretch takes theta_h, in its bins */
 } group;
 
@@ -40,7 +43,7 @@ struct gonio_i_anisotropic_lines {
 
 static int symmetry_of(const gonio_i_stretch *s)
 {
-    const int turns = s->log_ratio != 0.0 ? 2 : 0; /* an ellipse */
+    const int turns = s->log_ratio != 0.0 && !s->fibres ? 2 : 0; /* an ellipse */
     return s->symmetry == 0 || (turns != 0 && turns < s->symmetry) ? turns : s->symmetry;
 }
 
@@ -56,6 +59,13 @@ int gonio_i_anisotropic_symmetry(const gonio_i_anisotropic *a)
 
 /* ---- preparation ---- */
 
+/* In the bins of theta_h. */
+static double position_of(double theta_h)
+{
+    const double bins = THETAS * sqrt(theta_h / (0.5 * M_PI)) - 0.5;
+    return fmin(fmax(bins, 0.0), THETAS - 1);
+}
+
 static void place_node(const gonio_i_anisotropic_lines *l, const group *g, size_t theta,
                        size_t node)
 {
@@ -65,11 +75,12 @@ static void place_node(const gonio_i_anisotropic_lines *l, const group *g, size_
     const gonio_i_oriented here = {centre, l->period * (double)node / (double)l->nodes};
     const gonio_half_difference there = gonio_i_stretch_apply(stretch, here);
     const gonio_i_azimuth_point azimuth = gonio_i_azimuth_of(stretch, here);
-    const double bins = THETAS * sqrt(there.theta_h / (0.5 * M_PI)) - 0.5;
-    g->position[at] = fmin(fmax(bins, 0.0), THETAS - 1);
+    g->position[at] = position_of(there.theta_h);
+    g->factor[at] = gonio_i_stretch_log_factor(stretch, here);
     for (size_t i = 0; i < g->sites->n; i++) {
-        g->kernel[at * g->sites->n + i] =
-            gonio_i_azimuth_kernel(azimuth, g->part->azimuth[g->first][i]);
+        gonio_i_azimuth_point read = g->part->azimuth[g->first][i];
+        read.depth = azimuth.depth; /* depth_of */
+        g->kernel[at * g->sites->n + i] = gonio_i_azimuth_kernel(azimuth, read);
     }
 }
 
@@ -81,7 +92,9 @@ static gonio_status make_group(gonio_context *context, const gonio_i_anisotropic
     g->linear = gonio_i_allocate(context, g->count * components, sizeof *g->linear);
     g->kernel = gonio_i_allocate(context, THETAS * l->nodes * n, sizeof *g->kernel);
     g->position = gonio_i_allocate(context, THETAS * l->nodes, sizeof *g->position);
-    if (g->solved == NULL || g->linear == NULL || g->kernel == NULL || g->position == NULL) {
+    g->factor = gonio_i_allocate(context, THETAS * l->nodes, sizeof *g->factor);
+    if (g->solved == NULL || g->linear == NULL || g->kernel == NULL || g->position == NULL ||
+        g->factor == NULL) {
         return GONIO_ERROR_MEMORY;
     }
     for (size_t c = 0; c < g->count; c++) {
@@ -153,6 +166,7 @@ void gonio_i_anisotropic_lines_free(gonio_i_anisotropic_lines **lines)
         free(g->linear);
         free(g->kernel);
         free(g->position);
+        free(g->factor);
     }
     free((*lines)->group);
     free(*lines);
@@ -165,6 +179,7 @@ void gonio_i_anisotropic_lines_free(gonio_i_anisotropic_lines **lines)
 typedef struct line {
     gonio_context *context;
     const gonio_i_anisotropic_lines *lines;
+    double theta_d;
     gonio_i_place place[THETAS];
     double *mean;   /* [THETAS]: m */
     double *f;      /* [THETAS][K] */
@@ -211,12 +226,22 @@ static void see_prior(line *x, double theta_d, double phi_d)
     }
 }
 
+/* What kappa of fibres is multiplied by for the theta_d of a line and a reading. */
+static double depth_of(const line *x, const group *g, size_t reading)
+{
+    const gonio_i_oriented here = {{0.0, x->theta_d, 0.0}, 0.0};
+    const gonio_i_azimuth_point a = gonio_i_azimuth_of(&g->part->hypothesis.stretch, here);
+    const gonio_i_azimuth_point b = {a.x, a.y, g->part->azimuth[g->first][reading].depth};
+    return gonio_i_azimuth_kernel(a, b);
+}
+
 /* m + f z and the brackets of a group. */
 static gonio_status see_group(line *x, const group *g)
 {
     const gonio_i_sites *sites = g->sites;
     const gonio_i_model *m = &g->part->hypothesis.model;
-    const double turning = m->h * m->h * g->part->hypothesis.stretch.share;
+    const gonio_i_stretch *stretch = &g->part->hypothesis.stretch;
+    const double turning = m->h * m->h * stretch->share;
     const double rest = m->alpha * m->alpha;
     gonio_status status = gonio_i_product_transposed(x->context, x->f, THETAS, sites->components,
                                                      g->linear, g->count, x->common, g->count);
@@ -231,7 +256,10 @@ static gonio_status see_group(line *x, const group *g)
         const gonio_i_place *here = &x->place[k / sites->n];
         const gonio_i_place *there = &sites->place[k % sites->n];
         x->seen[k] = turning > 0.0 ? turning * x->seen[k] : 0.0;
-        x->seen[k] += rest > 0.0 ? rest * gonio_i_remainder(here, there, m->peak, m->retro) : 0.0;
+        x->seen[k] +=
+            rest > 0.0 ? rest * gonio_i_stretch_remainder(stretch, here, there, m->peak, m->retro)
+                       : 0.0;
+        x->seen[k] *= stretch->fibres ? depth_of(x, g, k % sites->n) : 1.0;
     }
     return status;
 }
@@ -249,15 +277,28 @@ static between between_of(double position)
     return (between){before, before + 1 < THETAS ? before + 1 : before, position - (double)before};
 }
 
-static void weigh_node(const line *x, const group *g, size_t at, double *restrict w)
+/* Where kappa of a theta_h is looked up. */
+static between find_kernel(const line *x, const group *g, size_t theta)
+{
+    const double theta_h = gonio_bin_centre((gonio_bin){(int32_t)theta, 0, 0}).theta_h;
+    return g->part->hypothesis.stretch.fibres
+               ? between_of(position_of(asin(sin(theta_h) * cos(x->theta_d))))
+               : (between){theta, theta, 0.0};
+}
+
+static void weigh_node(const line *x, const group *g, size_t theta, size_t node, double *restrict w)
 {
     const size_t n = g->sites->n;
-    const between b = between_of(g->position[at]);
+    const size_t nodes = x->lines->nodes;
+    const between b = between_of(g->position[theta * nodes + node]);
+    const between k = find_kernel(x, g, theta);
     const double *restrict first = x->seen + b.before * n;
     const double *restrict second = x->seen + b.after * n;
-    const double *restrict kernel = g->kernel + at * n;
+    const double *restrict kernel = g->kernel + (k.before * nodes + node) * n;
+    const double *restrict next = g->kernel + (k.after * nodes + node) * n;
     for (size_t i = 0; i < n; i++) {
-        w[i] = kernel[i] * (first[i] + b.share * (second[i] - first[i]));
+        w[i] = (kernel[i] + k.share * (next[i] - kernel[i])) *
+               (first[i] + b.share * (second[i] - first[i]));
     }
 }
 
@@ -269,7 +310,7 @@ static gonio_status add_group(const line *x, const group *g, size_t theta, doubl
     const size_t n = g->sites->n;
     const double weight = g->part->hypothesis.weight;
     for (size_t k = 0; k < nodes; k++) {
-        weigh_node(x, g, theta * nodes + k, x->w + k * n);
+        weigh_node(x, g, theta, k, x->w + k * n);
     }
     const gonio_status status = gonio_i_product_transposed(x->context, x->w, nodes, n, g->solved,
                                                            g->count, x->moved, g->count);
@@ -277,9 +318,12 @@ static gonio_status add_group(const line *x, const group *g, size_t theta, doubl
         const between b = between_of(g->position[theta * nodes + k]);
         const double *first = x->common + b.before * g->count;
         const double *second = x->common + b.after * g->count;
+        const double factor = g->factor[theta * nodes + k];
         for (size_t c = 0; c < g->count; c++) {
-            sum[k * columns + g->first + c] +=
-                weight * (first[c] + b.share * (second[c] - first[c]) + x->moved[k * g->count + c]);
+            double slope = 1.0;
+            const double mean =
+                first[c] + b.share * (second[c] - first[c]) + x->moved[k * g->count + c];
+            sum[k * columns + g->first + c] += weight * gonio_i_multiplied(mean, factor, &slope);
         }
     }
     return status;
@@ -304,7 +348,7 @@ gonio_status gonio_i_anisotropic_line(gonio_context *context,
                                       const gonio_i_anisotropic_lines *lines, double theta_d,
                                       double phi_d, double *g)
 {
-    line x = {.context = context, .lines = lines};
+    line x = {.context = context, .lines = lines, .theta_d = theta_d};
     gonio_status status = allocate(&x);
     if (status == GONIO_OK) {
         see_prior(&x, theta_d, phi_d);

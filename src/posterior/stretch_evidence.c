@@ -20,7 +20,7 @@ gonio_status gonio_i_stretches_notice(gonio_context *context,
     gonio_i_trial *trials = gonio_i_allocate(context, GONIO_I_MOST_TRIALS, sizeof *trials);
     status = trials == NULL ? GONIO_ERROR_MEMORY : status;
     if (status == GONIO_OK) {
-        size_t count = gonio_i_trials_grid(&s, false, trials);
+        size_t count = gonio_i_trials_grid(&s, (gonio_i_stretch){0}, trials);
         for (size_t k = 1; k < GONIO_I_TRIAL_SHARES; k++) {
             const gonio_i_stretch stretch = {.share = gonio_i_trial_shares[k], .symmetry = 2};
             trials[count++] =

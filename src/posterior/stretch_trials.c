@@ -12,7 +12,7 @@ enum { RATIOS = 5 };
 static const double LOG_RATIOS[RATIOS] = {0.35, 0.7, 1.1, 1.6, 2.2};
 static const double SEARCHED_SHARE = 0.1;
 
-const double gonio_i_trial_shares[GONIO_I_TRIAL_SHARES] = {0.0, 0.03, 0.1, 0.3};
+const double gonio_i_trial_shares[GONIO_I_TRIAL_SHARES] = {0.0, 0.03, 0.1, 0.3, 1.0};
 
 const gonio_i_model gonio_i_trial_models[GONIO_I_TRIAL_MODELS] = {
     {1.0, 0.0, 0.0, 0.0},  {1.0, 0.03, 0.0, 0.0}, {1.0, 0.06, 0.0, 0.0}, {1.0, 0.12, 0.0, 0.0},
@@ -21,6 +21,10 @@ const gonio_i_model gonio_i_trial_models[GONIO_I_TRIAL_MODELS] = {
 
 const gonio_i_model gonio_i_searched_models[GONIO_I_SEARCHED_MODELS] = {{1.0, 0.12, 0.0, 0.0},
                                                                         {1.0, 0.5, 0.0, 0.0}};
+
+/* Of fibres, with all that depends on azimuths in the remainder. */
+static const gonio_i_model fibre_models[GONIO_I_SEARCHED_MODELS] = {{1.0, 0.5, 0.0, 0.0},
+                                                                    {1.0, 1.0, 0.0, 0.0}};
 
 const double gonio_i_score_share = 1.0 / 8.0;
 const double gonio_i_for_isotropic = 2.0;
@@ -61,24 +65,46 @@ void gonio_i_search_end(gonio_i_search *s)
 
 /* ---- scores ---- */
 
-static gonio_status score_column(gonio_context *context, const gonio_i_sites *sites,
-                                 const gonio_i_column *column, gonio_i_trial *t)
+/* ln of what the density of readings is multiplied by where they are made those of an isotropic
+ * material. */
+static double log_slopes(const gonio_i_search *s, const gonio_i_column *column,
+                         const gonio_i_stretch *stretch)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < column->count && stretch->facets; i++) {
+        const gonio_i_observation *o = &column->observation[i];
+        sum += o->bound == 0 ? log(gonio_i_stretched_slope(o, s->pair, stretch)) : 0.0;
+    }
+    return sum;
+}
+
+static gonio_status score_column(const gonio_i_search *s, gonio_context *context,
+                                 const gonio_i_sites *sites, const gonio_i_column *column,
+                                 gonio_i_trial *t)
 {
     gonio_i_fit fit = {0};
+    gonio_i_column there = {0};
+    const double slopes = log_slopes(s, column, &t->stretch);
     double *score = gonio_i_allocate(context, column->count, sizeof *score);
     bool plain = true;
     for (size_t m = 0; m < t->count; m++) {
         plain = plain && t->model[m].h >= 1.0;
     }
     gonio_status status =
-        score == NULL ? GONIO_ERROR_MEMORY : gonio_i_fit_begin(context, sites, plain, column, &fit);
+        score == NULL ? GONIO_ERROR_MEMORY
+                      : gonio_i_stretched_column(context, column, s->pair, &t->stretch, &there);
+    if (status == GONIO_OK) {
+        status = gonio_i_fit_begin(context, sites, plain, &there, &fit);
+    }
     for (size_t m = 0; m < t->count && status == GONIO_OK; m++) {
         status = gonio_i_leave_one_out_score(&fit, &t->model[m], score);
+        t->score[m] += slopes;
         for (size_t i = 0; i < column->count && status == GONIO_OK; i++) {
             t->score[m] += score[i];
         }
     }
     gonio_i_fit_end(&fit);
+    free(there.observation);
     free(score);
     return status;
 }
@@ -102,7 +128,7 @@ static gonio_status score_trial(void *data, gonio_context *context, size_t k)
                                                     &t->stretch, &sites);
         }
         if (status == GONIO_OK) {
-            status = score_column(context, sites, &s->column[c], t);
+            status = score_column(s, context, sites, &s->column[c], t);
         }
     }
     gonio_i_sites_free(&sites);
@@ -164,20 +190,27 @@ int gonio_i_search_symmetry(const gonio_i_search *s)
     return s->symmetry > 0 && s->symmetry < 2 ? s->symmetry : 2;
 }
 
-size_t gonio_i_trials_grid(const gonio_i_search *s, bool mirrored, gonio_i_trial *trials)
+/* A fibre's reflection is not the same after half a turn, unless that is stated: it may be tilted.
+ */
+static int symmetry_of(const gonio_i_search *s, const gonio_i_stretch *kind)
 {
-    const int symmetry = gonio_i_search_symmetry(s);
-    const size_t ratios = s->symmetry == 4 || (mirrored && symmetry != 2) ? 0 : RATIOS;
+    return kind->fibres && s->symmetry == 0 ? 1 : gonio_i_search_symmetry(s);
+}
+
+size_t gonio_i_trials_grid(const gonio_i_search *s, gonio_i_stretch kind, gonio_i_trial *trials)
+{
+    const gonio_i_model *models = kind.fibres ? fibre_models : gonio_i_searched_models;
+    const int symmetry = symmetry_of(s, &kind);
+    const size_t ratios = s->symmetry == 4 || (kind.mirrored && symmetry != 2) ? 0 : RATIOS;
     size_t count = 0;
     for (size_t r = 0; r < ratios; r++) {
         for (size_t p = 0; p < GONIO_I_ROTATIONS; p++) {
-            const gonio_i_stretch stretch = {.log_ratio = LOG_RATIOS[r],
-                                             .rotation = M_PI * (double)p / GONIO_I_ROTATIONS,
-                                             .share = SEARCHED_SHARE,
-                                             .symmetry = symmetry,
-                                             .mirrored = mirrored};
-            trials[count++] =
-                gonio_i_trial_of(stretch, gonio_i_searched_models, GONIO_I_SEARCHED_MODELS);
+            gonio_i_stretch stretch = kind;
+            stretch.log_ratio = LOG_RATIOS[r];
+            stretch.rotation = M_PI * (double)p / GONIO_I_ROTATIONS;
+            stretch.share = kind.fibres ? 0.0 : SEARCHED_SHARE;
+            stretch.symmetry = symmetry;
+            trials[count++] = gonio_i_trial_of(stretch, models, GONIO_I_SEARCHED_MODELS);
         }
     }
     return count;

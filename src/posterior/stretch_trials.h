@@ -11,8 +11,8 @@ enum {
     GONIO_I_ROTATIONS = 8, /* azimuths of the grain in half a turn */
     GONIO_I_TRIAL_MODELS = 10,
     GONIO_I_SEARCHED_MODELS = 2,
-    GONIO_I_TRIAL_SHARES = 4,
-    GONIO_I_MOST_TRIALS = 64 /* of a round */
+    GONIO_I_TRIAL_SHARES = 5,
+    GONIO_I_MOST_TRIALS = 96 /* of a round */
 };
 
 /* Remainders, as in models.c; and those of the search over the grid. */
@@ -61,9 +61,10 @@ int gonio_i_search_symmetry(const gonio_i_search *s);
 
 gonio_i_trial gonio_i_trial_of(gonio_i_stretch stretch, const gonio_i_model *models, size_t count);
 
-/* trials[GONIO_I_MOST_TRIALS]: the grid of ratios and azimuths. A quarter turn's symmetry has none,
- * nor has a mirrored one without that of half a turn. Returns how many. */
-size_t gonio_i_trials_grid(const gonio_i_search *s, bool mirrored, gonio_i_trial *trials);
+/* trials[GONIO_I_MOST_TRIALS]: the grid of ratios and azimuths, for stretches that are otherwise as
+ * `kind`. A quarter turn's symmetry has none, nor has a mirrored one without that of half a turn.
+ * Returns how many. */
+size_t gonio_i_trials_grid(const gonio_i_search *s, gonio_i_stretch kind, gonio_i_trial *trials);
 
 /* Finds the scores of trials. Errors: _MEMORY, _NUMERICAL, _CANCELLED. */
 gonio_status gonio_i_trials_score(gonio_i_search *s, gonio_i_trial *trials, size_t count);

@@ -9,12 +9,14 @@
 enum {
     BEST_MIXED = 3, /* models that are tried as mixtures too, mirrored ones and others each */
     REFINEMENTS = 7,
-    STARTS = 2, /* of either kind, that are refined */
+    STARTS = 2, /* of each kind, that are refined */
     SYMMETRIES = 3,
-    MOST_POOL = (1 + 2 * STARTS * GONIO_I_TRIAL_SHARES + SYMMETRIES * (GONIO_I_TRIAL_SHARES - 1)) *
-                    GONIO_I_TRIAL_MODELS + /* list_candidates */
-                GONIO_I_MOST_TRIALS +      /* mix */
-                2 * GONIO_I_SPREAD,
+    KINDS = 5,
+    MOST_POOL =
+        (1 + KINDS * STARTS * GONIO_I_TRIAL_SHARES + SYMMETRIES * (GONIO_I_TRIAL_SHARES - 1)) *
+            GONIO_I_TRIAL_MODELS + /* list_candidates */
+        GONIO_I_MOST_TRIALS +      /* mix */
+        2 * GONIO_I_SPREAD,
 };
 
 /* Azimuths of starts are farther apart, radians: more than a step of the grid. */
@@ -31,7 +33,8 @@ typedef struct pool {
     size_t count;
 } pool;
 
-/* Whether it is the same mirrored or not, as nothing of it depends on the azimuth. */
+/* Whether it is the same as one that is not mirrored or, of fibres, as the isotropic one, as
+ * nothing of it depends on the azimuth. */
 static bool is_twin(const gonio_i_stretch *stretch, const gonio_i_model *model)
 {
     return stretch->mirrored && stretch->share == 0.0 && model->alpha == 0.0;
@@ -111,7 +114,7 @@ static size_t list_shares(gonio_i_stretch stretch, size_t first, gonio_i_trial *
 }
 
 /* The stretches that are weighed with every model: those found with every share, none, and none
- * with a covariance of every symmetry. */
+ * with a covariance of every symmetry. Fibres without a share are hardly to be told from none. */
 static size_t list_candidates(const gonio_i_search *s, const gonio_i_trial *found, size_t count,
                               gonio_i_trial *trials)
 {
@@ -119,7 +122,7 @@ static size_t list_candidates(const gonio_i_search *s, const gonio_i_trial *foun
     size_t listed = 1;
     trials[0] = gonio_i_trial_of((gonio_i_stretch){0}, gonio_i_trial_models, GONIO_I_TRIAL_MODELS);
     for (size_t k = 0; k < count; k++) {
-        listed += list_shares(found[k].stretch, 0, trials + listed);
+        listed += list_shares(found[k].stretch, found[k].stretch.fibres ? 1 : 0, trials + listed);
     }
     for (size_t n = 0; n < SYMMETRIES; n++) {
         if (s->symmetry == 0 || s->symmetry == symmetries[n]) {
@@ -173,7 +176,8 @@ static void find_odds(const pool *p, gonio_i_stretches *found)
 
 static bool is_same_grain(const gonio_i_stretch *a, const gonio_i_stretch *b)
 {
-    return a->log_ratio == b->log_ratio && a->rotation == b->rotation && a->mirrored == b->mirrored;
+    return a->log_ratio == b->log_ratio && a->rotation == b->rotation &&
+           a->mirrored == b->mirrored && a->facets == b->facets && a->fibres == b->fibres;
 }
 
 /* Takes a hypothesis and all others of its ratio and azimuth out; *taken is the likeliest of them
@@ -245,10 +249,10 @@ static const gonio_i_trial *best_apart(const gonio_i_trial *grid, size_t size,
 
 /* The best of the grid at azimuths apart, refined, to found[STARTS]. grid[GONIO_I_MOST_TRIALS]:
  * scratch. Adds to *count. */
-static gonio_status search_grid(gonio_i_search *s, bool mirrored, gonio_i_trial *grid,
+static gonio_status search_grid(gonio_i_search *s, gonio_i_stretch kind, gonio_i_trial *grid,
                                 gonio_i_trial *found, size_t *count)
 {
-    const size_t size = gonio_i_trials_grid(s, mirrored, grid);
+    const size_t size = gonio_i_trials_grid(s, kind, grid);
     gonio_status status = gonio_i_trials_score(s, grid, size);
     size_t starts = 0;
     while (starts < STARTS && status == GONIO_OK) {
@@ -265,16 +269,21 @@ static gonio_status search_grid(gonio_i_search *s, bool mirrored, gonio_i_trial 
     return status;
 }
 
-/* Searches the grid with and without a plane of symmetry, and weighs what is best.
+/* Searches the grid for every kind of stretch, and weighs what is best.
  * trials[GONIO_I_MOST_TRIALS]: scratch. */
 static gonio_status fill_from(pool *p, gonio_i_trial *trials)
 {
+    static const gonio_i_stretch kinds[KINDS] = {{.mirrored = false},
+                                                 {.mirrored = true},
+                                                 {.mirrored = false, .facets = true},
+                                                 {.mirrored = true, .facets = true},
+                                                 {.fibres = true}};
     gonio_i_search *s = &p->search;
-    gonio_i_trial found[2 * STARTS];
+    gonio_i_trial found[KINDS * STARTS];
     size_t count = 0;
-    gonio_status status = search_grid(s, false, trials, found, &count);
-    if (status == GONIO_OK) {
-        status = search_grid(s, true, trials, found + count, &count);
+    gonio_status status = GONIO_OK;
+    for (size_t k = 0; k < KINDS && status == GONIO_OK; k++) {
+        status = search_grid(s, kinds[k], trials, found + count, &count);
     }
     const size_t listed = list_candidates(s, found, count, trials);
     if (status == GONIO_OK) {

@@ -8,6 +8,12 @@
 /* Of q, where t is (sin theta_h)^(1/2). */
 static const double LENGTH = 0.7;
 
+/* Of theta_d in q of fibres, radians. */
+static const double DEPTH = 1.5;
+
+/* Of theta_h in the density of facets: towards the horizon other things reflect more. */
+static const double LEAST_COSINE = 0.01;
+
 /* The stretch ends here, so that the horizon stays where it is. */
 static const double MOST_TANGENT = 1e6;
 
@@ -64,7 +70,7 @@ bool gonio_i_stretch_is_isotropic(const gonio_i_stretch *stretch)
 
 gonio_half_difference gonio_i_stretch_apply(const gonio_i_stretch *stretch, gonio_i_oriented here)
 {
-    if (stretch->log_ratio == 0.0) {
+    if (stretch->log_ratio == 0.0 || stretch->fibres) {
         return here.at;
     }
     const double ratio = exp(stretch->log_ratio);
@@ -76,6 +82,28 @@ gonio_half_difference gonio_i_stretch_apply(const gonio_i_stretch *stretch, goni
     return there;
 }
 
+double gonio_i_stretch_log_factor(const gonio_i_stretch *stretch, gonio_i_oriented here)
+{
+    if (!stretch->facets) {
+        return 0.0;
+    }
+    const double there = cos(gonio_i_stretch_apply(stretch, here).theta_h);
+    return 4.0 * log(fmax(there, LEAST_COSINE) / fmax(cos(here.at.theta_h), LEAST_COSINE));
+}
+
+/* Values below 0, which noise makes, are multiplied too. */
+double gonio_i_multiplied(double g, double log_factor, double *slope)
+{
+    if (log_factor == 0.0) {
+        *slope = 1.0;
+        return g;
+    }
+    const double factor = exp(log_factor);
+    const double value = expm1(fabs(g));
+    *slope = factor * (1.0 + value) / (1.0 + factor * value);
+    return copysign(log1p(factor * value), g);
+}
+
 /* Where the half vector's azimuth is taken to, from that of the grain. */
 static double azimuth_from_grain(const gonio_i_stretch *stretch, double phi_h)
 {
@@ -84,19 +112,41 @@ static double azimuth_from_grain(const gonio_i_stretch *stretch, double phi_h)
     return atan2(sin(phi) / root, cos(phi) * root);
 }
 
+/* i + o has the length 2 cos theta_d. */
+static gonio_i_azimuth_point fibres_point(const gonio_i_stretch *stretch, gonio_i_oriented here)
+{
+    const double root = exp(0.5 * stretch->log_ratio);
+    const double length = 2.0 * cos(here.at.theta_d) * sin(here.at.theta_h) / LENGTH;
+    const double along = root * length * cos(here.phi_h - stretch->rotation);
+    const double across = length * sin(here.phi_h - stretch->rotation) / root;
+    return (gonio_i_azimuth_point){stretch->symmetry == 2 ? fabs(along) : along, fabs(across),
+                                   here.at.theta_d / DEPTH};
+}
+
 gonio_i_azimuth_point gonio_i_azimuth_of(const gonio_i_stretch *stretch, gonio_i_oriented here)
 {
+    if (stretch->fibres) {
+        return fibres_point(stretch, here);
+    }
     const int n = stretch->symmetry;
     const double theta = gonio_i_stretch_apply(stretch, here).theta_h;
     const double t = n > 0 ? sqrt(fmax(sin(theta), 0.0)) / LENGTH : 0.0;
     const double phi = n * azimuth_from_grain(stretch, here.phi_h);
     const double y = t * sin(phi);
-    return (gonio_i_azimuth_point){t * cos(phi), stretch->mirrored ? fabs(y) : y};
+    return (gonio_i_azimuth_point){t * cos(phi), stretch->mirrored ? fabs(y) : y, 0.0};
 }
 
 double gonio_i_azimuth_kernel(gonio_i_azimuth_point a, gonio_i_azimuth_point b)
 {
     const double x = a.x - b.x;
     const double y = a.y - b.y;
-    return exp(-0.5 * (x * x + y * y));
+    const double depth = a.depth - b.depth;
+    return exp(-0.5 * (x * x + y * y + depth * depth));
+}
+
+double gonio_i_stretch_remainder(const gonio_i_stretch *stretch, const gonio_i_place *a,
+                                 const gonio_i_place *b, double peak, double retro)
+{
+    const double k = gonio_i_remainder(a, b, peak, retro);
+    return stretch->fibres ? 1.0 + k - gonio_i_smooth(a, b) : k;
 }

@@ -22,7 +22,24 @@
  * no azimuth.
  *
  * A mirrored stretch has the grain for a plane of symmetry: half vectors to either side of it are
- * alike, with |sin n phi_h'| in q. */
+ * alike, with |sin n phi_h'| in q.
+ *
+ * Slopes have a density P. That of facets, which a lobe is proportional to, is P / cos^4 theta_h:
+ * where only P is stretched, the values of the isotropic material are multiplied by
+ *
+ *     cos^4 theta_h' / cos^4 theta_h.
+ *
+ * Stretches are tried with this factor (facets) and without, as not all that is anisotropic
+ * consists of facets.
+ *
+ * Fibres beneath a smooth surface reflect into a cone around them (Marschner et al. 2005): what
+ * they add depends on the sum of the two directions along the fibre, and is at any place on that
+ * axis if they are tilted out of the surface. So half vectors are not stretched. Instead
+ *
+ *     q = (r^(1/2) s_u, r^(-1/2) |s_v|) / LENGTH and theta_d / DEPTH,
+ *
+ * with the sum s of the directions along the grain, u, and across it, v; and the smooth part of
+ * the remainder is kappa alone. */
 #ifndef GONIO_STRETCH_H
 #define GONIO_STRETCH_H
 
@@ -49,6 +66,8 @@ typedef struct gonio_i_stretch {
     double share;     /* of the isotropic covariance that depends on phi_h; 0 .. 1 */
     int symmetry;     /* n: 1, 2 or 4; 0: kappa is 1, with share 0 the isotropic prior */
     bool mirrored;    /* psi is the azimuth of a plane of symmetry: |sin| in q */
+    bool facets;      /* values are multiplied by the ratio of the densities of facets */
+    bool fibres;      /* q is that of fibres; with symmetry 2 it has |s_u| */
 } gonio_i_stretch;
 
 /* Stretches that readings leave open, at most. */
@@ -59,15 +78,28 @@ bool gonio_i_stretch_is_isotropic(const gonio_i_stretch *stretch);
 /* Where the isotropic prior is evaluated. */
 gonio_half_difference gonio_i_stretch_apply(const gonio_i_stretch *stretch, gonio_i_oriented here);
 
+/* ln of what the isotropic material's values are multiplied by there; 0 but for facets. */
+double gonio_i_stretch_log_factor(const gonio_i_stretch *stretch, gonio_i_oriented here);
+
+/* The logarithm of brightness g (ln(1 + value/scale)) once values are multiplied by the factor, and
+ * its derivative by g. */
+double gonio_i_multiplied(double g, double log_factor, double *slope);
+
 /* q. */
 typedef struct gonio_i_azimuth_point {
     double x;
     double y;
+    double depth; /* of theta_d; 0 but for fibres */
 } gonio_i_azimuth_point;
 
 gonio_i_azimuth_point gonio_i_azimuth_of(const gonio_i_stretch *stretch, gonio_i_oriented here);
 
 /* kappa. */
 double gonio_i_azimuth_kernel(gonio_i_azimuth_point a, gonio_i_azimuth_point b);
+
+/* What kappa is multiplied by in the remainder: k, or for fibres k without its smooth part, plus 1.
+ */
+double gonio_i_stretch_remainder(const gonio_i_stretch *stretch, const gonio_i_place *a,
+                                 const gonio_i_place *b, double peak, double retro);
 
 #endif
