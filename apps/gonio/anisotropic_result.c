@@ -24,18 +24,21 @@ bool anisotropic_check_symmetry(const tool *t, int symmetry)
 
 json_t *anisotropy_json(const gonio_anisotropy *a)
 {
-    const bool long_axes = a->axis_ratio > LONG;
-    return json_pack("{s:o, s:o, s:i, s:o, s:o, s:b}", "probability",
+    const bool has_grain = a->axis_ratio > LONG || a->fibres;
+    return json_pack("{s:o, s:o, s:i, s:o, s:o, s:b, s:b}", "probability",
                      tool_json_number(a->probability), "evidence", tool_json_number(a->evidence),
                      "symmetry", a->symmetry, "axis_ratio", tool_json_number(a->axis_ratio),
                      "rotation_deg",
-                     long_axes ? tool_json_number(degrees(a->rotation)) : json_null(),
-                     "one_azimuth", a->cannot_tell);
+                     has_grain ? tool_json_number(degrees(a->rotation)) : json_null(), "fibres",
+                     a->fibres, "one_azimuth", a->cannot_tell);
 }
 
 void print_anisotropy(const gonio_anisotropy *a)
 {
-    if (a->axis_ratio > LONG) {
+    if (a->fibres) {
+        fprintf(tool_results(), "fibres along %.0f degrees beneath the surface",
+                degrees(a->rotation));
+    } else if (a->axis_ratio > LONG) {
         fprintf(tool_results(), "grain at %.0f degrees, slopes %.2g times as large across it",
                 degrees(a->rotation), a->axis_ratio);
     } else {

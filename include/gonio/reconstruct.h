@@ -231,6 +231,7 @@ typedef struct gonio_anisotropy {
     double axis_ratio;  /* of its lobes' slopes, at least 1; 1 for one without long axes */
     double rotation;    /* azimuth of the grain, the short axis of slopes, [0, pi), radians */
     bool cannot_tell;   /* all readings are at one azimuth of the half vector */
+    bool fibres;        /* along the grain, beneath the surface: axis_ratio is 1 */
 } gonio_anisotropy;
 
 /* A description. The view and its pointers belong to the reconstruction. */

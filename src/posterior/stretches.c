@@ -33,8 +33,7 @@ typedef struct pool {
     size_t count;
 } pool;
 
-/* Whether it is the same as one that is not mirrored or, of fibres, as the isotropic one, as
- * nothing of it depends on the azimuth. */
+/* Whether it is the same mirrored or not, as nothing of it depends on the azimuth. */
 static bool is_twin(const gonio_i_stretch *stretch, const gonio_i_model *model)
 {
     return stretch->mirrored && stretch->share == 0.0 && model->alpha == 0.0;

@@ -117,8 +117,9 @@ gonio_anisotropy gonio_i_anisotropy_of(const gonio_i_stretches *stretches)
     return (gonio_anisotropy){.probability = 1.0 / (1.0 + exp(-stretches->odds)),
                               .evidence = stretches->odds,
                               .symmetry = s->symmetry,
-                              .axis_ratio = exp(s->log_ratio),
-                              .rotation = s->log_ratio > 0.0 ? s->rotation : 0.0};
+                              .axis_ratio = s->fibres ? 1.0 : exp(s->log_ratio),
+                              .rotation = s->log_ratio > 0.0 ? s->rotation : 0.0,
+                              .fibres = s->fibres};
 }
 
 static gonio_status describe(const task *t, gonio_anisotropic_reconstruction *made)

@@ -51,11 +51,17 @@ static int tear_down(void **state)
     return 0;
 }
 
-/* A material of the basis with every half vector stretched. */
+/* A material of the basis with every half vector stretched; for fibres, a polished wood, and for
+ * facets, a ground metal. */
 static void evaluate(const gonio_i_stretch *stretch, gonio_pair pair, double rho[GONIO_CHANNELS])
 {
     const gonio_half_difference at = gonio_i_stretch_apply(stretch, gonio_i_oriented_of(pair));
-    gonio_atlas_value(gonio_atlas_find("red-glossy-plastic"), at, rho);
+    const char *name = stretch->fibres ? "mahogany-ribbon-polished" : "steel-belt-ground";
+    if (stretch->fibres || stretch->facets) {
+        gonio_atlas_anisotropic_value(gonio_atlas_anisotropic_find(name), pair, rho);
+    } else {
+        gonio_atlas_value(gonio_atlas_find("red-glossy-plastic"), at, rho);
+    }
 }
 
 static gonio_readings *readings_of(const fixture *f, const gonio_i_stretch *stretch,
@@ -232,7 +238,7 @@ static double apart_in_log(const fixture *f, const gonio_material *material,
 static void test_the_material_is_the_prediction(void **state)
 {
     const fixture *f = *state;
-    const gonio_i_stretch stretch = {.log_ratio = log(4.0), .rotation = 0.5};
+    const gonio_i_stretch stretch = {.facets = true};
     const gonio_context_options one = {.size = sizeof one, .threads = 1};
     gonio_material *material[2] = {NULL, NULL};
     double value[2][ASKED * GONIO_CHANNELS];
@@ -257,6 +263,48 @@ static void test_the_material_is_the_prediction(void **state)
     gonio_material_free(&material[1]);
     gonio_readings_free(&readings);
     gonio_context_free(&alone);
+}
+
+/* Kappa of fibres depends on theta_d, unlike that of stretches. */
+static void test_the_material_of_fibres_is_the_prediction(void **state)
+{
+    const fixture *f = *state;
+    const gonio_i_stretch fibres = {.fibres = true};
+    double value[ASKED * GONIO_CHANNELS];
+    gonio_material *material = NULL;
+    gonio_readings *readings = readings_of(f, &fibres, f->read, READ);
+    gonio_anisotropic_reconstruction *made = reconstruct(f, readings);
+    predict(f, made, value, NULL);
+    const gonio_anisotropy *found = &gonio_anisotropic_reconstruction_describe(made)->anisotropy;
+    const double error = error_of(&fibres, f->asked, ASKED, value);
+    assert_true(found->fibres && found->axis_ratio == 1.0);
+    assert_true(fabs(remainder(found->rotation - 50.0 * M_PI / 180.0, M_PI)) < 0.15);
+    assert_true(error < 0.4 * isotropic_error(f, &fibres, readings));
+    assert_int_equal(gonio_anisotropic_reconstruction_material(f->context, made, "m", &material),
+                     GONIO_OK);
+    assert_true(apart_in_log(f, material, value) < 0.01);
+    gonio_anisotropic_reconstruction_free(&made);
+    gonio_material_free(&material);
+    gonio_readings_free(&readings);
+}
+
+/* A lobe of facets is found, with its grain, also by a basis without metals. */
+static void test_stretched_facets_are_found(void **state)
+{
+    const fixture *f = *state;
+    const gonio_i_stretch facets = {.facets = true};
+    double value[ASKED * GONIO_CHANNELS];
+    gonio_readings *readings = readings_of(f, &facets, f->read, READ);
+    gonio_anisotropic_reconstruction *made = reconstruct(f, readings);
+    const gonio_anisotropic_reconstruction_view *view =
+        gonio_anisotropic_reconstruction_describe(made);
+    predict(f, made, value, NULL);
+    assert_true(view->anisotropy.axis_ratio > 2.0);
+    assert_true(fabs(remainder(view->anisotropy.rotation - M_PI / 6.0, M_PI)) < 0.1);
+    assert_true(error_of(&facets, f->asked, ASKED, value) <
+                0.25 * isotropic_error(f, &facets, readings));
+    gonio_anisotropic_reconstruction_free(&made);
+    gonio_readings_free(&readings);
 }
 
 /* ---- checks of isotropy ---- */
@@ -367,6 +415,8 @@ int main(void)
         cmocka_unit_test(test_threads_do_not_matter),
         cmocka_unit_test(test_readings_are_predicted_with_deviations),
         cmocka_unit_test(test_the_material_is_the_prediction),
+        cmocka_unit_test(test_the_material_of_fibres_is_the_prediction),
+        cmocka_unit_test(test_stretched_facets_are_found),
         cmocka_unit_test(test_isotropy_is_checked),
         cmocka_unit_test(test_one_azimuth_cannot_tell),
         cmocka_unit_test(test_other_symmetries_are_refused),

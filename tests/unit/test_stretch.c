@@ -139,6 +139,78 @@ static void test_azimuths_are_stretched(void **state)
                 2.0 * gonio_i_azimuth_kernel(between, across));
 }
 
+/* Facets that are stretched keep the density of their slopes, which is theirs times cos^4. */
+static void test_facets_keep_the_density_of_slopes(void **state)
+{
+    (void)state;
+    const gonio_i_stretch slopes = {.log_ratio = log(4.0), .rotation = 0.5};
+    const gonio_i_stretch facets = {.log_ratio = log(4.0), .rotation = 0.5, .facets = true};
+    const gonio_i_oriented here = at(0.3, 0.9);
+    const double there = gonio_i_stretch_apply(&facets, here).theta_h;
+    const double factor = exp(gonio_i_stretch_log_factor(&facets, here));
+    assert_close(factor * pow(cos(0.3), 4.0), pow(cos(there), 4.0), 1e-12);
+    assert_close(gonio_i_stretch_log_factor(&slopes, here), 0.0, 0.0);
+    assert_close(gonio_i_stretch_apply(&slopes, here).theta_h, there, 0.0);
+}
+
+static void test_values_are_multiplied(void **state)
+{
+    (void)state;
+    const double values[] = {-0.5, 0.0, 1e-4, 2.0, 8.0};
+    for (int k = 0; k < 5; k++) {
+        double slope = 0.0;
+        double back = 0.0;
+        double ignored = 0.0;
+        const double g = gonio_i_multiplied(values[k], 1.5, &slope);
+        const double step = 1e-5;
+        const double above = gonio_i_multiplied(values[k] + step, 1.5, &ignored);
+        assert_close(expm1(fabs(g)), exp(1.5) * expm1(fabs(values[k])), 1e-9 * expm1(fabs(g)));
+        assert_close((above - g) / step, slope, 1e-3);
+        back = gonio_i_multiplied(g, -1.5, &ignored);
+        assert_close(back, values[k], 1e-12);
+        assert_close(slope * ignored, 1.0, 1e-12);
+    }
+}
+
+/* Half vectors of fibres stay. What they add is alike along a line across them, at any place of the
+ * axis along them unless half a turn changes nothing. */
+static void test_fibres_see_the_sum_along_them(void **state)
+{
+    (void)state;
+    gonio_i_stretch fibres = {
+        .log_ratio = log(9.0), .rotation = 0.7, .symmetry = 1, .fibres = true};
+    const gonio_i_oriented here = at(0.4, 1.2);
+    const gonio_i_azimuth_point along = gonio_i_azimuth_of(&fibres, at(0.4, 0.7));
+    const gonio_i_azimuth_point back = gonio_i_azimuth_of(&fibres, at(0.4, 0.7 + M_PI));
+    const gonio_i_azimuth_point across = gonio_i_azimuth_of(&fibres, at(0.4, 0.7 + 0.5 * M_PI));
+    const gonio_i_azimuth_point normal = gonio_i_azimuth_of(&fibres, at(0.0, 0.0));
+    const gonio_i_azimuth_point image = gonio_i_azimuth_of(&fibres, at(0.4, 0.2));
+    assert_close(gonio_i_stretch_apply(&fibres, here).theta_h, 0.4, 0.0);
+    assert_close(gonio_i_azimuth_kernel(gonio_i_azimuth_of(&fibres, here), image), 1.0, 1e-12);
+    assert_true(gonio_i_azimuth_kernel(across, normal) > 0.9);
+    assert_true(gonio_i_azimuth_kernel(along, normal) < 0.1);
+    assert_true(gonio_i_azimuth_kernel(along, back) < 0.01);
+    fibres.symmetry = 2;
+    assert_close(gonio_i_azimuth_kernel(gonio_i_azimuth_of(&fibres, at(0.4, 0.7)),
+                                        gonio_i_azimuth_of(&fibres, at(0.4, 0.7 + M_PI))),
+                 1.0, 1e-12);
+}
+
+/* The smooth part of the remainder is kappa alone for fibres. */
+static void test_the_remainder_of_fibres_is_their_kernel(void **state)
+{
+    (void)state;
+    const gonio_i_stretch plain = {.symmetry = 2};
+    const gonio_i_stretch fibres = {.log_ratio = 1.0, .symmetry = 1, .fibres = true};
+    const gonio_i_place a = gonio_i_place_of(at(0.01, 0.0).at);
+    const gonio_i_place b = gonio_i_place_of(at(0.6, 0.0).at);
+    assert_close(gonio_i_stretch_remainder(&fibres, &a, &b, 0.0, 0.0), 1.0, 1e-12);
+    assert_close(gonio_i_stretch_remainder(&plain, &a, &b, 2.0, 0.0),
+                 gonio_i_remainder(&a, &b, 2.0, 0.0), 0.0);
+    assert_close(gonio_i_stretch_remainder(&fibres, &a, &a, 2.0, 0.0),
+                 gonio_i_remainder(&a, &a, 2.0, 0.0), 1e-12);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -150,6 +222,10 @@ int main(void)
         cmocka_unit_test(test_azimuths_follow_the_symmetry),
         cmocka_unit_test(test_azimuths_are_mirrored_in_the_grain),
         cmocka_unit_test(test_azimuths_are_stretched),
+        cmocka_unit_test(test_facets_keep_the_density_of_slopes),
+        cmocka_unit_test(test_values_are_multiplied),
+        cmocka_unit_test(test_fibres_see_the_sum_along_them),
+        cmocka_unit_test(test_the_remainder_of_fibres_is_their_kernel),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
