@@ -27,6 +27,9 @@ static const struct {
     {"crossed-spectra", "unit: %\nwavelength_nm;45as15;r45as-15;45/0\n400;1,5;2;3\n500;1;2;3\n"},
     {"crossed-stack", "theta_i,45,,30\ntheta_o,0,15,30\nphi_o,0,180,90\nnm,,,\n400,1,2,3\n"},
     {"csv-geometry", "# unit: %\ngeometry,400nm,500nm\n45as15,1,2\n45/0,3,4\n"},
+    {"csv-polarised",
+     "elevation_i,elevation_o,pol,400nm [1e-3/sr],500nm [10^-3 1/sr]\n60,50,s,1,2\n"
+     "60,50,p,3,\n60,20,unpolarised,5,6\n"},
     {"scattered", "2\n500 600\n0.5 0 1.0 3.14 0.5 0.25\n0.5 0 0.2 0 0.1 0.1\n"},
     {"alta", "#SAMPLE \"x\"\n#DIM 3 1\n#VS 0\n#PARAM_IN ISOTROPIC_TL_TV_PROJ_DPHI\n"
              "0.25 0.3 -0.4 0.7\n0.25 -0.2 0 0.1\n"},

@@ -86,7 +86,7 @@ static void set(const source *s, gonio_i_settings *settings, int axis, double nu
 {
     if (axis == GONIO_I_WAVELENGTH_AXIS) {
         settings->wavelength = number;
-    } else {
+    } else if (axis >= 0) {
         settings->bits |= 1U << axis;
         settings->angle[axis] = gonio_i_import_degrees(&s->in, number);
     }

@@ -7,6 +7,7 @@
 #include <gonio/measurement.h>
 
 #include "crossed.h"
+#include "csv_factor_names.h"
 
 static const char separators[] = "\t;, ";
 
@@ -191,6 +192,16 @@ static gonio_status take_text(const units *u, gonio_i_line l)
     const char *values = text_on_values(text);
     const int scale = values != NULL ? gonio_i_value_scale_in(values) : 0;
     gonio_status status = GONIO_OK;
+    char rest[128];
+    double factor = 0.0;
+    if (values != NULL && scale == 0 && gonio_i_value_kind_in(values) != 0 &&
+        (gonio_i_take_factor(values, sizeof rest, rest, &factor) ||
+         gonio_i_names_product(values))) {
+        return gonio_i_fail(u->file->context, GONIO_ERROR_FORMAT,
+                            "%s:%zu: values with a factor are not read in such a table; multiply "
+                            "them",
+                            u->file->path, u->line);
+    }
     if (values != NULL) {
         status = agree(u, "values", gonio_i_value_kind_in(values), &u->stated->values);
         u->stated->scale = scale != 0 ? scale : u->stated->scale;

@@ -42,8 +42,8 @@ bool gonio_i_cell_number(gonio_i_line cell, char separator, double *number)
 
 static gonio_i_axis axis_of_name(const gonio_i_column_name *name)
 {
-    const bool angle = name->kind == GONIO_I_ANGLE && name->index < GONIO_I_SETTINGS &&
-                       name->index != GONIO_I_SAMPLE_ROTATION;
+    const bool angle = name->kind == GONIO_I_ANGLE && !name->complement &&
+                       name->index < GONIO_I_SETTINGS && name->index != GONIO_I_SAMPLE_ROTATION;
     return angle ? (gonio_i_axis){(int)name->index, name->unit}
            : name->kind == GONIO_I_ROW_WAVELENGTH
                ? (gonio_i_axis){GONIO_I_WAVELENGTH_AXIS, name->wavelength_unit}

@@ -58,20 +58,25 @@ static void take_nanometres(gonio_i_csv_columns *columns, const gonio_readings *
     }
 }
 
-/* Says what was made of polarised light. */
+/* Says what was made of polarised light, in columns or in rows. */
 static gonio_status note_polarisation(const gonio_i_csv_source *s)
 {
+    static const char *const said[] = {
+        "the values of s and of p polarisation are averaged",
+        "the values of s and of p polarisation are averaged, where there are both",
+        "the values are of one polarisation only; they are taken as those of unpolarised light"};
     const gonio_i_csv_columns *c = s->columns;
-    return c->polarised == 0
-               ? GONIO_OK
-               : gonio_i_readings_note(
-                     s->context, s->readings, "%s",
-                     c->averaged == c->polarised
-                         ? "the values of s and of p polarisation are averaged"
-                     : c->averaged > 0 ? "the values of s and of p polarisation are averaged, "
-                                         "where there are both"
-                                       : "the values are of one polarisation only; they are taken "
-                                         "as those of unpolarised light");
+    const size_t rows = s->polarised[0] + s->polarised[2];
+    const bool one = s->polarised[0] == 0 || s->polarised[2] == 0;
+    gonio_status status = GONIO_OK;
+    if (c->polarised > 0) {
+        const int which = c->averaged == c->polarised ? 0 : c->averaged > 0 ? 1 : 2;
+        status = gonio_i_readings_note(s->context, s->readings, "%s", said[which]);
+    }
+    if (rows > 0 && status == GONIO_OK) {
+        status = gonio_i_readings_note(s->context, s->readings, "%s", said[one ? 2 : 1]);
+    }
+    return status;
 }
 
 /* Says which cells and lines were taken for no values. */
@@ -127,6 +132,12 @@ static size_t expected_rows(const gonio_i_csv_reader *reader)
     return lines < most ? lines : most;
 }
 
+/* Whether several rows are one reading. */
+static bool has_parts(const gonio_i_csv_columns *columns)
+{
+    return columns->by_wavelength || columns->by_polarisation;
+}
+
 static void begin_import(gonio_i_csv_source *s, gonio_i_csv_kept *kept, const char *taken_as)
 {
     const gonio_convention stated = convention_of(s->columns, s->readings->usual_values);
@@ -135,14 +146,17 @@ static void begin_import(gonio_i_csv_source *s, gonio_i_csv_kept *kept, const ch
     s->in.keep_unmeasured = true;
     kept->rewrite_angles = !s->columns->own_angles || s->in.how.angles != GONIO_DEGREES ||
                            s->in.how.mirror == GONIO_MIRROR_0;
-    s->readings->keep_angles = kept->rewrite_angles || s->columns->by_wavelength;
+    s->readings->keep_angles = kept->rewrite_angles || has_parts(s->columns);
 }
 
-/* Imports rows of one wavelength each, whose channels are known only at the end. */
+/* Imports rows of one wavelength or polarisation each, whose readings are known only at the end. */
 static gonio_status import_long(gonio_i_csv_source *s)
 {
+    const gonio_i_csv_columns *c = s->columns;
     s->table.context = s->context;
+    s->table.numbered = c->by_wavelength || c->wavelength != NULL ? 0 : c->channels;
     gonio_status status = gonio_i_csv_take_rows(s);
+    s->in.how.scale = c->by_polarisation ? GONIO_SCALE_LINEAR : s->in.how.scale;
     status = status == GONIO_OK ? gonio_i_long_table_import(&s->table, &s->in) : status;
     gonio_i_long_table_free(&s->table);
     return status;
@@ -167,7 +181,7 @@ static gonio_status import_rows(gonio_i_csv_source *s, gonio_i_csv_kept *kept)
     gonio_i_csv_describe(&s->reader, s->columns, s->in.how.mirror, taken_as);
     gonio_status status = gonio_i_csv_others_begin(&s->others, s->context, s->columns);
     if (status == GONIO_OK) {
-        status = s->columns->by_wavelength ? import_long(s) : import_wide(s);
+        status = has_parts(s->columns) ? import_long(s) : import_wide(s);
     }
     status = status == GONIO_OK ? write_notes(s) : status;
     gonio_i_csv_others_free(&s->others);
@@ -272,7 +286,7 @@ static gonio_status read(gonio_i_readings_file *file, gonio_readings *readings)
         status = read_table(&s, kept);
         gonio_i_csv_close(&s.reader);
     }
-    if (status == GONIO_OK && kept->columns.by_wavelength) {
+    if (status == GONIO_OK && has_parts(&kept->columns)) {
         drop_kept(readings);
     }
     return status;

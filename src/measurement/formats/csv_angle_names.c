@@ -26,7 +26,8 @@ enum {
     HALF = 1 << 16,
     DIFFERENCE_VECTOR = 1 << 17, /* "d" behind another word */
     WRITTEN = 1 << 18,           /* a difference that is no delta */
-    GRADIANS = 1 << 19
+    GRADIANS = 1 << 19,
+    ELEVATION = 1 << 20 /* a polar angle from the surface */
 };
 
 static const gonio_i_known_word angle_words[] = {
@@ -36,6 +37,8 @@ static const gonio_i_known_word angle_words[] = {
     {"zenit", POLAR, 0},
     {"zenitwinkel", POLAR, 0},
     {"polar", POLAR, 0},
+    {"elevation", POLAR | ELEVATION, 0},
+    {"elev", POLAR | ELEVATION, 0},
     {"phi", AZIMUTH, 0},
     {"ph", AZIMUTH, 0},
     {"azimuth", AZIMUTH | WORD, 0},
@@ -102,6 +105,13 @@ static const gonio_i_known_word angle_words[] = {
     {"vaa", OUTGOING | AZIMUTH, 0},
     {"emission", OUTGOING | ANY_ANGLE, 0},
     {"emergence", OUTGOING | ANY_ANGLE, 0},
+    {"\xe5\x85\xa5\xe5\xb0\x84\xe8\xa7\x92", INCIDENT | ANY_ANGLE, 0}, /* in Japanese: incidence, */
+    {"\xe5\x8f\x8d\xe5\xb0\x84\xe8\xa7\x92", OUTGOING | ANY_ANGLE, 0}, /* reflection, */
+    {"\xe5\x8f\x97\xe5\x85\x89\xe8\xa7\x92", OUTGOING | ANY_ANGLE, 0}, /* receiving angle */
+    {"r\xc3\xa9"
+     "flexion",
+     OUTGOING, 0},
+    {"reflexion", OUTGOING, 0},
     {"phase", PHASE, 0},
     {"h", HALF, 0},
     {"half", HALF, 0},
@@ -130,6 +140,7 @@ static const gonio_i_known_word angle_words[] = {
     {"winkel", ANY_ANGLE, 0},
     {"direction", FILLER, 0},
     {"of", FILLER, 0},
+    {"de", FILLER, 0},
     {"the", FILLER, 0},
     {"to", FILLER, 0},
     {"deg", DEGREES, 0},
@@ -157,6 +168,9 @@ static bool hear_angle(const gonio_i_words *words, gonio_i_meaning *s)
             angle_words, sizeof angle_words / sizeof *angle_words, words->word[k].text);
         /* "d phi" is a difference of azimuths, phi_d is that of the difference vector */
         const bool d = strcmp(words->word[k].text, "d") == 0;
+        if (d && k + 1 < words->count && strcmp(words->word[k + 1].text, "incidence") == 0) {
+            continue; /* "angle d'incidence" */
+        }
         all = all && (w != NULL || d);
         gonio_i_meaning_add(s,
                             w != NULL ? w->bits
@@ -319,7 +333,8 @@ bool gonio_i_take_angle_name(const gonio_i_words *words, gonio_i_column_name *na
     name->kind = GONIO_I_ANGLE;
     name->index = (size_t)angle;
     name->unit = unit_of_angle(s.bits);
-    return true;
+    name->complement = (s.bits & ELEVATION) != 0;
+    return !name->complement || angle == 0 || angle == 2;
 }
 
 bool gonio_i_names_azimuth(const char *text)

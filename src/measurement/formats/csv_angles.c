@@ -13,7 +13,9 @@ static gonio_status choose_angles(const gonio_i_csv_finder *f, size_t chosen[GON
             continue;
         }
         size_t *at = &chosen[f->name[k].index];
-        if (*at == none || (f->name[k].own && !f->name[*at].own)) {
+        if (*at != none && f->name[k].complement != f->name[*at].complement) {
+            *at = f->name[k].complement ? *at : k; /* theta comes before an elevation */
+        } else if (*at == none || (f->name[k].own && !f->name[*at].own)) {
             *at = k;
         } else if (f->name[k].own == f->name[*at].own && f->name[k].index < GONIO_I_PHASE) {
             return gonio_i_csv_refuse_two(f, "the same angle", *at, k);
@@ -241,7 +243,8 @@ gonio_status gonio_i_csv_find_angles(const gonio_i_csv_finder *f)
         if (k == none) {
             continue;
         }
-        f->c->column[k] = (gonio_i_csv_column){.kind = GONIO_I_ANGLE, .index = angle};
+        f->c->column[k] = (gonio_i_csv_column){
+            .kind = GONIO_I_ANGLE, .index = angle, .complement = f->name[k].complement};
         f->c->own_angles = f->c->own_angles && f->name[k].own;
         if (f->options->as.angles == GONIO_AS_STATED) {
             status = gonio_i_csv_agree(f, "angles", "angles", k, f->name[k].unit,

@@ -75,7 +75,7 @@ static bool take_block_line(gonio_i_line l, block_line *b)
         }
     }
     if (!words.whole || numbers != 1 || !gonio_i_take_angle_name(&names, &name) ||
-        name.index != THETA_I) {
+        name.index != THETA_I || name.complement) {
         return false;
     }
     const char *digit = strpbrk(text, "0123456789");

@@ -6,6 +6,7 @@
 #include <strings.h>
 
 #include "../rules.h"
+#include "csv_factor_names.h"
 #include "csv_keys.h"
 #include "csv_numbers.h"
 
@@ -103,8 +104,11 @@ static gonio_status add_value(const finder *f, size_t k, size_t other, size_t *u
     if (n->family == GONIO_I_WAVELENGTH) {
         c->wavelength[index] = n->wavelength;
     }
-    c->column[k] = (gonio_i_csv_column){
-        .kind = GONIO_I_VALUE, .index = index, .wavelength = n->wavelength, .second = second};
+    c->column[k] = (gonio_i_csv_column){.kind = GONIO_I_VALUE,
+                                        .index = index,
+                                        .wavelength = n->wavelength,
+                                        .second = second,
+                                        .factor = n->factor};
     c->polarised += n->polarisation != 0;
     c->averaged += second ? 2 : 0;
     c->stated.scale = n->scale;
@@ -133,6 +137,30 @@ static void take_value_comment(gonio_i_csv_columns *c, const char *comment)
     c->unclear = heeded || of_angles ? NULL : comment;
 }
 
+/* Takes the factor in a comment on values. */
+static gonio_status take_comment_factor(const finder *f, const char *comment)
+{
+    char rest[128];
+    double factor = 0.0;
+    const bool scaled = comment != NULL && gonio_i_take_factor(comment, sizeof rest, rest, &factor);
+    const bool unclear = comment != NULL && !scaled && gonio_i_value_kind_in(comment) != 0 &&
+                         gonio_i_value_scale_in(comment) == 0 && gonio_i_names_product(comment);
+    for (size_t k = 0; k < f->r->columns && (scaled || unclear); k++) {
+        gonio_i_csv_column *column = &f->c->column[k];
+        const bool stated = f->name[k].strength == GONIO_I_CERTAIN && column->factor == 0.0;
+        if (column->kind == GONIO_I_VALUE && (unclear || stated)) {
+            return gonio_i_fail(f->r->context, GONIO_ERROR_FORMAT,
+                                "%s: the comment '%.60s' and column '%s' leave open whether values "
+                                "are to be multiplied; put the factor into the column's unit: BRDF "
+                                "[1e-3 1/sr]",
+                                f->r->path, comment, f->r->name[k]);
+        }
+        column->factor =
+            column->kind == GONIO_I_VALUE && column->factor == 0.0 ? factor : column->factor;
+    }
+    return GONIO_OK;
+}
+
 static gonio_status add_values(const finder *f, const size_t *other)
 {
     gonio_status status = GONIO_OK;
@@ -158,7 +186,9 @@ static gonio_status find_values(const finder *f)
         gonio_i_csv_find_partners(f, &chosen, other);
         status = add_values(f, other);
     }
-    take_value_comment(f->c, gonio_i_csv_comment_of(f, words));
+    const char *comment = gonio_i_csv_comment_of(f, words);
+    take_value_comment(f->c, comment);
+    status = status == GONIO_OK ? take_comment_factor(f, comment) : status;
     free(chosen.item);
     free(other);
     return status;
@@ -224,6 +254,7 @@ static void add_deviation(const finder *f, size_t k, size_t value, bool *taken)
         (gonio_i_csv_column){.kind = GONIO_I_DEVIATION,
                              .index = c->column[value].index,
                              .wavelength = c->column[value].wavelength,
+                             .factor = n->unit != 0 ? n->factor : c->column[value].factor,
                              .scale = !relative ? 0.0
                                       : percent ? 0.01
                                                 : 1.0,
@@ -288,6 +319,12 @@ static const char *number_not_read(const finder *f)
 static gonio_status refuse_no_values(const finder *f)
 {
     const char *number = number_not_read(f);
+    if (number != NULL && gonio_i_names_product(number)) {
+        return gonio_i_fail(f->r->context, GONIO_ERROR_FORMAT,
+                            "%s: '%s' leaves open whether its values are or were multiplied; put "
+                            "the factor into the unit: BRDF [1e-3 1/sr]",
+                            f->r->path, number);
+    }
     return number != NULL
                ? gonio_i_fail(f->r->context, GONIO_ERROR_FORMAT,
                               "%s: no column of values: '%s' is not understood; name values "
@@ -297,46 +334,6 @@ static gonio_status refuse_no_values(const finder *f)
                               "%s: no column of values (R_per_sr, G_per_sr, B_per_sr, or "
                               "400nm_per_sr ...): a plan that was not measured yet?",
                               f->r->path);
-}
-
-static void find_planned(const finder *f)
-{
-    for (size_t k = 0; k < f->r->columns; k++) {
-        if (f->name[k].kind == GONIO_I_PLANNED) {
-            f->c->column[k].kind = GONIO_I_PLANNED;
-        }
-    }
-}
-
-/* Finds the first column of the time and of the mark of a row. */
-static void find_time_and_mark(const finder *f)
-{
-    bool any_mark = false;
-    for (size_t k = 0; k < f->r->columns; k++) {
-        gonio_i_csv_column *column = &f->c->column[k];
-        if (f->name[k].kind == GONIO_I_TIME && !f->c->any_time) {
-            *column = (gonio_i_csv_column){.kind = GONIO_I_TIME, .scale = f->name[k].seconds};
-            f->c->any_time = true;
-        } else if (f->name[k].kind == GONIO_I_MARK && !any_mark) {
-            column->kind = GONIO_I_MARK;
-            any_mark = true;
-        }
-    }
-}
-
-/* Finds the column that states the wavelength of the row's one value. */
-static void find_row_wavelength(const finder *f)
-{
-    gonio_i_csv_columns *c = f->c;
-    for (size_t k = 0; k < f->r->columns && !c->by_wavelength; k++) {
-        if (f->name[k].kind == GONIO_I_ROW_WAVELENGTH && f->family == GONIO_I_UNNAMED &&
-            c->channels == 1) {
-            c->column[k].kind = GONIO_I_ROW_WAVELENGTH;
-            c->stated.wavelengths = f->name[k].wavelength_unit;
-            c->by_wavelength = true;
-            c->own = false;
-        }
-    }
 }
 
 /* Orders the columns: angles first, then the channel, so that errors come in this order. Marks come
@@ -373,9 +370,7 @@ static gonio_status choose_columns(finder *f)
     if (status == GONIO_OK) {
         status = find_deviations(f);
     }
-    find_planned(f);
-    find_time_and_mark(f);
-    find_row_wavelength(f);
+    gonio_i_csv_find_row_columns(f);
     if (status == GONIO_OK && f->options->values_needed && !f->c->any_value) {
         status = refuse_no_values(f);
     }

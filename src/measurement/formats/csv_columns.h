@@ -10,6 +10,8 @@ typedef struct gonio_i_csv_column {
     gonio_i_column_kind kind; /* GONIO_I_OTHER: not read */
     size_t index;      /* of an angle (gonio_i_column_name); of a value's channel in the file */
     double wavelength; /* of a value or deviation, as in the name; 0: none */
+    bool complement;   /* an angle from the surface */
+    double factor;     /* of the unit of a value or an absolute deviation; 0: none */
     double scale;      /* of a relative deviation: factor to a fraction of the value; 0: absolute.
                         * Of a time: seconds */
     bool second;       /* a value that is averaged with that of the channel's first column */
@@ -20,8 +22,8 @@ typedef struct gonio_i_csv_columns {
     size_t count;
     gonio_i_csv_column *column; /* [count] */
     size_t reads;
-    size_t *read; /* [reads]: the columns that are read; angles, channel, wavelength, time, mark,
-                     values, deviations */
+    size_t *read; /* [reads]: the columns that are read; angles, channel, wavelength, polarisation,
+                     time, mark, values, deviations */
     size_t channels;
     double *wavelength; /* [channels], as the names have them; NULL: colours or unnamed channels */
     gonio_convention stated; /* by names, units and comments; 0 where nothing states it */
@@ -31,6 +33,7 @@ typedef struct gonio_i_csv_columns {
     size_t polarised;          /* columns of values of one polarisation; */
     size_t averaged;           /* of them, those averaged with another */
     bool by_wavelength;        /* a row has one value of one wavelength */
+    bool by_polarisation;      /* a row has values of one polarisation */
     bool own_angles;           /* named as gonio does */
     bool own;                  /* all are */
     bool any_value;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "../rules.h"
+#include "csv_factor_names.h"
 #include "csv_time.h"
 
 static bool ends_own(const char *ending)
@@ -56,6 +57,37 @@ static gonio_i_column_name name_of(const char *text)
     return (gonio_i_column_name){0};
 }
 
+static bool is_polarisation(const char *text)
+{
+    static const char *const names[] = {"pol",
+                                        "pol_i",
+                                        "polarisation",
+                                        "polarization",
+                                        "polarisation_i",
+                                        "polarization_i",
+                                        "incident polarisation",
+                                        "incident polarization"};
+    bool found = false;
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+        found = found || strcasecmp(text, names[k]) == 0;
+    }
+    return found;
+}
+
+/* A name with a factor in its unit, "BRDF [1e-3 1/sr]". */
+static gonio_i_column_name name_of_scaled(const char *text)
+{
+    char rest[128];
+    double factor = 0.0;
+    gonio_i_column_name name = {0};
+    if (gonio_i_take_factor(text, sizeof rest, rest, &factor)) {
+        name = name_of(rest);
+        name.factor = factor;
+    }
+    const bool values = name.kind == GONIO_I_VALUE || name.kind == GONIO_I_DEVIATION;
+    return values && name.scale == 0 && !name.relative ? name : (gonio_i_column_name){0};
+}
+
 /* Reads the name in small letters, because capitals begin words. */
 static gonio_i_column_name name_of_small(const char *text)
 {
@@ -80,6 +112,10 @@ gonio_i_column_name gonio_i_column_name_of(const char *text)
     if (strcasecmp(text, "geometry") == 0 || strcasecmp(text, "measurement geometry") == 0) {
         return (gonio_i_column_name){.kind = GONIO_I_ANGLE, .index = GONIO_I_NAMED_GEOMETRY};
     }
+    if (is_polarisation(text)) {
+        return (gonio_i_column_name){.kind = GONIO_I_POLARISATION};
+    }
     const gonio_i_column_name name = name_of(text);
-    return name.kind != GONIO_I_OTHER ? name : name_of_small(text);
+    const gonio_i_column_name small = name.kind != GONIO_I_OTHER ? name : name_of_small(text);
+    return small.kind != GONIO_I_OTHER ? small : name_of_scaled(text);
 }

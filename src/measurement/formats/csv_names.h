@@ -14,6 +14,7 @@ typedef enum gonio_i_column_kind {
     GONIO_I_ANGLE,
     GONIO_I_PLANNED,
     GONIO_I_ROW_WAVELENGTH, /* of the row's value, where a row has one */
+    GONIO_I_POLARISATION,   /* of the light of the row */
     GONIO_I_TIME,           /* of the row */
     GONIO_I_MARK,           /* what the row is a reading of: sample, reference, dark */
     GONIO_I_VALUE,
@@ -63,6 +64,8 @@ typedef struct gonio_i_column_name {
     size_t index; /* of an angle; of a colour; the number of an unnamed channel, 0: none */
     gonio_i_family family;
     gonio_i_strength strength;
+    bool complement;     /* an angle from the surface: an elevation */
+    double factor;       /* of the unit of a value or deviation; 0: none */
     double wavelength;   /* as written in the name */
     int wavelength_unit; /* gonio_wavelength_unit; 0: not stated */
     int quantity;        /* a number for each quantity; 0: none */
@@ -85,6 +88,9 @@ bool gonio_i_take_beta_name(const char *text, const gonio_i_words *words,
 
 /* The meaning of a column's name. Numbers in names have decimal points. */
 gonio_i_column_name gonio_i_column_name_of(const char *name);
+
+/* Whether a cell is a polarisation of the light. *state: 1 s, -1 p, 0 unpolarised. */
+bool gonio_i_polarisation_of(const char *cell, int *state);
 
 /* Whether one of a text's words is of an azimuth. */
 bool gonio_i_names_azimuth(const char *text);

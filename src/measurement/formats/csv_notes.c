@@ -63,7 +63,9 @@ void gonio_i_csv_describe(const gonio_i_csv_reader *reader, const gonio_i_csv_co
 {
     const char *between = " (";
     snprintf(text, GONIO_I_TAKEN_ROOM, "CSV%s",
-             columns->by_wavelength ? " with a line for each wavelength" : "");
+             columns->by_wavelength     ? " with a line for each wavelength"
+             : columns->by_polarisation ? " with a line for each polarisation"
+                                        : "");
     if (!columns->own_angles) {
         const name_list list = {text, GONIO_I_TAKEN_ROOM, 0};
         list_kind(reader, columns, GONIO_I_ANGLE, " (angles ", text);

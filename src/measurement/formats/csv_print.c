@@ -55,6 +55,7 @@ static void print_column(printer *p, const printed_column *column, size_t readin
     switch (column->kind) {
     case GONIO_I_OTHER:
     case GONIO_I_ROW_WAVELENGTH:
+    case GONIO_I_POLARISATION:
     case GONIO_I_TIME:
     case GONIO_I_MARK:
         print_cell(p, cell != NULL ? cell[column->index] : "");

@@ -89,6 +89,9 @@ static gonio_status take_angle(gonio_i_csv_source *s, size_t column, size_t inde
         gonio_i_csv_is_angle(s->reader.cell[column], s->reader.delimiter, &number)) {
         s->angle[index] = gonio_i_import_rounded(number);
     }
+    if (s->columns->column[column].complement) {
+        s->angle[index] = gonio_i_import_rounded(90.0 - s->angle[index]);
+    }
     return isfinite(number) ? GONIO_OK
                             : bad_number(s, column, GONIO_ERROR_FORMAT, "is not a finite number");
 }
@@ -126,6 +129,12 @@ static gonio_status take_planned(const gonio_i_csv_source *s, size_t column, gon
                : bad_cell(s, column, GONIO_ERROR_FORMAT, "is not a channel: R, G, B or all");
 }
 
+/* The factor of a column's unit; a relative deviation has none. */
+static double factor_of(const gonio_i_csv_column *column)
+{
+    return column->factor > 0.0 && column->scale == 0.0 ? column->factor : 1.0;
+}
+
 /* Keeps the uncertainty in a cell of values. That of a mean of two is of independent numbers. */
 static void take_spread(gonio_i_csv_source *s, size_t column, size_t channel, double spread)
 {
@@ -145,13 +154,14 @@ static gonio_status take_value(gonio_i_csv_source *s, size_t column, size_t chan
     }
     const int scale = s->in.how.scale;
     double spread = NAN;
-    const double number = gonio_i_csv_forms_number(&s->forms, &s->reader, column, &spread);
+    const double factor = factor_of(&s->columns->column[column]);
+    const double number = factor * gonio_i_csv_forms_number(&s->forms, &s->reader, column, &spread);
     const double value = gonio_i_scale_value(scale, number);
     const double before = gonio_i_scale_value(scale, s->value[channel]);
     s->value[channel] = s->columns->column[column].second
                             ? gonio_i_scale_number(scale, 0.5 * (before + value))
                             : number;
-    take_spread(s, column, channel, spread);
+    take_spread(s, column, channel, factor * spread);
     if (mark == GONIO_I_DARK && isfinite(value)) {
         return GONIO_OK; /* noise about nothing has both signs */
     }
@@ -180,7 +190,7 @@ static gonio_status take_deviation(gonio_i_csv_source *s, size_t column, size_t 
     if (is_missing(s, s->reader.cell[column])) {
         return GONIO_OK;
     }
-    const double number = number_of(s, column);
+    const double number = factor_of(&s->columns->column[column]) * number_of(s, column);
     const char *problem = gonio_i_deviation_problem(number, &status);
     s->deviation[channel] = absolute_deviation(s, &s->columns->column[column], number);
     return problem == NULL ? GONIO_OK : bad_number(s, column, status, problem);
@@ -194,6 +204,17 @@ static gonio_status take_wavelength(gonio_i_csv_source *s, size_t column)
                : bad_number(s, column, GONIO_ERROR_FORMAT, "is not a wavelength");
 }
 
+static gonio_status take_polarisation(gonio_i_csv_source *s, size_t column)
+{
+    if (!gonio_i_polarisation_of(s->reader.cell[column], &s->polarisation)) {
+        return bad_cell(s, column, GONIO_ERROR_FORMAT,
+                        "is not a polarisation of the light: s, p or unpolarised; rename the "
+                        "column if it is something else");
+    }
+    s->polarised[s->polarisation + 1]++;
+    return GONIO_OK;
+}
+
 /* Takes a cell. Values come before deviations (csv_columns.h). */
 static gonio_status take_cell(gonio_i_csv_source *s, size_t k, gonio_i_row *row)
 {
@@ -205,6 +226,8 @@ static gonio_status take_cell(gonio_i_csv_source *s, size_t k, gonio_i_row *row)
         return take_planned(s, k, row);
     case GONIO_I_ROW_WAVELENGTH:
         return take_wavelength(s, k);
+    case GONIO_I_POLARISATION:
+        return take_polarisation(s, k);
     case GONIO_I_VALUE:
         return take_value(s, k, column->index, row->mark);
     case GONIO_I_DEVIATION:
@@ -234,15 +257,27 @@ static gonio_status take_directions(const gonio_i_csv_source *s, gonio_i_row *ro
                                           s->reader.path, row->line, problem);
 }
 
-/* Adds a row of one wavelength. It is kept until all wavelengths of its directions are known. */
+/* Adds a row of one wavelength or polarisation. It is kept until all of its directions are known.
+ * Values of s and p are averaged as such, not their logarithms. */
 static gonio_status add_long(gonio_i_csv_source *s, const gonio_i_row *row)
 {
-    gonio_i_long_row kept = {.wavelength = s->wavelength,
-                             .value = s->value[0],
-                             .deviation = s->deviation[0],
-                             .line = row->line};
-    memcpy(kept.degrees, row->degrees, sizeof kept.degrees);
-    return gonio_i_long_table_add(&s->table, &kept);
+    const gonio_i_csv_columns *c = s->columns;
+    const int scale = c->by_polarisation ? s->in.how.scale : GONIO_SCALE_LINEAR;
+    gonio_status status = GONIO_OK;
+    for (size_t k = 0; k < c->channels && status == GONIO_OK; k++) {
+        const double value = gonio_i_scale_value(scale, s->value[k]);
+        gonio_i_long_row kept = {.wavelength = c->by_wavelength        ? s->wavelength
+                                               : c->wavelength != NULL ? c->wavelength[k]
+                                                                       : (double)k,
+                                 .value = value,
+                                 .deviation =
+                                     gonio_i_scale_deviation(scale, value, s->deviation[k]),
+                                 .state = s->polarisation,
+                                 .line = row->line};
+        memcpy(kept.degrees, row->degrees, sizeof kept.degrees);
+        status = gonio_i_long_table_add(&s->table, &kept);
+    }
+    return status;
 }
 
 static gonio_status take_row(gonio_i_csv_source *s)
@@ -266,11 +301,12 @@ static gonio_status take_row(gonio_i_csv_source *s)
     if (status != GONIO_OK) {
         return status;
     }
-    if (s->columns->by_wavelength && row.mark != GONIO_I_SAMPLE) {
+    const bool parts = s->columns->by_wavelength || s->columns->by_polarisation;
+    if (parts && row.mark != GONIO_I_SAMPLE) {
         gonio_i_import_leave_out(&s->in, GONIO_I_NOT_THE_SAMPLE);
         return GONIO_OK;
     }
-    return s->columns->by_wavelength ? add_long(s, &row) : gonio_i_import_add(&s->in, &row);
+    return parts ? add_long(s, &row) : gonio_i_import_add(&s->in, &row);
 }
 
 static gonio_status refuse_empty(const gonio_i_csv_source *s)

@@ -20,6 +20,8 @@ typedef struct gonio_i_csv_source {
     gonio_i_csv_others others;           /* columns that are not read */
     double angle[GONIO_I_ANGLE_COLUMNS]; /* degrees, and components of vectors, of a row */
     double wavelength;                   /* of a row */
+    int polarisation;                    /* of a row: 1 s, -1 p, 0 unpolarised */
+    size_t polarised[3];                 /* rows by polarisation: p, unpolarised, s */
     size_t marks;                        /* cells in place of values, such as "---" */
     char mark[16];                       /* the first of them */
     gonio_i_long_table table;            /* rows of one wavelength each */

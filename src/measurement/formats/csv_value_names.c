@@ -6,6 +6,7 @@
 
 #include <gonio/measurement.h>
 
+#include "csv_factor_names.h"
 #include "csv_meaning.h"
 #include "csv_names.h"
 #include "csv_scale_names.h"
@@ -344,8 +345,8 @@ bool gonio_i_take_value_name(const char *text, const gonio_i_words *words,
     const int scale = gonio_i_take_scale(&own);
     join_f_r(text, &own);
     take_cosine_angle(&own);
-    if (is_cielab(text) || !hear_value(&own, &s, &number) ||
-        (s.twice & (COLOUR | NUMBER | SPREAD | POLARISED)) != 0 ||
+    if (is_cielab(text) || (scale == 0 && gonio_i_names_product(text)) ||
+        !hear_value(&own, &s, &number) || (s.twice & (COLOUR | NUMBER | SPREAD | POLARISED)) != 0 ||
         ((s.bits & POLARISED) != 0 && !may_be_polarised(&s))) {
         return false;
     }

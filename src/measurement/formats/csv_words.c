@@ -33,6 +33,18 @@ static const char *sign_at(const char *at, size_t *length)
     return NULL;
 }
 
+/* The bytes of a character beyond ASCII in UTF-8; 1 for any other. */
+static size_t character_at(const char *at)
+{
+    const unsigned char first = (unsigned char)*at;
+    const size_t length = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : first >= 0xc2 ? 2 : 1;
+    size_t found = 1;
+    while (found < length && ((unsigned char)at[found] & 0xc0) == 0x80) {
+        found++;
+    }
+    return found == length ? length : 1;
+}
+
 /* Turns a text into lower case ASCII, with a blank where a capital follows a small letter. False if
  * it does not fit. */
 static bool simplify(const char *text, char simple[NAME_ROOM])
@@ -53,7 +65,9 @@ static bool simplify(const char *text, char simple[NAME_ROOM])
             simple[used++] = ' ';
         }
         before = *text;
-        simple[used++] = (char)tolower((unsigned char)*text++);
+        for (size_t more = character_at(text); more > 0; more--) {
+            simple[used++] = (char)tolower((unsigned char)*text++);
+        }
     }
     simple[used] = '\0';
     return *text == '\0';

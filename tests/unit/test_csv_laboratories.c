@@ -1,0 +1,150 @@
+/* Tables with polarisations in rows, powers of ten in units, elevations, and names in other
+ * languages. */
+#include "../support.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "made_readings.h"
+
+static gonio_readings *read_as(gonio_context *context, const char *text, bool values)
+{
+    gonio_readings_options options;
+    gonio_readings *readings = NULL;
+    print_message("%s", text);
+    gonio_readings_options_default(&options);
+    options.values_needed = values;
+    gonio_readings_read_text(context, "r.csv", text, strlen(text), &options, &readings);
+    return readings;
+}
+
+static gonio_readings *read_text(gonio_context *context, const char *text)
+{
+    return read_as(context, text, false);
+}
+
+static gonio_readings *read_measured(gonio_context *context, const char *text)
+{
+    return read_as(context, text, true);
+}
+
+static void assert_near(double value, double expected)
+{
+    if (!(fabs(value - expected) <= 1e-8)) {
+        fail_msg("%.17g where %.17g is expected", value, expected);
+    }
+}
+
+/* A table: how many readings it has, and the last of them. */
+typedef struct table {
+    const char *text;
+    size_t count;
+    double theta_i, theta_o;
+    double value;     /* in the last channel */
+    double deviation; /* 0: none */
+    const char *note;
+} table;
+
+static const table tables[] = {
+    {"theta_i,theta_o,pol,brdf\n30,20,s,0.3\n30,20,p,0.5\n30,40,unpolarised,1\n30,50,TE,1\n"
+     "30,50,TM,3\n",
+     3, 30, 50, 2.0, 0.0,
+     "the values of s and of p polarisation are averaged, where there are both"},
+    {"theta_i,theta_o,polarization,400nm,500nm\n30,20,s,0.3,1\n30,20,p,0.5,3\n", 1, 30, 20, 2.0,
+     0.0, "with a line for each polarisation"},
+    {"theta_i,theta_o,pol,wavelength,brdf,sigma\n30,20,s,400,0.3,0.3\n30,20,p,400,0.5,0.4\n", 1, 30,
+     20, 0.4, 0.25, "averaged"},
+    {"theta_i,theta_o,pol,BRDF [dB]\n30,20,s,-10\n30,20,p,0\n", 1, 30, 20, 0.55, 0.0, "averaged"},
+    {"theta_i,theta_o,pol,R,G,B\n30,20,s,1,2,3\n30,40,s,3,4,5\n", 2, 30, 40, 5.0, 0.0,
+     "of one polarisation only"},
+    {"theta_i,theta_o,BRDF [10^-3 sr^-1]\n30,20,350\n", 1, 30, 20, 0.35, 0.0, "10^-3"},
+    {"theta_i,theta_o,BRDF (e-3/sr),sigma\n30,20,350,10\n", 1, 30, 20, 0.35, 0.01, "e-3"},
+    {"theta_i,theta_o,BRDF (\xc3\x97"
+     "10\xe2\x81\xbb\xc2\xb3 sr\xe2\x81\xbb\xc2\xb9)\n30,20,350\n",
+     1, 30, 20, 0.35, 0.0, "BRDF"},
+    {"theta_i,theta_o,BRDF 550nm [2E-03 1/sr],u(550nm) [1/sr]\n30,20,350,0.01\n", 1, 30, 20, 0.7,
+     0.01, "2E-03"},
+    {"theta_i,theta_o,brdf\ndeg,deg,10^-3 1/sr\n30,20,350\n", 1, 30, 20, 0.35, 0.0, "10^-3"},
+    {"# unit: 1e-3 1/sr\ntheta_i,theta_o,brdf\n30,20,350\n", 1, 30, 20, 0.35, 0.0, "brdf"},
+    {"elevation_i,detector elevation,BRDF\n60,75,1\n", 1, 30, 15, 1.0, 0.0, "elevation"},
+    {"theta_i,sensor elevation,theta_o,BRDF\n30,75,20,1\n", 1, 30, 20, 1.0, 0.0,
+     "sensor elevation"},
+    {"Angle d'incidence (\xc2\xb0);Angle de r\xc3\xa9"
+     "flexion (\xc2\xb0);BRDF\n30;20;0,35\n",
+     1, 30, 20, 0.35, 0.0, "incidence"},
+    {"\xe5\x85\xa5\xe5\xb0\x84\xe8\xa7\x92,\xe5\x8f\x97\xe5\x85\x89\xe8\xa7\x92[deg],brdf\n30,20,"
+     "1\n",
+     1, 30, 20, 1.0, 0.0, "plane"},
+    {"theta_i,theta_o,BRDF,date\n30,20,0.3,3/12/2024\n", 1, 30, 20, 0.3, 0.0, "plane"},
+};
+
+static bool is_noted(const gonio_readings_view *view, const char *note)
+{
+    bool found = false;
+    for (size_t k = 0; k < view->notes; k++) {
+        found = found || strstr(view->note[k], note) != NULL;
+    }
+    return found;
+}
+
+static void test_tables(void **state)
+{
+    (void)state;
+    for (size_t k = 0; k < sizeof tables / sizeof *tables; k++) {
+        const table *t = &tables[k];
+        gonio_context *context = support_context();
+        gonio_readings *readings = read_text(context, t->text);
+        assert_non_null(readings);
+        const gonio_readings_view *view = gonio_readings_describe(readings);
+        assert_int_equal(view->count, t->count);
+        const size_t last = view->count - 1;
+        assert_near(view->pair[last].incident.theta * 180.0 / M_PI, t->theta_i);
+        assert_near(view->pair[last].outgoing.theta * 180.0 / M_PI, t->theta_o);
+        assert_near(view->value[view->count * view->channels - 1], t->value);
+        assert_int_equal(view->deviation != NULL, t->deviation > 0.0);
+        if (view->deviation != NULL) {
+            assert_near(view->deviation[view->count * view->channels - 1], t->deviation);
+        }
+        assert_true(is_noted(view, t->note));
+        gonio_readings_free(&readings);
+        gonio_context_free(&context);
+    }
+}
+
+/* Whether a factor was applied or is to be applied is not guessed. */
+static void test_what_is_refused(void **state)
+{
+    static const struct {
+        const char *text;
+        const char *message;
+    } cases[] = {
+        {"theta_i,theta_o,BRDF x1e-3 [1/sr]\n30,20,350\n", "put the factor into the unit"},
+        {"theta_i,theta_o,BRDF x 1000\n30,20,350\n", "put the factor into the unit"},
+        {"theta_i,theta_o,BRDF*1000\n30,20,350\n", "put the factor into the unit"},
+        {"theta_i,theta_o,1000*BRDF\n30,20,350\n", "put the factor into the unit"},
+        {"theta_i,theta_o,BRDF/1000\n30,20,350\n", "put the factor into the unit"},
+        {"# unit: 1e-3 1/sr\ntheta_i,theta_o,brdf [1/sr]\n30,20,350\n", "into the column's unit"},
+        {"# values: BRDF x 1000\ntheta_i,theta_o,brdf\n30,20,350\n", "into the column's unit"},
+        {"unit: 1e-3 1/sr\ntheta_i = 30\ntheta\\phi,0,90\n0,1,1\n",
+         "r.csv:1: values with a factor"},
+        {"theta_i,theta_o,pol,brdf\n30,20,45,1\n", "r.csv:2: pol '45' is not a polarisation"},
+    };
+    (void)state;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        gonio_context *context = support_context();
+        assert_null(read_measured(context, cases[k].text));
+        if (strstr(support_message(), cases[k].message) == NULL) {
+            fail_msg("%s", support_message());
+        }
+        gonio_context_free(&context);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_tables),
+        cmocka_unit_test(test_what_is_refused),
+    };
+    return cmocka_run_group_tests_name("csv laboratories", tests, NULL, NULL);
+}
