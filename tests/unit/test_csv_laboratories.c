@@ -75,6 +75,10 @@ static const table tables[] = {
     {"\xe5\x85\xa5\xe5\xb0\x84\xe8\xa7\x92,\xe5\x8f\x97\xe5\x85\x89\xe8\xa7\x92[deg],brdf\n30,20,"
      "1\n",
      1, 30, 20, 1.0, 0.0, "plane"},
+    {"ux_i,uy_i,uz_i,ux_o,uy_o,uz_o,brdf\n1,0,1,0,0,1,2\n", 1, 45, 0, 2.0, 0.0, "vectors"},
+    {"theta_i,theta_o,Blue_450,Red_650\n30,20,1,2\n", 1, 30, 20, 2.0, 0.0, "'Blue_450', 'Red_650'"},
+    {"AOI: 30\nphi theta value\n0 10 0.2\n90 15 0.3\n", 2, 30, 15, 0.3, 0.0, "phi_o"},
+    {"sample,theta_i,theta_o,brdf\n1,30,20,0.3\n2,30,25,0.4\n", 2, 30, 25, 0.4, 0.0, "'sample'"},
     {"theta_i,theta_o,BRDF,date\n30,20,0.3,3/12/2024\n", 1, 30, 20, 0.3, 0.0, "plane"},
 };
 
@@ -127,6 +131,12 @@ static void test_what_is_refused(void **state)
         {"# values: BRDF x 1000\ntheta_i,theta_o,brdf\n30,20,350\n", "into the column's unit"},
         {"unit: 1e-3 1/sr\ntheta_i = 30\ntheta\\phi,0,90\n0,1,1\n",
          "r.csv:1: values with a factor"},
+        {"sample,theta_i,theta_o,brdf\nA,30,20,0.3\nB,30,25,0.4\n",
+         "r.csv:3: sample 'B', but the rows"},
+        {"theta_i,theta_o,pol_i,pol_o,brdf\n30,20,s,p,1\n", "add the values of s and of p"},
+        {"theta_i,theta_o,wavenumber,brdf\n30,20,20000,1\n", "give wavelengths"},
+        {"theta_i,theta_o,log10(brdf)\n30,20,400\n",
+         "'400' is not a finite number when its logarithm is undone: larger"},
         {"theta_i,theta_o,pol,brdf\n30,20,45,1\n", "r.csv:2: pol '45' is not a polarisation"},
     };
     (void)state;

@@ -321,12 +321,27 @@ static int component_of(const gonio_i_words *words)
     return side >= 0 ? GONIO_I_VECTORS + 3 * side + component : -1;
 }
 
+/* "ux_i", "kz o": the index of a component whose side is behind it; -1 for none. */
+static int component_before(const gonio_i_words *words)
+{
+    const char *first = words->whole && words->count == 2 ? words->word[0].text : "";
+    const size_t length = strlen(first);
+    const char last = length > 0 ? first[length - 1] : '\0';
+    if (length == 0 || length > 2 || last < 'x' || last > 'z' ||
+        (length == 2 && strchr("ukndv", first[0]) == NULL)) {
+        return -1;
+    }
+    const int side = side_of(&words->word[1], 1);
+    return side >= 0 ? GONIO_I_VECTORS + 3 * side + (last - 'x') : -1;
+}
+
 /* ---- all ---- */
 
 bool gonio_i_take_angle_name(const gonio_i_words *words, gonio_i_column_name *name)
 {
     gonio_i_meaning s;
-    const int angle = hear_angle(words, &s) ? angle_of(s.bits) : component_of(words);
+    int angle = hear_angle(words, &s) ? angle_of(s.bits) : component_of(words);
+    angle = angle < 0 ? component_before(words) : angle;
     if (angle < 0) {
         return false;
     }

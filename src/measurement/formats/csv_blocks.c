@@ -7,10 +7,11 @@
 #include <gonio/measurement.h>
 
 #include "../../core/csv_reader.h"
+#include "crossed.h"
 #include "csv_cells.h"
 #include "csv_names.h"
 
-enum { MOST_LINES = 200, NAME_ROOM = 128, THETA_I = 0, PHI_O = 3 };
+enum { MOST_LINES = 200, NAME_ROOM = 128, THETA_I = 0, THETA_O = 2, PHI_O = 3 };
 
 static const char separators[] = "\t;, ";
 
@@ -118,6 +119,18 @@ typedef struct blocks {
     bool azimuths;      /* that of the detector is among them: the light is at 0 */
 } blocks;
 
+/* Whether a name is that of the detector's azimuth. */
+static bool has_azimuth(gonio_i_line l)
+{
+    gonio_i_line cell;
+    bool found = false;
+    const char separator = separator_of(l);
+    while (separator != '\0' && gonio_i_next_cell(&l, separator, &cell)) {
+        found = found || gonio_i_axis_of(cell).index == PHI_O;
+    }
+    return found;
+}
+
 /* Whether a line is "key: text". */
 static bool is_key(gonio_i_line l)
 {
@@ -149,7 +162,7 @@ static bool find_blocks(const char *text, size_t size, blocks *b)
         } else if (inside && mark == NULL && b->names.at == NULL && separator_of(rest) != '\0' &&
                    !is_key(rest)) {
             b->names = rest;
-            b->azimuths = (angles_named(rest) & 1U << PHI_O) != 0;
+            b->azimuths = has_azimuth(rest);
         }
     }
     return false;
@@ -182,17 +195,20 @@ static const char *words_of_unit(int unit)
                                                  : "";
 }
 
-/* The name of the first column of rows: theta_o, in the unit of theta_i if it states none, unless
- * it says which angle of the detector it is. */
-static void print_detector(FILE *stream, gonio_i_line cell, int unit)
+/* The name of a column of rows. theta and phi alone are those of the detector, and so is the first
+ * column without such a name, in the unit of theta_i if it states none. */
+static void print_name(FILE *stream, gonio_i_line cell, int unit, bool first)
 {
     char text[NAME_ROOM] = "";
     memcpy(text, cell.at, cell.length < sizeof text ? cell.length : sizeof text - 1);
     const int said = gonio_i_angle_unit_in(text);
-    if (name_of(cell).kind == GONIO_I_ANGLE) {
-        fprintf(stream, "\t%s", text);
+    const bool azimuth = gonio_i_axis_of(cell).index == PHI_O;
+    const bool polar = first || gonio_i_axis_of(cell).index == THETA_O;
+    if (name_of(cell).kind == GONIO_I_ANGLE || !(azimuth || polar)) {
+        fprintf(stream, "\t%.*s", (int)cell.length, cell.at);
     } else {
-        fprintf(stream, "\ttheta_o%s", words_of_unit(said != 0 ? said : unit));
+        fprintf(stream, "\t%s%s", azimuth ? "phi_o" : "theta_o",
+                words_of_unit(said != 0 ? said : unit));
     }
 }
 
@@ -207,9 +223,9 @@ static void print_names(FILE *stream, const blocks *b)
     }
     const char separator = separator_of(rest);
     gonio_i_next_cell(&rest, separator, &cell);
-    print_detector(stream, cell, b->unit);
+    print_name(stream, cell, b->unit, true);
     while (gonio_i_next_cell(&rest, separator, &cell)) {
-        fprintf(stream, "\t%.*s", (int)cell.length, cell.at);
+        print_name(stream, cell, b->unit, false);
     }
     fputc('\n', stream);
 }

@@ -370,7 +370,7 @@ static gonio_status choose_columns(finder *f)
     if (status == GONIO_OK) {
         status = find_deviations(f);
     }
-    gonio_i_csv_find_row_columns(f);
+    status = status == GONIO_OK ? gonio_i_csv_find_row_columns(f) : status;
     if (status == GONIO_OK && f->options->values_needed && !f->c->any_value) {
         status = refuse_no_values(f);
     }

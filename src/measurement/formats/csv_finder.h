@@ -35,7 +35,8 @@ const char *gonio_i_csv_comment_of(const gonio_i_csv_finder *f, const char *cons
 gonio_status gonio_i_csv_find_angles(const gonio_i_csv_finder *f);
 
 /* Finds the columns of the planned channel, the time, the mark, the wavelength and the polarisation
- * of a row (csv_row_columns.c), behind those of values. */
-void gonio_i_csv_find_row_columns(const gonio_i_csv_finder *f);
+ * of a row (csv_row_columns.c), behind those of values. Errors: _FORMAT for columns of wavenumbers
+ * and of polarisations that the detector sees. */
+gonio_status gonio_i_csv_find_row_columns(const gonio_i_csv_finder *f);
 
 #endif

@@ -1,6 +1,8 @@
 /* Columns of CSV that say something of their row: see csv_finder.h. */
 #include "csv_finder.h"
 
+#include <strings.h>
+
 static void find_planned(const gonio_i_csv_finder *f)
 {
     for (size_t k = 0; k < f->r->columns; k++) {
@@ -54,10 +56,61 @@ static void find_polarisation(const gonio_i_csv_finder *f)
     }
 }
 
-void gonio_i_csv_find_row_columns(const gonio_i_csv_finder *f)
+static bool is_one_of(const char *name, const char *const *names)
+{
+    bool found = false;
+    for (; *names != NULL; names++) {
+        found = found || strcasecmp(name, *names) == 0;
+    }
+    return found;
+}
+
+/* Whether a column has polarisations that the detector sees. */
+static bool is_analyser(const gonio_i_csv_finder *f, size_t column)
+{
+    static const char *const names[] = {"pol_o",
+                                        "pol_r",
+                                        "pol_s",
+                                        "analyser",
+                                        "analyzer",
+                                        "polarisation_o",
+                                        "polarization_o",
+                                        "polarisation_r",
+                                        "polarization_r",
+                                        "detector polarisation",
+                                        "detector polarization",
+                                        NULL};
+    int state = 0;
+    return column < f->r->cells && is_one_of(f->r->name[column], names) &&
+           gonio_i_polarisation_of(f->r->cell[column], &state) && state != 0;
+}
+
+/* Refuses columns that make one reading of several rows in ways that are not read. */
+static gonio_status refuse_parts(const gonio_i_csv_finder *f)
+{
+    for (size_t k = 0; k < f->r->columns && f->c->any_value; k++) {
+        const char *name = f->r->name[k];
+        if (is_analyser(f, k)) {
+            return gonio_i_fail(f->r->context, GONIO_ERROR_FORMAT,
+                                "%s: column '%s' has the polarisation that the detector sees; add "
+                                "the values of s and of p, and delete it",
+                                f->r->path, name);
+        }
+        if (strncasecmp(name, "wavenumber", 10) == 0 && !f->c->by_wavelength) {
+            return gonio_i_fail(f->r->context, GONIO_ERROR_FORMAT,
+                                "%s: column '%s' is not read; give wavelengths, 1e7 nm divided by "
+                                "the wavenumber in 1/cm",
+                                f->r->path, name);
+        }
+    }
+    return GONIO_OK;
+}
+
+gonio_status gonio_i_csv_find_row_columns(const gonio_i_csv_finder *f)
 {
     find_planned(f);
     find_time_and_mark(f);
     find_row_wavelength(f);
     find_polarisation(f);
+    return refuse_parts(f);
 }

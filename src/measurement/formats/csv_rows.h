@@ -22,6 +22,8 @@ typedef struct gonio_i_csv_source {
     double wavelength;                   /* of a row */
     int polarisation;                    /* of a row: 1 s, -1 p, 0 unpolarised */
     size_t polarised[3];                 /* rows by polarisation: p, unpolarised, s */
+    size_t sample_column;                /* that names samples */
+    char sample[41];                     /* the name in the first row that has one */
     size_t marks;                        /* cells in place of values, such as "---" */
     char mark[16];                       /* the first of them */
     gonio_i_long_table table;            /* rows of one wavelength each */

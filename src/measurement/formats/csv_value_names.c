@@ -273,9 +273,9 @@ static bool take_channel(const gonio_i_meaning *s, double number, gonio_i_column
     const int quantity = value_of(s, QUANTITY);
     const bool alone = quantity == NO_QUANTITY;
     name->quantity = quantity;
-    const bool reflectance = numbered && number >= LEAST_BARE_WAVELENGTH && s->words == 2 &&
-                             (s->bits & COLOUR) != 0 && value_of(s, COLOUR) == 0;
-    if (reflectance) { /* R550: the reflectance at 550 nm */
+    const bool reflectance =
+        numbered && number >= LEAST_BARE_WAVELENGTH && s->words == 2 && (s->bits & COLOUR) != 0;
+    if (reflectance) { /* R550: the reflectance at 550 nm; Blue_450 */
         name->family = GONIO_I_WAVELENGTH;
         name->wavelength = number;
         return true;
