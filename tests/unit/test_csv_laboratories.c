@@ -79,6 +79,9 @@ static const table tables[] = {
     {"theta_i,theta_o,Blue_450,Red_650\n30,20,1,2\n", 1, 30, 20, 2.0, 0.0, "'Blue_450', 'Red_650'"},
     {"AOI: 30\nphi theta value\n0 10 0.2\n90 15 0.3\n", 2, 30, 15, 0.3, 0.0, "phi_o"},
     {"sample,theta_i,theta_o,brdf\n1,30,20,0.3\n2,30,25,0.4\n", 2, 30, 25, 0.4, 0.0, "'sample'"},
+    {"AOI 30\nbrdf,angle\n0.5,20\n", 1, 30, 20, 0.5, 0.0, "theta_o"},
+    {"theta_i,theta_o,brdf,flag\n30,20,1,ok\n30,25,2,bad\n", 2, 30, 25, 2.0, 0.0,
+     "'flag' is not heeded"},
     {"theta_i,theta_o,BRDF,date\n30,20,0.3,3/12/2024\n", 1, 30, 20, 0.3, 0.0, "plane"},
 };
 
@@ -132,7 +135,11 @@ static void test_what_is_refused(void **state)
         {"unit: 1e-3 1/sr\ntheta_i = 30\ntheta\\phi,0,90\n0,1,1\n",
          "r.csv:1: values with a factor"},
         {"sample,theta_i,theta_o,brdf\nA,30,20,0.3\nB,30,25,0.4\n",
-         "r.csv:3: sample 'B', but the rows"},
+         "r.csv:3: sample 'B', but rows above"},
+        {"theta_i,theta_o,filter,brdf\n30,20,red,1\n30,20,blue,2\n",
+         "filter 'blue', but rows above"},
+        {"theta_i,theta_o,type,value\n30,20,BRDF,1\n30,20,BTDF,2\n", "r.csv:3: a value of transm"},
+        {"AOI 30\nWavelength (um),brdf\n0.4,0.3\n", "no column 'theta_o_deg'"},
         {"theta_i,theta_o,pol_i,pol_o,brdf\n30,20,s,p,1\n", "add the values of s and of p"},
         {"theta_i,theta_o,wavenumber,brdf\n30,20,20000,1\n", "give wavelengths"},
         {"theta_i,theta_o,log10(brdf)\n30,20,400\n",

@@ -96,6 +96,9 @@ static void trim(gonio_i_crossed_line *t)
 gonio_i_crossed_line gonio_i_crossed_take(gonio_i_line l)
 {
     const char *mark = NULL;
+    if (l.length >= 3 && memcmp(l.at, "\xef\xbb\xbf", 3) == 0) {
+        l = (gonio_i_line){l.at + 3, l.length - 3}; /* a byte-order mark */
+    }
     gonio_i_crossed_line t = {.text = gonio_i_without_mark(l, &mark)};
     gonio_i_line rest = t.text;
     gonio_i_line corner = {NULL, 0};

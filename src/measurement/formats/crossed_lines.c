@@ -168,11 +168,14 @@ bool gonio_i_geometry_of(gonio_i_line line, gonio_i_settings *s)
         return false;
     }
     at += strspn(at, " ");
+    const bool between = *at == '/' || *at == ':';
+    at += between ? 1 : 0;
+    at += strspn(at, " ");
     const bool aspecular = strncasecmp(at, "as", 2) == 0;
-    if (!aspecular && (prefixed || (*at != '/' && *at != ':'))) {
+    if (!aspecular && (prefixed || !between)) {
         return false;
     }
-    at += aspecular ? 2 : 1;
+    at += aspecular ? 2 : 0;
     at = take_degrees(at + strspn(at, " "), &second);
     const size_t index = aspecular ? GONIO_I_ASPECULAR : 2;
     s->angle[index] = second;

@@ -106,6 +106,7 @@ static gonio_status write_notes(gonio_i_csv_source *s)
         return status;
     }
     status = status == GONIO_OK ? note_polarisation(s) : status;
+    status = status == GONIO_OK ? gonio_i_csv_words_note(s) : status;
     if (status == GONIO_OK && s->columns->unclear != NULL) {
         status = gonio_i_readings_note(
             s->context, s->readings,

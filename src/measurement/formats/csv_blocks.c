@@ -116,17 +116,18 @@ typedef struct blocks {
     size_t first;       /* number of the first block's line, from 0 */
     int unit;           /* of its angle */
     gonio_i_line names; /* the first line of names in a block; at is NULL: there is none */
+    bool polar;         /* the detector's polar angle has a name */
     bool azimuths;      /* that of the detector is among them: the light is at 0 */
 } blocks;
 
-/* Whether a name is that of the detector's azimuth. */
-static bool has_azimuth(gonio_i_line l)
+/* Whether a name is that of an angle of the detector. */
+static bool has_axis(gonio_i_line l, int angle)
 {
     gonio_i_line cell;
     bool found = false;
     const char separator = separator_of(l);
     while (separator != '\0' && gonio_i_next_cell(&l, separator, &cell)) {
-        found = found || gonio_i_axis_of(cell).index == PHI_O;
+        found = found || gonio_i_axis_of(cell).index == angle;
     }
     return found;
 }
@@ -162,7 +163,8 @@ static bool find_blocks(const char *text, size_t size, blocks *b)
         } else if (inside && mark == NULL && b->names.at == NULL && separator_of(rest) != '\0' &&
                    !is_key(rest)) {
             b->names = rest;
-            b->azimuths = has_azimuth(rest);
+            b->azimuths = has_axis(rest, PHI_O);
+            b->polar = has_axis(rest, THETA_O);
         }
     }
     return false;
@@ -203,8 +205,9 @@ static void print_name(FILE *stream, gonio_i_line cell, int unit, bool first)
     memcpy(text, cell.at, cell.length < sizeof text ? cell.length : sizeof text - 1);
     const int said = gonio_i_angle_unit_in(text);
     const bool azimuth = gonio_i_axis_of(cell).index == PHI_O;
+    const bool unknown = name_of(cell).kind == GONIO_I_OTHER;
     const bool polar = first || gonio_i_axis_of(cell).index == THETA_O;
-    if (name_of(cell).kind == GONIO_I_ANGLE || !(azimuth || polar)) {
+    if (!unknown || !(azimuth || polar)) {
         fprintf(stream, "\t%.*s", (int)cell.length, cell.at);
     } else {
         fprintf(stream, "\t%s%s", azimuth ? "phi_o" : "theta_o",
@@ -223,7 +226,7 @@ static void print_names(FILE *stream, const blocks *b)
     }
     const char separator = separator_of(rest);
     gonio_i_next_cell(&rest, separator, &cell);
-    print_name(stream, cell, b->unit, true);
+    print_name(stream, cell, b->unit, !b->polar);
     while (gonio_i_next_cell(&rest, separator, &cell)) {
         print_name(stream, cell, b->unit, false);
     }

@@ -283,45 +283,6 @@ static gonio_status add_long(gonio_i_csv_source *s, const gonio_i_row *row)
     return status;
 }
 
-/* The column that says by words of which sample a row is; the number of columns for none. */
-static size_t find_sample(const gonio_i_csv_source *s)
-{
-    static const char *const names[] = {"sample",    "sample name",   "sample_name",
-                                        "sample id", "sample_id",     "material",
-                                        "specimen",  "material name", "material_name"};
-    size_t k = 0;
-    for (; k < s->reader.columns; k++) {
-        for (size_t j = 0; j < sizeof names / sizeof *names; j++) {
-            if (s->columns->column[k].kind == GONIO_I_OTHER &&
-                strcasecmp(s->reader.name[k], names[j]) == 0) {
-                return k;
-            }
-        }
-    }
-    return k;
-}
-
-/* Refuses rows of another sample than those above: numbers may count rows, words name samples. */
-static gonio_status check_sample(gonio_i_csv_source *s)
-{
-    const bool any = s->sample_column < s->reader.columns && !s->readings->options.directions_only;
-    const char *cell = any ? s->reader.cell[s->sample_column] : "";
-    double number = 0.0;
-    if (*cell == '\0' || gonio_i_csv_is_number(cell, s->reader.delimiter, &number)) {
-        return GONIO_OK;
-    }
-    if (s->sample[0] == '\0') {
-        snprintf(s->sample, sizeof s->sample, "%s", cell);
-    }
-    return strncmp(s->sample, cell, sizeof s->sample - 1) == 0
-               ? GONIO_OK
-               : gonio_i_fail(s->context, GONIO_ERROR_DATA,
-                              "%s:%zu: %s '%.40s', but the rows above are of '%s'; keep the rows "
-                              "of one, or rename the column if all are of one material",
-                              s->reader.path, s->reader.line, s->reader.name[s->sample_column],
-                              cell, s->sample);
-}
-
 static gonio_status take_row(gonio_i_csv_source *s)
 {
     gonio_i_row row = {.planned = GONIO_ALL_CHANNELS,
@@ -339,7 +300,7 @@ static gonio_status take_row(gonio_i_csv_source *s)
         status = take_cell(s, s->columns->read[k], &row);
     }
     status = status == GONIO_OK ? take_directions(s, &row) : status;
-    status = status == GONIO_OK ? check_sample(s) : status;
+    status = status == GONIO_OK ? gonio_i_csv_words_look(s) : status;
     gonio_i_csv_others_look(&s->others, &s->reader);
     if (status != GONIO_OK) {
         return status;
@@ -366,7 +327,7 @@ static gonio_status refuse_empty(const gonio_i_csv_source *s)
 gonio_status gonio_i_csv_take_rows(gonio_i_csv_source *s)
 {
     const size_t channels = s->columns->channels;
-    s->sample_column = find_sample(s);
+    gonio_i_csv_words_begin(s);
     s->value = gonio_i_allocate(s->context, channels, sizeof *s->value);
     s->deviation = gonio_i_allocate(s->context, channels, sizeof *s->deviation);
     gonio_status status = GONIO_ERROR_MEMORY;

@@ -7,6 +7,12 @@
 #include "csv_forms.h"
 #include "csv_notes.h"
 
+/* A column of words. */
+typedef struct gonio_i_csv_word_column {
+    size_t column;             /* the number of columns for none */
+    char first[41], other[41]; /* words of it that differ; "" for none */
+} gonio_i_csv_word_column;
+
 /* A file that is read. */
 typedef struct gonio_i_csv_source {
     gonio_context *context;
@@ -22,8 +28,9 @@ typedef struct gonio_i_csv_source {
     double wavelength;                   /* of a row */
     int polarisation;                    /* of a row: 1 s, -1 p, 0 unpolarised */
     size_t polarised[3];                 /* rows by polarisation: p, unpolarised, s */
-    size_t sample_column;                /* that names samples */
-    char sample[41];                     /* the name in the first row that has one */
+    gonio_i_csv_word_column subject;     /* what rows are of */
+    size_t kind_column;                  /* whether they are of transmission */
+    gonio_i_csv_word_column quality;     /* whether they are good */
     size_t marks;                        /* cells in place of values, such as "---" */
     char mark[16];                       /* the first of them */
     gonio_i_long_table table;            /* rows of one wavelength each */
@@ -32,5 +39,14 @@ typedef struct gonio_i_csv_source {
 /* Takes all rows behind the names of the columns. Errors: _FORMAT, _DATA, _MEMORY; the message
  * names the line and the cell. */
 gonio_status gonio_i_csv_take_rows(gonio_i_csv_source *source);
+
+/* Columns of words in which rows must not differ, or that say which rows are bad
+ * (csv_word_columns.c). Errors: _DATA for a row of another sample, colour or side, or of
+ * transmission. */
+void gonio_i_csv_words_begin(gonio_i_csv_source *source);
+gonio_status gonio_i_csv_words_look(gonio_i_csv_source *source);
+
+/* Says that the quality of rows was not heeded. Errors: _MEMORY. */
+gonio_status gonio_i_csv_words_note(const gonio_i_csv_source *source);
 
 #endif
