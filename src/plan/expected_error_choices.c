@@ -7,6 +7,7 @@
 
 #include "../metric/metric.h"
 #include "../prior/after_readings.h"
+#include "odd_places.h"
 
 /* Standard deviation of a reading, log units: noise and the error of the model near the reading.
  * Chosen by errors of left-out materials: with 0.03 or 0.05 plans trust single readings too much.
@@ -29,11 +30,24 @@ static const double SAME = 1e-6;
 /* Nearer to the normal a direction has no azimuth, radians. */
 static const double POLE = 1e-6;
 
+/* The least alpha and the share of the peak that further readings expect of what others chose. */
+static const double LEAST_ALPHA = 0.03;
+static const double SHARE_OF_PEAK = 2.5 / 8.0;
+
 enum { MOST_RANK = 500 };
 
 double gonio_i_planned_remainder(const gonio_i_place *a, const gonio_i_place *b)
 {
     return ALPHA * ALPHA * gonio_i_remainder(a, b, PEAK, 0.0);
+}
+
+static double remainder_of(const gonio_i_choices *p, const gonio_i_place *a, const gonio_i_place *b)
+{
+    if (p->known == NULL) {
+        return gonio_i_planned_remainder(a, b);
+    }
+    const double alpha = fmax(p->known->alpha, LEAST_ALPHA);
+    return alpha * alpha * gonio_i_remainder(a, b, SHARE_OF_PEAK * p->known->peak, 0.0);
 }
 
 static void to_float(const double *from, size_t count, float *to)
@@ -131,16 +145,16 @@ gonio_status gonio_i_choices_of_rows(gonio_i_choices *p, gonio_metric metric)
     return failed ? GONIO_ERROR_MEMORY : GONIO_OK;
 }
 
-/* Given    f[rows][K] and places of candidates, whose covariance is C = f f' + alpha^2 k
- * Returned p->f[rows][p->components], p->f p->f' = C to within LEFT of every variance
+/* Given    rows of f[rows][k] and places of candidates, whose covariance is C = f f' + alpha^2 r
+ * Returned factor[rows][most], the columns of which up to the rank that is returned are g with
+ *          g g' = C to within LEFT of every variance
  * Method   Cholesky with pivoting on the largest variance left (Higham 2002, sec. 10.3); columns of
  *          C are computed when they are needed */
-static void factorise(gonio_i_choices *p, const float *f, const gonio_i_place *place, double *left)
+static size_t factorise(const gonio_i_choices *p, const float *f, size_t k,
+                        const gonio_i_place *place, double *left, size_t most, float *factor)
 {
-    const size_t most = p->components;
-    const size_t k = p->prior->components;
     for (size_t i = 0; i < p->rows; i++) {
-        left[i] = dot(f + i * k, f + i * k, k) + gonio_i_planned_remainder(&place[i], &place[i]);
+        left[i] = dot(f + i * k, f + i * k, k) + remainder_of(p, &place[i], &place[i]);
     }
     size_t rank = 0;
     for (; rank < most; rank++) {
@@ -154,18 +168,21 @@ static void factorise(gonio_i_choices *p, const float *f, const gonio_i_place *p
         const double root = sqrt(left[pivot]);
 #pragma omp parallel for schedule(static) num_threads(gonio_context_threads(p->context))
         for (size_t i = 0; i < p->rows; i++) {
-            const double c = dot(f + i * k, f + pivot * k, k) +
-                             gonio_i_planned_remainder(&place[i], &place[pivot]);
-            const double known = dot(p->f + i * most, p->f + pivot * most, rank);
+            const double c =
+                dot(f + i * k, f + pivot * k, k) + remainder_of(p, &place[i], &place[pivot]);
+            const double known = dot(factor + i * most, factor + pivot * most, rank);
             const float entry = (float)((c - known) / root);
-            p->f[i * most + rank] = entry;
+            factor[i * most + rank] = entry;
             left[i] -= (double)entry * (double)entry;
         }
         left[pivot] = 0.0;
     }
+    return rank;
 }
 
-static gonio_status factorise_candidates(gonio_i_choices *p, const float *f)
+/* As factorise, over all candidates; factor is zero before. */
+static gonio_status factorise_candidates(const gonio_i_choices *p, const float *f, size_t k,
+                                         size_t most, float *factor, size_t *rank)
 {
     double *left = gonio_i_allocate(p->context, p->rows, sizeof *left);
     gonio_i_place *place = gonio_i_allocate(p->context, p->rows, sizeof *place);
@@ -177,10 +194,39 @@ static gonio_status factorise_candidates(gonio_i_choices *p, const float *f)
     for (size_t i = 0; i < p->rows; i++) {
         place[i] = gonio_i_place_of(p->at[i]);
     }
-    factorise(p, f, place, left);
+    *rank = factorise(p, f, k, place, left, most, factor);
     free(left);
     free(place);
     return GONIO_OK;
+}
+
+/* p->f = (f, g), g g' the covariance of the remainder: less work than a factor of the sum, and a
+ * few more columns. */
+static gonio_status append_remainder(gonio_i_choices *p, const float *f)
+{
+    const size_t k = p->components;
+    const size_t most = p->rows > MOST_RANK ? MOST_RANK : p->rows;
+    size_t rank = 0;
+    float *joined = NULL;
+    float *g = gonio_i_allocate(p->context, p->rows * most, sizeof *g);
+    gonio_status status =
+        g == NULL ? GONIO_ERROR_MEMORY : factorise_candidates(p, f, 0, most, g, &rank);
+    if (status == GONIO_OK) {
+        joined = gonio_i_allocate(p->context, p->rows * (k + rank), sizeof *joined);
+        status = joined == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
+    }
+    for (size_t row = 0; row < p->rows && status == GONIO_OK; row++) {
+        float *to = joined + row * (k + rank);
+        memcpy(to, f + row * k, k * sizeof *to);
+        memcpy(to + k, g + row * most, rank * sizeof *to);
+    }
+    free(g);
+    if (status == GONIO_OK) {
+        free(p->f);
+        p->f = joined;
+        p->components = k + rank;
+    }
+    return status;
 }
 
 /* ---- candidates that are the same ---- */
@@ -249,8 +295,7 @@ static void list_candidate(gonio_i_choices *p, const gonio_plan_options *options
     p->loss[row] = candidate ? metric_weight(options->metric, p->at[row], p->mean[row], 0) : 0.0;
 }
 
-static gonio_status list_candidates(gonio_i_choices *p, const gonio_plan_options *options,
-                                    bool remainder)
+static gonio_status list_candidates(gonio_i_choices *p, const gonio_plan_options *options)
 {
     const size_t k = p->prior->components;
     float *f = gonio_i_allocate(p->context, p->rows * k, sizeof *f);
@@ -260,10 +305,13 @@ static gonio_status list_candidates(gonio_i_choices *p, const gonio_plan_options
     for (size_t row = 0; row < p->rows && status == GONIO_OK; row++) {
         list_candidate(p, options, row, exact, f + row * k);
     }
-    if (status == GONIO_OK && !remainder) {
-        memcpy(p->f, f, p->rows * k * sizeof *f);
+    if (status == GONIO_OK && p->known == NULL) {
+        size_t rank = 0;
+        status = factorise_candidates(p, f, k, p->components, p->f, &rank);
+    } else if (status == GONIO_OK && p->known->goes_on) {
+        status = append_remainder(p, f);
     } else if (status == GONIO_OK) {
-        status = factorise_candidates(p, f);
+        memcpy(p->f, f, p->rows * k * sizeof *f);
     }
     free(f);
     free(exact);
@@ -272,16 +320,20 @@ static gonio_status list_candidates(gonio_i_choices *p, const gonio_plan_options
 
 gonio_status gonio_i_choices_of_candidates(gonio_i_choices *p, const gonio_plan_options *options)
 {
-    const bool unlike = p->known != NULL && p->known->unlike;
-    const bool remainder = p->known == NULL || unlike;
-    p->rows = options->candidate_count + (unlike ? p->known->count : 0);
-    p->noise = remainder ? NOISE_BESIDE_REMAINDER : gonio_i_noise_of_readings;
-    p->components = !remainder ? p->prior->components : p->rows > MOST_RANK ? MOST_RANK : p->rows;
-    gonio_status status = list_candidates(p, options, remainder);
+    const bool goes_on = p->known != NULL && p->known->goes_on;
+    p->rows = options->candidate_count + (goes_on ? p->known->count : 0);
+    p->noise = p->known == NULL || goes_on ? NOISE_BESIDE_REMAINDER : gonio_i_noise_of_readings;
+    p->components = p->known != NULL      ? p->prior->components
+                    : p->rows > MOST_RANK ? MOST_RANK
+                                          : p->rows;
+    gonio_status status = list_candidates(p, options);
     if (status == GONIO_OK) {
         status = allow_once(p, options);
     }
-    if (status == GONIO_OK && unlike) {
+    if (status == GONIO_OK && goes_on) {
+        status = gonio_i_expect_more_of_odd_places(p);
+    }
+    if (status == GONIO_OK && goes_on) {
         status = gonio_i_choices_after_readings(p);
     }
     return status;

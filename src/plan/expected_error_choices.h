@@ -36,9 +36,9 @@ gonio_status gonio_i_choices_allocate(gonio_i_choices *p);
 gonio_status gonio_i_choices_of_rows(gonio_i_choices *p, gonio_metric metric);
 
 /* The directions options->candidates, at most a hundred thousand. Of candidates that are the same
- * direction only the first is allowed. The remainder between them is part of f, unless a material
- * is known that is like the database. Of a known one that is unlike it, the directions that were
- * read are further rows, which are not allowed. Errors: _MEMORY, _NUMERICAL. */
+ * direction only the first is allowed. The remainder between them is part of f, unless something is
+ * known and the plan does not go on. If it does, the directions that were read are further rows,
+ * which are not allowed. Errors: _MEMORY, _NUMERICAL. */
 gonio_status gonio_i_choices_of_candidates(gonio_i_choices *p, const gonio_plan_options *options);
 
 /* Sets the covariance to that after readings at the last p->known->count rows, whatever their

@@ -69,6 +69,8 @@ typedef struct gonio_i_posterior {
     double *field;                /* [columns][rows]: g */
     double *deviation;            /* [columns][rows] of g, or NULL */
     double smoothness;            /* alpha of the likeliest model */
+    double remainder;             /* alpha, root mean square over the models; and */
+    double peak;                  /* peak of the remainder, by the mean of (alpha peak)^2 */
     double predicted;             /* of E6, per cent; */
     double predicted_by_variance; /* and by the variance of the likeliest model alone */
     double surprise;    /* root mean square of leave-one-out errors, in standard deviations */
@@ -77,6 +79,9 @@ typedef struct gonio_i_posterior {
     size_t outlying;    /* readings that the others contradict, all columns */
     double residual;    /* root mean square of what the others leave, log units */
     bool *contradicted; /* by number of the reading: whether a value is outlying; or NULL */
+    double *oddity;     /* [readings], by number of the reading: squared leave-one-out error over
+                         * its variance, the mean over the columns; negative: not known; or NULL */
+    size_t readings;    /* set before if oddity is wanted */
 } gonio_i_posterior;
 
 /* Errors: _MEMORY, _NUMERICAL, _CANCELLED. */
