@@ -21,8 +21,10 @@ static const double NOISE_BESIDE_REMAINDER = 0.05;
 static const double ALPHA = 0.2;
 static const double PEAK = 2.5;
 
-/* Variance that the factor of the candidates' covariance may omit. */
+/* Variance that the factor of the candidates' covariance may omit, and that of a remainder beside
+ * what is known. */
 static const double LEFT = 1e-4;
+static const double LEFT_OF_REMAINDER = 5e-4;
 
 /* Square of the distance (prior.h) up to which directions are the same. */
 static const double SAME = 1e-6;
@@ -34,7 +36,7 @@ static const double POLE = 1e-6;
 static const double LEAST_ALPHA = 0.03;
 static const double SHARE_OF_PEAK = 2.5 / 8.0;
 
-enum { MOST_RANK = 500 };
+enum { MOST_RANK = 500, MOST_RANK_OF_REMAINDER = 200 };
 
 double gonio_i_planned_remainder(const gonio_i_place *a, const gonio_i_place *b)
 {
@@ -147,11 +149,12 @@ gonio_status gonio_i_choices_of_rows(gonio_i_choices *p, gonio_metric metric)
 
 /* Given    rows of f[rows][k] and places of candidates, whose covariance is C = f f' + alpha^2 r
  * Returned factor[rows][most], the columns of which up to the rank that is returned are g with
- *          g g' = C to within LEFT of every variance
+ *          g g' = C to within `enough` of every variance
  * Method   Cholesky with pivoting on the largest variance left (Higham 2002, sec. 10.3); columns of
  *          C are computed when they are needed */
 static size_t factorise(const gonio_i_choices *p, const float *f, size_t k,
-                        const gonio_i_place *place, double *left, size_t most, float *factor)
+                        const gonio_i_place *place, double *left, size_t most, double enough,
+                        float *factor)
 {
     for (size_t i = 0; i < p->rows; i++) {
         left[i] = dot(f + i * k, f + i * k, k) + remainder_of(p, &place[i], &place[i]);
@@ -162,7 +165,7 @@ static size_t factorise(const gonio_i_choices *p, const float *f, size_t k,
         for (size_t i = 1; i < p->rows; i++) {
             pivot = left[i] > left[pivot] ? i : pivot;
         }
-        if (left[pivot] < LEFT) {
+        if (left[pivot] < enough) {
             break;
         }
         const double root = sqrt(left[pivot]);
@@ -194,7 +197,7 @@ static gonio_status factorise_candidates(const gonio_i_choices *p, const float *
     for (size_t i = 0; i < p->rows; i++) {
         place[i] = gonio_i_place_of(p->at[i]);
     }
-    *rank = factorise(p, f, k, place, left, most, factor);
+    *rank = factorise(p, f, k, place, left, most, k > 0 ? LEFT : LEFT_OF_REMAINDER, factor);
     free(left);
     free(place);
     return GONIO_OK;
@@ -205,7 +208,7 @@ static gonio_status factorise_candidates(const gonio_i_choices *p, const float *
 static gonio_status append_remainder(gonio_i_choices *p, const float *f)
 {
     const size_t k = p->components;
-    const size_t most = p->rows > MOST_RANK ? MOST_RANK : p->rows;
+    const size_t most = p->rows > MOST_RANK_OF_REMAINDER ? MOST_RANK_OF_REMAINDER : p->rows;
     size_t rank = 0;
     float *joined = NULL;
     float *g = gonio_i_allocate(p->context, p->rows * most, sizeof *g);
