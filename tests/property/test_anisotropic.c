@@ -307,6 +307,30 @@ static void test_stretched_facets_are_found(void **state)
     gonio_readings_free(&readings);
 }
 
+/* The likeliest stretch of this material is a small one along the wrong axis, at 91 degrees. */
+static void test_the_grain_is_that_of_the_predicted_lobe(void **state)
+{
+    const fixture *f = *state;
+    const int metal = gonio_atlas_anisotropic_find("aluminium-fine-brushed");
+    double value[READ * GONIO_CHANNELS];
+    gonio_readings *readings = NULL;
+    for (size_t k = 0; k < READ; k++) {
+        gonio_atlas_anisotropic_value(metal, f->read[k], value + k * GONIO_CHANNELS);
+    }
+    const gonio_readings_arrays arrays = {.size = sizeof arrays,
+                                          .count = READ,
+                                          .channels = GONIO_CHANNELS,
+                                          .pair = f->read,
+                                          .value = value};
+    assert_int_equal(gonio_readings_create(f->context, &arrays, NULL, &readings), GONIO_OK);
+    gonio_anisotropic_reconstruction *made = reconstruct(f, readings);
+    const double found = gonio_anisotropic_reconstruction_describe(made)->anisotropy.rotation;
+    assert_true(found >= 0.0 && found < M_PI);
+    assert_true(fabs(remainder(found, M_PI)) < 0.15);
+    gonio_anisotropic_reconstruction_free(&made);
+    gonio_readings_free(&readings);
+}
+
 /* ---- checks of isotropy ---- */
 
 static gonio_isotropy_check check(const fixture *f, const gonio_i_stretch *stretch,
@@ -417,6 +441,7 @@ int main(void)
         cmocka_unit_test(test_the_material_is_the_prediction),
         cmocka_unit_test(test_the_material_of_fibres_is_the_prediction),
         cmocka_unit_test(test_stretched_facets_are_found),
+        cmocka_unit_test(test_the_grain_is_that_of_the_predicted_lobe),
         cmocka_unit_test(test_isotropy_is_checked),
         cmocka_unit_test(test_one_azimuth_cannot_tell),
         cmocka_unit_test(test_other_symmetries_are_refused),
