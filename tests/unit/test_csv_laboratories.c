@@ -140,6 +140,8 @@ static void test_what_is_refused(void **state)
          "filter 'blue', but rows above"},
         {"theta_i,theta_o,type,value\n30,20,BRDF,1\n30,20,BTDF,2\n", "r.csv:3: a value of transm"},
         {"AOI 30\nWavelength (um),brdf\n0.4,0.3\n", "no column 'theta_o_deg'"},
+        {"theta_i,theta_o,X,Y,Z\n30,20,0.3,0.3,0.3\n", "give tristimulus values as linear sRGB"},
+        {"theta_i,theta_o,CIE_X,CIE_Y,CIE_Z\n30,20,1,1,1\n", "Y alone as value_per_sr"},
         {"theta_i,theta_o,pol_i,pol_o,brdf\n30,20,s,p,1\n", "add the values of s and of p"},
         {"theta_i,theta_o,wavenumber,brdf\n30,20,20000,1\n", "give wavelengths"},
         {"theta_i,theta_o,log10(brdf)\n30,20,400\n",

@@ -50,6 +50,12 @@ static bool recognises(const char *text, size_t size)
 
 /* ---- reading ---- */
 
+/* The first value of a table: where it is. */
+typedef struct beginning {
+    size_t line; /* 0: no row yet */
+    gonio_i_settings row, column;
+} beginning;
+
 typedef struct source {
     gonio_context *context;
     const char *path;
@@ -66,6 +72,7 @@ typedef struct source {
     gonio_i_axis across;         /* of a GONIO_I_CORNER_LINE or GONIO_I_BARE_LINE header, and of one
                                     GONIO_I_STACKED_LINE line */
     gonio_i_axis rows_are, columns_are; /* by keys of the file */
+    beginning past, present;            /* of the table before, and of this one */
     gonio_i_settings now;               /* by lines of one number */
     gonio_i_settings row;
     bool unit_stated;          /* that of values */
@@ -96,6 +103,8 @@ static void set(const source *s, gonio_i_settings *settings, int axis, double nu
 static gonio_status begin_columns(source *s, const gonio_i_crossed_line *t)
 {
     free(s->column);
+    s->past = s->present.line > 0 ? s->present : s->past;
+    s->present = (beginning){0};
     s->columns = t->cells - 1;
     s->column = gonio_i_allocate(s->context, s->columns, sizeof *s->column);
     s->stacked = 0;
@@ -296,6 +305,32 @@ static gonio_status refuse_cells(const source *s, const gonio_i_crossed_line *t)
                         t->cells, s->columns + 1);
 }
 
+static bool are_same(const gonio_i_settings *a, const gonio_i_settings *b)
+{
+    bool same = a->bits == b->bits && a->wavelength == b->wavelength;
+    for (size_t k = 0; k < GONIO_I_SETTINGS && same; k++) {
+        same = a->angle[k] == b->angle[k];
+    }
+    return same;
+}
+
+/* Refuses a table that begins as the one before it: it has something else of the same directions.
+ */
+static gonio_status check_table(source *s, const gonio_i_settings *row)
+{
+    const beginning *past = &s->past;
+    if (s->present.line > 0) {
+        return GONIO_OK;
+    }
+    s->present = (beginning){s->line, *row, s->column[0]};
+    return past->line == 0 || !are_same(&past->row, row) || !are_same(&past->column, &s->column[0])
+               ? GONIO_OK
+               : gonio_i_fail(s->context, GONIO_ERROR_FORMAT,
+                              "%s:%zu: the directions of the table of line %zu again; no line says "
+                              "what differs; keep one of them",
+                              s->path, s->line, past->line);
+}
+
 static gonio_status take_row(source *s, const gonio_i_crossed_line *t)
 {
     gonio_i_line rest = t->text;
@@ -313,6 +348,7 @@ static gonio_status take_row(source *s, const gonio_i_crossed_line *t)
     gonio_i_settings row = s->now;
     if (status == GONIO_OK) {
         set(s, &row, s->down.index, number);
+        status = check_table(s, &row);
     }
     for (size_t k = 0; status == GONIO_OK && gonio_i_next_cell(&rest, t->separator, &cell); k++) {
         gonio_i_settings known = row;

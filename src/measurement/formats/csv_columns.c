@@ -316,6 +316,23 @@ static const char *number_not_read(const finder *f)
     return NULL;
 }
 
+/* Whether there are columns X, Y and Z, which are colours, or places of something. */
+static bool has_tristimulus(const finder *f)
+{
+    bool found[3] = {false};
+    for (size_t k = 0; k < f->r->columns; k++) {
+        const char *name = f->r->name[k] + (strncasecmp(f->r->name[k], "CIE ", 4) == 0 ||
+                                                    strncasecmp(f->r->name[k], "CIE_", 4) == 0
+                                                ? 4
+                                                : 0);
+        const char letter = name[0] != '\0' && name[1] == '\0' ? (char)(name[0] | 0x20) : '\0';
+        if (letter >= 'x' && letter <= 'z') {
+            found[letter - 'x'] = true;
+        }
+    }
+    return found[0] && found[1] && found[2];
+}
+
 static gonio_status refuse_no_values(const finder *f)
 {
     const char *number = number_not_read(f);
@@ -324,6 +341,13 @@ static gonio_status refuse_no_values(const finder *f)
                             "%s: '%s' leaves open whether its values are or were multiplied; put "
                             "the factor into the unit: BRDF [1e-3 1/sr]",
                             f->r->path, number);
+    }
+    if (number != NULL && has_tristimulus(f)) {
+        return gonio_i_fail(f->r->context, GONIO_ERROR_FORMAT,
+                            "%s: X, Y and Z are not taken for values, as they may be places; give "
+                            "tristimulus values as linear sRGB in R_per_sr, G_per_sr, B_per_sr, or "
+                            "Y alone as value_per_sr",
+                            f->r->path);
     }
     return number != NULL
                ? gonio_i_fail(f->r->context, GONIO_ERROR_FORMAT,
