@@ -27,6 +27,7 @@ static const struct {
     {"crossed-spectra", "unit: %\nwavelength_nm;45as15;r45as-15;45/0\n400;1,5;2;3\n500;1;2;3\n"},
     {"crossed-stack", "theta_i,45,,30\ntheta_o,0,15,30\nphi_o,0,180,90\nnm,,,\n400,1,2,3\n"},
     {"csv-geometry", "# unit: %\ngeometry,400nm,500nm\n45as15,1,2\n45/0,3,4\n"},
+    {"csv-colours", "theta_i,theta_o,channel,brdf\n30,20,R,0.3\n30,20,G,0.5\n40,20,B,0.7\n"},
     {"csv-polarised",
      "elevation_i,elevation_o,pol,400nm [1e-3/sr],500nm [10^-3 1/sr]\n60,50,s,1,2\n"
      "60,50,p,3,\n60,20,unpolarised,5,6\n"},

@@ -57,6 +57,15 @@ static const table tables[] = {
     {"theta_i,theta_o,pol,BRDF [dB]\n30,20,s,-10\n30,20,p,0\n", 1, 30, 20, 0.55, 0.0, "averaged"},
     {"theta_i,theta_o,pol,R,G,B\n30,20,s,1,2,3\n30,40,s,3,4,5\n", 2, 30, 40, 5.0, 0.0,
      "of one polarisation only"},
+    {"theta_i,theta_o,channel,brdf,sigma\n30,20,B,0.3,0.1\n30,20,G,0.5,0.1\n30,20,R,0.7,0.1\n"
+     "40,20,R,0.1,0.2\n40,20,B,0.4,0.2\n",
+     2, 40, 20, 0.4, 0.2, "with a line for each colour"},
+    {"theta_i;theta_o;farbe;brdf\n30;20;rot;0,3\n30;20;gr\xc3\xbcn;0,5\n30;20;blau;0,7\n", 1, 30,
+     20, 0.7, 0.0, "with a line for each colour"},
+    {"theta_i,theta_o,colour,pol,brdf\n30,20,red,s,1\n30,20,blue,s,2\n30,20,blue,p,4\n", 1, 30, 20,
+     3.0, 0.0, "with a line for each colour"},
+    {"theta_i,theta_o,channel,brdf\n30,20,R,0.3\n40,20,R,0.5\n", 2, 40, 20, 0.5, 0.0,
+     "values 'brdf'"}, /* one colour is the only channel */
     {"theta_i,theta_o,BRDF [10^-3 sr^-1]\n30,20,350\n", 1, 30, 20, 0.35, 0.0, "10^-3"},
     {"theta_i,theta_o,BRDF (e-3/sr),sigma\n30,20,350,10\n", 1, 30, 20, 0.35, 0.01, "e-3"},
     {"theta_i,theta_o,BRDF (\xc3\x97"
@@ -146,6 +155,9 @@ static void test_what_is_refused(void **state)
         {"theta_i,theta_o,wavenumber,brdf\n30,20,20000,1\n", "give wavelengths"},
         {"theta_i,theta_o,log10(brdf)\n30,20,400\n",
          "'400' is not a finite number when its logarithm is undone: larger"},
+        {"theta_i,theta_o,channel,brdf\n30,20,R,1\n30,20,G,1\n30,20,all,1\n",
+         "r.csv:4: channel 'all' is not R, G or B"},
+        {"theta_i,theta_o,filter,brdf\n30,20,V,1\n30,20,X,1\n", "keep the rows of one"},
         {"theta_i,theta_o,pol,brdf\n30,20,45,1\n", "r.csv:2: pol '45' is not a polarisation"},
     };
     (void)state;

@@ -10,6 +10,7 @@
 #include "core/csv_reader.h"
 #include "core/number.h"
 #include "measurement/formats/csv_columns.h"
+#include "measurement/formats/csv_unit_row.h"
 #include "measurement/marks.h"
 
 /* Keeps the first error. */

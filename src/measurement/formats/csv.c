@@ -7,6 +7,7 @@
 #include "csv_kept.h"
 #include "csv_layout.h"
 #include "csv_rows.h"
+#include "csv_unit_row.h"
 #include "format.h"
 
 /* Whether the text begins with column names between commas, semicolons or tabs, has names of angles
@@ -133,12 +134,6 @@ static size_t expected_rows(const gonio_i_csv_reader *reader)
     return lines < most ? lines : most;
 }
 
-/* Whether several rows are one reading. */
-static bool has_parts(const gonio_i_csv_columns *columns)
-{
-    return columns->by_wavelength || columns->by_polarisation;
-}
-
 static void begin_import(gonio_i_csv_source *s, gonio_i_csv_kept *kept, const char *taken_as)
 {
     const gonio_convention stated = convention_of(s->columns, s->readings->usual_values);
@@ -147,15 +142,18 @@ static void begin_import(gonio_i_csv_source *s, gonio_i_csv_kept *kept, const ch
     s->in.keep_unmeasured = true;
     kept->rewrite_angles = !s->columns->own_angles || s->in.how.angles != GONIO_DEGREES ||
                            s->in.how.mirror == GONIO_MIRROR_0;
-    s->readings->keep_angles = kept->rewrite_angles || has_parts(s->columns);
+    s->readings->keep_angles = kept->rewrite_angles || gonio_i_csv_has_parts(s->columns);
 }
 
-/* Imports rows of one wavelength or polarisation each, whose readings are known only at the end. */
+/* Imports rows of one wavelength, colour or polarisation each, whose readings are known only at the
+ * end. */
 static gonio_status import_long(gonio_i_csv_source *s)
 {
     const gonio_i_csv_columns *c = s->columns;
     s->table.context = s->context;
-    s->table.numbered = c->by_wavelength || c->wavelength != NULL ? 0 : c->channels;
+    s->table.numbered = c->by_colour                                ? GONIO_CHANNELS
+                        : c->by_wavelength || c->wavelength != NULL ? 0
+                                                                    : c->channels;
     gonio_status status = gonio_i_csv_take_rows(s);
     s->in.how.scale = c->by_polarisation ? GONIO_SCALE_LINEAR : s->in.how.scale;
     status = status == GONIO_OK ? gonio_i_long_table_import(&s->table, &s->in) : status;
@@ -182,7 +180,7 @@ static gonio_status import_rows(gonio_i_csv_source *s, gonio_i_csv_kept *kept)
     gonio_i_csv_describe(&s->reader, s->columns, s->in.how.mirror, taken_as);
     gonio_status status = gonio_i_csv_others_begin(&s->others, s->context, s->columns);
     if (status == GONIO_OK) {
-        status = has_parts(s->columns) ? import_long(s) : import_wide(s);
+        status = gonio_i_csv_has_parts(s->columns) ? import_long(s) : import_wide(s);
     }
     status = status == GONIO_OK ? write_notes(s) : status;
     gonio_i_csv_others_free(&s->others);
@@ -287,7 +285,7 @@ static gonio_status read(gonio_i_readings_file *file, gonio_readings *readings)
         status = read_table(&s, kept);
         gonio_i_csv_close(&s.reader);
     }
-    if (status == GONIO_OK && has_parts(&kept->columns)) {
+    if (status == GONIO_OK && gonio_i_csv_has_parts(&kept->columns)) {
         drop_kept(readings);
     }
     return status;

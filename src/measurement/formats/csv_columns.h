@@ -22,8 +22,8 @@ typedef struct gonio_i_csv_columns {
     size_t count;
     gonio_i_csv_column *column; /* [count] */
     size_t reads;
-    size_t *read; /* [reads]: the columns that are read; angles, channel, wavelength, polarisation,
-                     time, mark, values, deviations */
+    size_t *read; /* [reads]: the columns that are read; angles, channel, wavelength, colour,
+                     polarisation, time, mark, values, deviations */
     size_t channels;
     double *wavelength; /* [channels], as the names have them; NULL: colours or unnamed channels */
     gonio_convention stated; /* by names, units and comments; 0 where nothing states it */
@@ -33,6 +33,7 @@ typedef struct gonio_i_csv_columns {
     size_t polarised;          /* columns of values of one polarisation; */
     size_t averaged;           /* of them, those averaged with another */
     bool by_wavelength;        /* a row has one value of one wavelength */
+    bool by_colour;            /* a row has one value of one colour */
     bool by_polarisation;      /* a row has values of one polarisation */
     bool own_angles;           /* named as gonio does */
     bool own;                  /* all are */
@@ -49,10 +50,9 @@ gonio_status gonio_i_csv_columns_find(const gonio_i_csv_reader *reader,
                                       const gonio_readings_options *options,
                                       gonio_i_csv_columns *columns);
 
-void gonio_i_csv_columns_free(gonio_i_csv_columns *columns);
+/* Whether several rows are one reading. */
+bool gonio_i_csv_has_parts(const gonio_i_csv_columns *columns);
 
-/* Reads the line of units that may follow the names, and appends units to names: "theta_i (deg)".
- * The next row is then the first row of numbers. */
-gonio_status gonio_i_csv_take_units(gonio_i_csv_reader *reader);
+void gonio_i_csv_columns_free(gonio_i_csv_columns *columns);
 
 #endif

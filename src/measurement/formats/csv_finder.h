@@ -39,4 +39,8 @@ gonio_status gonio_i_csv_find_angles(const gonio_i_csv_finder *f);
  * and of polarisations that the detector sees. */
 gonio_status gonio_i_csv_find_row_columns(const gonio_i_csv_finder *f);
 
+/* Finds a column that states the colour of the row's one value, if rows differ in it
+ * (csv_row_colours.c). */
+void gonio_i_csv_find_row_colours(const gonio_i_csv_finder *f);
+
 #endif

@@ -9,6 +9,7 @@
 #include "csv_columns.h"
 #include "csv_names.h"
 #include "csv_numbers.h"
+#include "csv_unit_row.h"
 
 enum { CELL_ROOM = 96 };
 

@@ -14,6 +14,7 @@ typedef enum gonio_i_column_kind {
     GONIO_I_ANGLE,
     GONIO_I_PLANNED,
     GONIO_I_ROW_WAVELENGTH, /* of the row's value, where a row has one */
+    GONIO_I_ROW_COLOUR,     /* of the row's value */
     GONIO_I_POLARISATION,   /* of the light of the row */
     GONIO_I_TIME,           /* of the row */
     GONIO_I_MARK,           /* what the row is a reading of: sample, reference, dark */
@@ -91,6 +92,9 @@ gonio_i_column_name gonio_i_column_name_of(const char *name);
 
 /* Whether a cell is a polarisation of the light. *state: 1 s, -1 p, 0 unpolarised. */
 bool gonio_i_polarisation_of(const char *cell, int *state);
+
+/* The colour that a cell names: 0 R, 1 G, 2 B; -1 if none (csv_row_colours.c). */
+int gonio_i_colour_of(const char *cell);
 
 /* Whether one of a text's words is of an azimuth. */
 bool gonio_i_names_azimuth(const char *text);

@@ -64,6 +64,7 @@ void gonio_i_csv_describe(const gonio_i_csv_reader *reader, const gonio_i_csv_co
     const char *between = " (";
     snprintf(text, GONIO_I_TAKEN_ROOM, "CSV%s",
              columns->by_wavelength     ? " with a line for each wavelength"
+             : columns->by_colour       ? " with a line for each colour"
              : columns->by_polarisation ? " with a line for each polarisation"
                                         : "");
     if (!columns->own_angles) {

@@ -5,6 +5,7 @@
 
 #include "../rules.h"
 #include "csv_kept.h"
+#include "csv_unit_row.h"
 
 /* A column of the written file: a column of the file that was read, an angle, the planned channel,
  * or the value or deviation of a channel. */
@@ -55,6 +56,7 @@ static void print_column(printer *p, const printed_column *column, size_t readin
     switch (column->kind) {
     case GONIO_I_OTHER:
     case GONIO_I_ROW_WAVELENGTH:
+    case GONIO_I_ROW_COLOUR:
     case GONIO_I_POLARISATION:
     case GONIO_I_TIME:
     case GONIO_I_MARK:

@@ -111,6 +111,7 @@ gonio_status gonio_i_csv_find_row_columns(const gonio_i_csv_finder *f)
     find_planned(f);
     find_time_and_mark(f);
     find_row_wavelength(f);
+    gonio_i_csv_find_row_colours(f);
     find_polarisation(f);
     return refuse_parts(f);
 }

@@ -207,6 +207,14 @@ static gonio_status take_wavelength(gonio_i_csv_source *s, size_t column)
                : bad_number(s, column, GONIO_ERROR_FORMAT, "is not a wavelength");
 }
 
+static gonio_status take_colour(gonio_i_csv_source *s, size_t column)
+{
+    s->colour = gonio_i_colour_of(s->reader.cell[column]);
+    return s->colour >= 0 ? GONIO_OK
+                          : bad_cell(s, column, GONIO_ERROR_FORMAT,
+                                     "is not R, G or B, of which the value in other rows is");
+}
+
 static gonio_status take_polarisation(gonio_i_csv_source *s, size_t column)
 {
     if (!gonio_i_polarisation_of(s->reader.cell[column], &s->polarisation)) {
@@ -229,6 +237,8 @@ static gonio_status take_cell(gonio_i_csv_source *s, size_t k, gonio_i_row *row)
         return take_planned(s, k, row);
     case GONIO_I_ROW_WAVELENGTH:
         return take_wavelength(s, k);
+    case GONIO_I_ROW_COLOUR:
+        return take_colour(s, k);
     case GONIO_I_POLARISATION:
         return take_polarisation(s, k);
     case GONIO_I_VALUE:
@@ -260,8 +270,8 @@ static gonio_status take_directions(const gonio_i_csv_source *s, gonio_i_row *ro
                                           s->reader.path, row->line, problem);
 }
 
-/* Adds a row of one wavelength or polarisation. It is kept until all of its directions are known.
- * Values of s and p are averaged as such, not their logarithms. */
+/* Adds a row of one wavelength, colour or polarisation. It is kept until all of its directions are
+ * known. Values of s and p are averaged as such, not their logarithms. */
 static gonio_status add_long(gonio_i_csv_source *s, const gonio_i_row *row)
 {
     const gonio_i_csv_columns *c = s->columns;
@@ -270,6 +280,7 @@ static gonio_status add_long(gonio_i_csv_source *s, const gonio_i_row *row)
     for (size_t k = 0; k < c->channels && status == GONIO_OK; k++) {
         const double value = gonio_i_scale_value(scale, s->value[k]);
         gonio_i_long_row kept = {.wavelength = c->by_wavelength        ? s->wavelength
+                                               : c->by_colour          ? s->colour
                                                : c->wavelength != NULL ? c->wavelength[k]
                                                                        : (double)k,
                                  .value = value,
@@ -305,7 +316,7 @@ static gonio_status take_row(gonio_i_csv_source *s)
     if (status != GONIO_OK) {
         return status;
     }
-    const bool parts = s->columns->by_wavelength || s->columns->by_polarisation;
+    const bool parts = gonio_i_csv_has_parts(s->columns);
     if (parts && row.mark != GONIO_I_SAMPLE) {
         gonio_i_import_leave_out(&s->in, GONIO_I_NOT_THE_SAMPLE);
         return GONIO_OK;

@@ -26,6 +26,7 @@ typedef struct gonio_i_csv_source {
     gonio_i_csv_others others;           /* columns that are not read */
     double angle[GONIO_I_ANGLE_COLUMNS]; /* degrees, and components of vectors, of a row */
     double wavelength;                   /* of a row */
+    int colour;                          /* of a row: 0 R, 1 G, 2 B */
     int polarisation;                    /* of a row: 1 s, -1 p, 0 unpolarised */
     size_t polarised[3];                 /* rows by polarisation: p, unpolarised, s */
     gonio_i_csv_word_column subject;     /* what rows are of */
@@ -33,7 +34,7 @@ typedef struct gonio_i_csv_source {
     gonio_i_csv_word_column quality;     /* whether they are good */
     size_t marks;                        /* cells in place of values, such as "---" */
     char mark[16];                       /* the first of them */
-    gonio_i_long_table table;            /* rows of one wavelength each */
+    gonio_i_long_table table;            /* rows of one wavelength, colour or polarisation */
 } gonio_i_csv_source;
 
 /* Takes all rows behind the names of the columns. Errors: _FORMAT, _DATA, _MEMORY; the message
