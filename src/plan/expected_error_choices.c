@@ -7,7 +7,6 @@
 
 #include "../metric/metric.h"
 #include "../prior/after_readings.h"
-#include "odd_places.h"
 
 /* Standard deviation of a reading, log units: noise and the error of the model near the reading.
  * Chosen by errors of left-out materials: with 0.03 or 0.05 plans trust single readings too much.
@@ -332,9 +331,6 @@ gonio_status gonio_i_choices_of_candidates(gonio_i_choices *p, const gonio_plan_
     gonio_status status = list_candidates(p, options);
     if (status == GONIO_OK) {
         status = allow_once(p, options);
-    }
-    if (status == GONIO_OK && goes_on) {
-        status = gonio_i_expect_more_of_odd_places(p);
     }
     if (status == GONIO_OK && goes_on) {
         status = gonio_i_choices_after_readings(p);

@@ -16,13 +16,11 @@ typedef struct gonio_i_known {
     const double *covariance;          /* [K][K]: of z */
     const gonio_half_difference *read; /* [count]: directions to exclude */
     size_t count;
-    bool goes_on;         /* among candidates: as a plan that goes on, with */
-    double alpha;         /* alpha and */
-    double peak;          /* peak of the remainder in the models that the readings chose, and */
-    const double *oddity; /* [count]: squared errors of their prediction over their variance;
-                           * negative: not known */
-    double expected;      /* the expected E6 without another reading, per cent */
-    double variance;      /* the same from the covariance alone */
+    bool goes_on;    /* among candidates: as a plan that goes on, with */
+    double alpha;    /* alpha and */
+    double peak;     /* peak of the remainder in the models that the readings chose */
+    double expected; /* the expected E6 without another reading, per cent */
+    double variance; /* the same from the covariance alone */
     double norm; /* root of the sum of g^2 over the bins of the grid, which E6 is relative to; of
                   * anisotropic materials over the choices */
     /* Of anisotropic materials, without covariance and read: */

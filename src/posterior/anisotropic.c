@@ -126,7 +126,7 @@ static gonio_status solve_part(gonio_i_anisotropic *a, gonio_context *context, s
         status = gonio_i_fit_settle(&s->fit, a->judge, &a->outlying[c]);
     }
     if (status == GONIO_OK) {
-        status = gonio_i_fit_surprise(&s->fit, &sum, NULL);
+        status = gonio_i_fit_surprise(&s->fit, &sum);
     }
     if (status == GONIO_OK) {
         find_linear(&here->hypothesis.stretch, s);

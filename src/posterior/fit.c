@@ -358,7 +358,7 @@ gonio_status gonio_i_fit_leave_one_out(gonio_i_fit *e, double *difference, doubl
                                                   : status;
 }
 
-gonio_status gonio_i_fit_surprise(gonio_i_fit *e, double *sum, double *oddity)
+gonio_status gonio_i_fit_surprise(gonio_i_fit *e, double *sum)
 {
     double *difference = gonio_i_allocate(e->context, 2 * e->n, sizeof *difference);
     gonio_status status = difference == NULL ? GONIO_ERROR_MEMORY : GONIO_OK;
@@ -367,11 +367,7 @@ gonio_status gonio_i_fit_surprise(gonio_i_fit *e, double *sum, double *oddity)
         status = gonio_i_fit_leave_one_out(e, difference, difference + e->n);
     }
     for (size_t i = 0; i < e->n && status == GONIO_OK; i++) {
-        const double odd = difference[i] * difference[i] / difference[e->n + i];
-        *sum += odd;
-        if (oddity != NULL) {
-            oddity[i] = odd;
-        }
+        *sum += difference[i] * difference[i] / difference[e->n + i];
     }
     e->misfit = (*sum + PRIOR_READINGS) / ((double)e->n + PRIOR_READINGS);
     free(difference);

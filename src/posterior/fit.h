@@ -101,7 +101,7 @@ gonio_status gonio_i_fit_settle(gonio_i_fit *fit, bool judge_outliers, size_t *o
 
 /* Sum over the readings of the squared leave-one-out error over its variance. Sets misfit to its
  * mean, shrunk towards 1 by `PRIOR_READINGS` readings as expected: a material that is predicted
- * badly where it was read is predicted badly elsewhere. oddity[n]: the terms; may be NULL. */
-gonio_status gonio_i_fit_surprise(gonio_i_fit *fit, double *sum, double *oddity);
+ * badly where it was read is predicted badly elsewhere. */
+gonio_status gonio_i_fit_surprise(gonio_i_fit *fit, double *sum);
 
 #endif

@@ -46,32 +46,6 @@ static totals add_up(const gonio_i_finding *all)
     return t;
 }
 
-/* The mean over the columns that were fitted, of readings that are not set aside. */
-static gonio_status find_oddity(const gonio_i_finding *all)
-{
-    gonio_i_posterior *p = all->p;
-    size_t *columns = gonio_i_allocate(all->context, p->readings, sizeof *columns);
-    if (columns == NULL) {
-        return GONIO_ERROR_MEMORY;
-    }
-    for (size_t i = 0; i < p->readings; i++) {
-        p->oddity[i] = 0.0;
-    }
-    for (size_t k = 0; k < all->count; k++) {
-        const gonio_i_column *column = &all->column[k];
-        for (size_t i = 0; all->found[k].oddity != NULL && i < column->count; i++) {
-            const gonio_i_observation *o = &column->observation[i];
-            p->oddity[o->reading] += o->wrong ? 0.0 : all->found[k].oddity[i];
-            columns[o->reading] += !o->wrong;
-        }
-    }
-    for (size_t i = 0; i < p->readings; i++) {
-        p->oddity[i] = columns[i] > 0 ? p->oddity[i] / (double)columns[i] : -1.0;
-    }
-    free(columns);
-    return GONIO_OK;
-}
-
 /* alpha and peak, means over the models. */
 static void find_remainder(const gonio_i_models *models, gonio_i_posterior *p)
 {
@@ -150,9 +124,6 @@ static gonio_status find_columns(gonio_i_finding *all, const gonio_i_column *col
     if (status == GONIO_OK && all->learned != NULL) {
         status = gonio_i_expect_of_fewer(all, columns);
     }
-    if (status == GONIO_OK && all->p->oddity != NULL) {
-        status = find_oddity(all);
-    }
     if (status == GONIO_OK) {
         conclude(all);
     }
@@ -171,7 +142,6 @@ static gonio_status find(gonio_i_finding *all, const gonio_i_column *columns)
     const gonio_status status = done ? find_columns(all, columns) : GONIO_ERROR_MEMORY;
     for (size_t k = 0; all->found != NULL && k < all->count; k++) {
         free(all->found[k].merged.observation);
-        free(all->found[k].oddity);
     }
     free(all->found);
     free(all->neighbours);

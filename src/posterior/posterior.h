@@ -79,9 +79,6 @@ typedef struct gonio_i_posterior {
     size_t outlying;    /* readings that the others contradict, all columns */
     double residual;    /* root mean square of what the others leave, log units */
     bool *contradicted; /* by number of the reading: whether a value is outlying; or NULL */
-    double *oddity;     /* [readings], by number of the reading: squared leave-one-out error over
-                         * its variance, the mean over the columns; negative: not known; or NULL */
-    size_t readings;    /* set before if oddity is wanted */
 } gonio_i_posterior;
 
 /* Errors: _MEMORY, _NUMERICAL, _CANCELLED. */

@@ -186,19 +186,6 @@ static void mark_contradicted(const gonio_i_finding *all, const gonio_i_fit *e,
     }
 }
 
-/* How well the others predict each reading, where that is wanted. */
-static gonio_status find_surprise(const gonio_i_finding *all, gonio_i_fit *e,
-                                  gonio_i_found_column *found)
-{
-    if (all->p->oddity != NULL) {
-        found->oddity = gonio_i_allocate(e->context, e->n, sizeof *found->oddity);
-        if (found->oddity == NULL) {
-            return GONIO_ERROR_MEMORY;
-        }
-    }
-    return gonio_i_fit_surprise(e, &found->surprise, found->oddity);
-}
-
 static gonio_status solve_fit(const group *g, gonio_i_fit *e, size_t k)
 {
     const gonio_i_finding *all = g->all;
@@ -208,7 +195,7 @@ static gonio_status solve_fit(const group *g, gonio_i_fit *e, size_t k)
     gonio_status status = gonio_i_column_settle(all, e, &found->outlying);
     if (status == GONIO_OK) {
         mark_contradicted(all, e, &all->column[number]);
-        status = find_surprise(all, e, found);
+        status = gonio_i_fit_surprise(e, &found->surprise);
     }
     if (status == GONIO_OK && e->inverse != NULL) {
         status = needs_factor(all) ? gonio_i_fit_solve(e, &all->models.best)

@@ -16,7 +16,6 @@ typedef struct gonio_i_found_column {
     double *part[2];       /* the same by each neighbour, of a column that is not fitted */
     double outlying;
     double surprise;
-    double *oddity;  /* [n]: squared leave-one-out errors over their variances, or NULL */
     double residual; /* sum of squares */
     gonio_i_variance_sums sums;
     double expected; /* mean square of the error to expect */

@@ -7,8 +7,7 @@
  * Of a material that resembles none, which needs a large remainder, they show little of that.
  * Directions chosen by what they seem to show were worse than those of a plan made before
  * (docs/experiments.md). So among candidates the plan made before goes on from what was read, with
- * the remainder and the narrow peaks that the readings ask for, and with larger errors to expect
- * where the readings are not as expected. */
+ * the remainder and the narrow peaks that the readings ask for. */
 #include <stdlib.h>
 
 #include "../core/options.h"
@@ -49,13 +48,11 @@ static gonio_status allocate(next *n)
     p->coefficients = gonio_i_allocate(n->context, columns * k, sizeof *p->coefficients);
     p->field = gonio_i_allocate(n->context, columns * n->view->rows, sizeof *p->field);
     p->covariance = gonio_i_allocate(n->context, k * k, sizeof *p->covariance);
-    p->readings = n->readings->count;
-    p->oddity = gonio_i_allocate(n->context, p->readings, sizeof *p->oddity);
     n->read = gonio_i_allocate(n->context, n->readings->count, sizeof *n->read);
     for (size_t i = 0; n->read != NULL && i < n->readings->count; i++) {
         n->read[i] = gonio_half_difference_from_pair(n->readings->pair[i]);
     }
-    const bool done = p->coefficients && p->field && p->covariance && p->oddity && n->read;
+    const bool done = p->coefficients && p->field && p->covariance && n->read;
     return done ? GONIO_OK : GONIO_ERROR_MEMORY;
 }
 
@@ -66,7 +63,6 @@ static void release(next *n)
     free(n->posterior.coefficients);
     free(n->posterior.field);
     free(n->posterior.covariance);
-    free(n->posterior.oddity);
     free(n->read);
 }
 
@@ -163,7 +159,6 @@ static gonio_status plan_more(const next *n, const gonio_plan_options *options, 
                                  .goes_on = n->readings->count <= MOST_PLANNED,
                                  .alpha = n->posterior.remainder,
                                  .peak = n->posterior.peak,
-                                 .oddity = n->posterior.oddity,
                                  .expected = n->posterior.predicted,
                                  .variance = n->posterior.predicted_by_variance,
                                  .norm = n->posterior.norm};
