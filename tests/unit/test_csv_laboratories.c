@@ -3,6 +3,7 @@
 #include "../support.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "made_readings.h"
@@ -171,11 +172,42 @@ static void test_what_is_refused(void **state)
     }
 }
 
+/* A name of a million blanks takes as long as its length, not its square: some minutes. */
+static void test_long_names(void **state)
+{
+    static const char begin[] = "theta_i,theta_o,brdf";
+    static const char end[] = "x\n30,20,1\n";
+    const size_t blanks = 1000000;
+    char *text = malloc(sizeof begin + blanks + sizeof end);
+    gonio_context *context = support_context();
+    gonio_readings_options options;
+    gonio_readings *readings = NULL;
+    (void)state;
+    assert_non_null(text);
+    memset(text, ' ', sizeof begin + blanks + sizeof end);
+    memcpy(text, begin, sizeof begin - 1);
+    memcpy(text + sizeof begin - 1 + blanks, end, sizeof end);
+    gonio_readings_options_default(&options);
+    options.values_needed = false;
+    assert_int_equal(
+        gonio_readings_read_text(context, "r.csv", text, strlen(text), &options, &readings),
+        GONIO_OK);
+    gonio_readings_free(&readings);
+    options.values_needed = true;
+    assert_int_equal(
+        gonio_readings_read_text(context, "r.csv", text, strlen(text), &options, &readings),
+        GONIO_ERROR_FORMAT);
+    assert_non_null(strstr(support_message(), "no column of values: 'brdf"));
+    gonio_context_free(&context);
+    free(text);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_tables),
         cmocka_unit_test(test_what_is_refused),
+        cmocka_unit_test(test_long_names),
     };
     return cmocka_run_group_tests_name("csv laboratories", tests, NULL, NULL);
 }

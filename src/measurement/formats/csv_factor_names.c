@@ -142,19 +142,23 @@ bool gonio_i_take_factor(const char *text, size_t room, char *rest, double *fact
     return false;
 }
 
+/* Whether a digit has a sign of multiplication or division at its side. */
+static bool is_in_product(const char *text, const char *digit)
+{
+    const char *before = digit;
+    while (before > text && before[-1] == ' ') {
+        before--;
+    }
+    const char *behind = skip_blanks(digit + 1);
+    return times_before(text, digit) != digit || (before > text && before[-1] == '/') ||
+           (*behind != '\0' && strchr("*\xc3", *behind) != NULL);
+}
+
 bool gonio_i_names_product(const char *text)
 {
     bool product = false;
-    for (const char *at = text; *at != '\0'; at++) {
-        const bool digit = isdigit((unsigned char)*at);
-        const char *before = at;
-        while (before > text && before[-1] == ' ') {
-            before--;
-        }
-        product = product || (digit && times_before(text, at) != at) ||
-                  (digit && before > text && before[-1] == '/') ||
-                  (digit && strchr("*\xc3", *skip_blanks(at + 1)) != NULL &&
-                   *skip_blanks(at + 1) != '\0');
+    for (const char *at = text; *at != '\0' && !product; at++) {
+        product = isdigit((unsigned char)*at) && is_in_product(text, at);
     }
     return product;
 }
