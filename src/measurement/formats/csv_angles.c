@@ -45,8 +45,11 @@ static gonio_status refuse_missing(const gonio_i_csv_finder *f, size_t angle)
     }
     return gonio_i_fail(f->r->context, GONIO_ERROR_FORMAT,
                         "%s: no column '%s'; theta_i_deg, phi_i_deg, theta_o_deg and phi_o_deg "
-                        "are needed, or no azimuth at all in the plane of incidence",
-                        f->r->path, gonio_i_angle_names[angle]);
+                        "are needed, or no azimuth at all in the plane of incidence%s",
+                        f->r->path, gonio_i_angle_names[angle],
+                        angle == 1 ? "; an azimuth counted from that of the light is called "
+                                     "phi_diff"
+                                   : "");
 }
 
 static gonio_status refuse_azimuth(const gonio_i_csv_finder *f, size_t azimuth, size_t specular)
