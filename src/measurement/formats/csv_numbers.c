@@ -63,37 +63,36 @@ bool gonio_i_csv_is_angle(const char *cell, char delimiter, double *degrees)
     return true;
 }
 
-/* ---- missing values ---- */
-
-static bool is_one_of(const char *cell, const char *const *words, size_t count)
+bool gonio_i_csv_is_one_of(const char *cell, const char *const *words)
 {
     bool found = false;
-    for (size_t k = 0; k < count; k++) {
-        found = found || strcasecmp(cell, words[k]) == 0;
+    for (; *words != NULL && !found; words++) {
+        found = strcasecmp(cell, *words) == 0;
     }
     return found;
 }
 
+/* ---- missing values ---- */
+
 bool gonio_i_csv_is_empty(const char *cell)
 {
-    static const char *const words[] = {"", "na", "nan"};
-    return !isdigit((unsigned char)*cell) && is_one_of(cell, words, sizeof words / sizeof *words);
+    static const char *const words[] = {"", "na", "nan", NULL};
+    return !isdigit((unsigned char)*cell) && gonio_i_csv_is_one_of(cell, words);
 }
 
 bool gonio_i_csv_is_mark(const char *cell)
 {
     static const char *const words[] = {
-        "-999",      "-999.0",  "-9999", "-9999.0", "-99999",       "n/a",
-        "n.a.",      "null",    "none",  "missing", "#n/a",         "#na",
-        "#div/0!",   "#value!", "#num!", "#ref!",   "#null!",       "lod",
-        "bdl",       "<lod>",   "<lod",  "< lod",   "ovrflw",       "overflow",
-        "ovfl",      "ovrng",   "sat",   "sat.",    "over",         "saturated",
-        "overrange", "undef",   "*",     "?",       "\xe2\x80\x93", "\xe2\x80\x94"};
+        "-999",         "-999.0",    "-9999",     "-9999.0", "-99999", "n/a",     "n.a.",
+        "null",         "none",      "missing",   "#n/a",    "#na",    "#div/0!", "#value!",
+        "#num!",        "#ref!",     "#null!",    "lod",     "bdl",    "<lod>",   "<lod",
+        "< lod",        "ovrflw",    "overflow",  "ovfl",    "ovrng",  "sat",     "sat.",
+        "over",         "saturated", "overrange", "undef",   "*",      "?",       "\xe2\x80\x93",
+        "\xe2\x80\x94", NULL};
     const bool number = isdigit((unsigned char)(*cell == '-' ? cell[1] : *cell));
     if (number && strncmp(cell, "-999", 4) != 0) {
         return false;
     }
     const size_t dashes = strspn(cell, "-");
-    return (dashes > 0 && cell[dashes] == '\0') ||
-           is_one_of(cell, words, sizeof words / sizeof *words);
+    return (dashes > 0 && cell[dashes] == '\0') || gonio_i_csv_is_one_of(cell, words);
 }

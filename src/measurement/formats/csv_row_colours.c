@@ -2,6 +2,7 @@
 #include <strings.h>
 
 #include "csv_finder.h"
+#include "csv_numbers.h"
 #include "csv_unit_row.h"
 
 int gonio_i_colour_of(const char *cell)
@@ -22,14 +23,11 @@ int gonio_i_colour_of(const char *cell)
 
 static bool may_have_colours(const gonio_i_csv_finder *f, size_t column)
 {
-    static const char *const names[] = {"colour",  "color", "farbe", "couleur",
-                                        "channel", "kanal", "canal"};
-    bool found = f->name[column].kind == GONIO_I_PLANNED;
-    for (size_t k = 0; k < sizeof names / sizeof *names && !found; k++) {
-        found =
-            f->name[column].kind == GONIO_I_OTHER && strcasecmp(f->r->name[column], names[k]) == 0;
-    }
-    return found;
+    static const char *const names[] = {"colour", "color", "farbe", "couleur",
+                                        "kanal",  "canal", NULL};
+    const gonio_i_column_kind kind = f->name[column].kind;
+    return kind == GONIO_I_PLANNED ||
+           (kind == GONIO_I_OTHER && gonio_i_csv_is_one_of(f->r->name[column], names));
 }
 
 /* Whether rows have more than one colour there. Rows that cannot be read are for the reader to

@@ -1,5 +1,6 @@
 /* Columns of CSV that say something of their row: see csv_finder.h. */
 #include "csv_finder.h"
+#include "csv_numbers.h"
 
 #include <strings.h>
 
@@ -56,15 +57,6 @@ static void find_polarisation(const gonio_i_csv_finder *f)
     }
 }
 
-static bool is_one_of(const char *name, const char *const *names)
-{
-    bool found = false;
-    for (; *names != NULL; names++) {
-        found = found || strcasecmp(name, *names) == 0;
-    }
-    return found;
-}
-
 /* Whether a column has polarisations that the detector sees. */
 static bool is_analyser(const gonio_i_csv_finder *f, size_t column)
 {
@@ -81,7 +73,7 @@ static bool is_analyser(const gonio_i_csv_finder *f, size_t column)
                                         "detector polarization",
                                         NULL};
     int state = 0;
-    return column < f->r->cells && is_one_of(f->r->name[column], names) &&
+    return column < f->r->cells && gonio_i_csv_is_one_of(f->r->name[column], names) &&
            gonio_i_polarisation_of(f->r->cell[column], &state) && state != 0;
 }
 

@@ -1,8 +1,8 @@
 /* Columns of words that tell rows apart: see csv_rows.h. */
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 
+#include "csv_numbers.h"
 #include "csv_rows.h"
 
 static const char *const subjects[] = {
@@ -13,20 +13,11 @@ static const char *const qualities[] = {"flag",   "flags", "valid",      "qualit
                                         "status", "ok",    "saturation", NULL};
 static const char *const kinds[] = {"type", "quantity", "mode", "measurement type", NULL};
 
-static bool is_one_of(const char *name, const char *const *names)
-{
-    bool found = false;
-    for (; *names != NULL && !found; names++) {
-        found = strcasecmp(name, *names) == 0;
-    }
-    return found;
-}
-
 static size_t find_column(const gonio_i_csv_source *s, const char *const *names)
 {
     size_t k = 0;
-    while (k < s->reader.columns &&
-           !(s->columns->column[k].kind == GONIO_I_OTHER && is_one_of(s->reader.name[k], names))) {
+    while (k < s->reader.columns && !(s->columns->column[k].kind == GONIO_I_OTHER &&
+                                      gonio_i_csv_is_one_of(s->reader.name[k], names))) {
         k++;
     }
     return k;
