@@ -133,17 +133,9 @@ static gonio_status take_numbers(source *s, const gonio_i_crossed_line *t, int a
     return GONIO_OK;
 }
 
-/* Spectrophotometers with several angles give reflectance factors, as such or in per cent: a factor
- * of 100 is not to be guessed. */
 static gonio_status check_unit(const source *s)
 {
-    return !s->named || s->unit_stated
-               ? GONIO_OK
-               : gonio_i_fail(s->context, GONIO_ERROR_FORMAT,
-                              "%s: reflectance factors or per cent? A line 'unit: reflectance "
-                              "factor' or 'unit: %%' says it, or --as values=factor or --as "
-                              "values=percent",
-                              s->path);
+    return !s->named || s->unit_stated ? GONIO_OK : gonio_i_refuse_aspecular(s->context, s->path);
 }
 
 static gonio_status take_geometries(source *s, const gonio_i_crossed_line *t)

@@ -43,6 +43,11 @@ bool gonio_i_setting_of(gonio_i_line line, gonio_i_axis *axis, double *number);
  * the light, "45as15", "r45as15". False for anything else. */
 bool gonio_i_geometry_of(gonio_i_line text, gonio_i_settings *settings);
 
+/* Refuses aspecular geometries of values without a unit: spectrophotometers with several angles
+ * give reflectance factors, as such or in per cent, and a factor of 100 is not to be guessed.
+ * Errors: _FORMAT, always. */
+gonio_status gonio_i_refuse_aspecular(gonio_context *context, const char *path);
+
 /* A cell as a number or an angle with its sign. */
 bool gonio_i_cell_number(gonio_i_line cell, char separator, double *number);
 

@@ -182,3 +182,11 @@ bool gonio_i_geometry_of(gonio_i_line line, gonio_i_settings *s)
     s->bits = 1U | 1U << index;
     return at != NULL && *at == '\0' && s->angle[0] >= 0.0;
 }
+
+gonio_status gonio_i_refuse_aspecular(gonio_context *context, const char *path)
+{
+    return gonio_i_fail(context, GONIO_ERROR_FORMAT,
+                        "%s: reflectance factors or per cent? A line '# unit: reflectance factor' "
+                        "or '# unit: %%' says it, or --as values=factor or --as values=percent",
+                        path);
+}

@@ -7,6 +7,8 @@
 #include <string.h>
 #include <strings.h>
 
+#include "csv_numbers.h"
+
 static const char times[] = "\xc3\x97"; /* the sign */
 static const char dot[] = "\xc2\xb7";
 
@@ -18,11 +20,6 @@ static const struct {
               {"\xc2\xb9", '1'},     {"\xc2\xb2", '2'},     {"\xc2\xb3", '3'},
               {"\xe2\x81\xb4", '4'}, {"\xe2\x81\xb5", '5'}, {"\xe2\x81\xb6", '6'},
               {"\xe2\x81\xb7", '7'}, {"\xe2\x81\xb8", '8'}, {"\xe2\x81\xb9", '9'}};
-
-static const char *skip_blanks(const char *at)
-{
-    return at + strspn(at, " \t");
-}
 
 /* Takes a raised number; NULL if there is none. */
 static const char *take_raised(const char *at, double *power)
@@ -88,9 +85,9 @@ static const char *take_power(const char *at, double *factor)
 /* Skips blanks and a sign of multiplication. */
 static const char *skip_times(const char *at)
 {
-    at = skip_blanks(at);
+    at = gonio_i_skip_blanks(at);
     at += strncmp(at, times, 2) == 0 || strncmp(at, dot, 2) == 0 ? 2 : *at == '*' ? 1 : 0;
-    return skip_blanks(at);
+    return gonio_i_skip_blanks(at);
 }
 
 static bool is_unit(const char *at)
@@ -149,7 +146,7 @@ static bool is_in_product(const char *text, const char *digit)
     while (before > text && before[-1] == ' ') {
         before--;
     }
-    const char *behind = skip_blanks(digit + 1);
+    const char *behind = gonio_i_skip_blanks(digit + 1);
     return times_before(text, digit) != digit || (before > text && before[-1] == '/') ||
            (*behind != '\0' && strchr("*\xc3", *behind) != NULL);
 }

@@ -23,11 +23,6 @@ typedef struct parts {
     char unit[GONIO_I_UNIT_ROOM];
 } parts;
 
-static const char *skip_blanks(const char *at)
-{
-    return at + strspn(at, " \t");
-}
-
 /* Takes a decimal number, not one in words. NULL if there is none. */
 static const char *take_number(const char *at, double *number)
 {
@@ -45,10 +40,10 @@ static const char *take_number(const char *at, double *number)
 static const char *skip_sign(const char *at)
 {
     static const char *const signs[] = {"\xc2\xb1", "\xb1", "+/-", "+-"};
-    at = skip_blanks(at);
+    at = gonio_i_skip_blanks(at);
     for (size_t k = 0; k < sizeof signs / sizeof *signs; k++) {
         if (strncmp(at, signs[k], strlen(signs[k])) == 0) {
-            return skip_blanks(at + strlen(signs[k]));
+            return gonio_i_skip_blanks(at + strlen(signs[k]));
         }
     }
     return NULL;
@@ -95,9 +90,10 @@ static bool copy_plain(const char *cell, char delimiter, char text[CELL_ROOM])
 /* "98.5 % +/- 0.5 %": where the uncertainty is, if both have the sign; NULL otherwise. */
 static const char *skip_per_cent(const char *at)
 {
-    const char *behind = *skip_blanks(at) == '%' ? skip_sign(skip_blanks(at) + 1) : NULL;
+    const char *behind =
+        *gonio_i_skip_blanks(at) == '%' ? skip_sign(gonio_i_skip_blanks(at) + 1) : NULL;
     const char *end = behind != NULL ? strchr(behind, '%') : NULL;
-    return end != NULL && *skip_blanks(end + 1) == '\0' ? behind : NULL;
+    return end != NULL && *gonio_i_skip_blanks(end + 1) == '\0' ? behind : NULL;
 }
 
 /* Takes the uncertainty behind a number and what closes the bracket before it. NULL: none of it
@@ -112,9 +108,9 @@ static const char *take_spread(const char *from, const char *at, bool open, part
     if (behind != NULL) {
         at = take_number(behind, &p->spread);
     }
-    at = at != NULL ? skip_blanks(at) : NULL;
+    at = at != NULL ? gonio_i_skip_blanks(at) : NULL;
     if (open && at != NULL) {
-        at = *at == ')' ? skip_blanks(at + 1) : NULL;
+        at = *at == ')' ? gonio_i_skip_blanks(at + 1) : NULL;
     }
     return at;
 }
@@ -140,9 +136,9 @@ static bool take_apart(const char *cell, char delimiter, parts *p)
     if (!copy_plain(cell, delimiter, text)) {
         return false;
     }
-    const char *from = skip_blanks(text);
+    const char *from = gonio_i_skip_blanks(text);
     const bool open = *from == '(';
-    from = skip_blanks(from + open);
+    from = gonio_i_skip_blanks(from + open);
     const char *at = take_number(from, &p->number);
     at = at != NULL ? take_spread(from, at, open, p) : NULL;
     if (at == NULL || strlen(at) >= sizeof p->unit || (p->spread < 0.0)) {

@@ -63,6 +63,11 @@ bool gonio_i_csv_is_angle(const char *cell, char delimiter, double *degrees)
     return true;
 }
 
+const char *gonio_i_skip_blanks(const char *at)
+{
+    return at + strspn(at, " \t");
+}
+
 bool gonio_i_csv_is_one_of(const char *cell, const char *const *words)
 {
     bool found = false;

@@ -9,6 +9,9 @@
  * 10°30'. */
 bool gonio_i_csv_is_angle(const char *cell, char delimiter, double *degrees);
 
+/* Behind blanks and tabs. */
+const char *gonio_i_skip_blanks(const char *at);
+
 /* Whether a cell or a name is one of the words, in capitals or not; they end with NULL. */
 bool gonio_i_csv_is_one_of(const char *cell, const char *const *words);
 

@@ -49,16 +49,6 @@ static gonio_status bad_number(const gonio_i_csv_source *s, size_t column, gonio
                         : bad_cell(s, column, status, problem);
 }
 
-/* Spectrophotometers with several angles give reflectance factors, as such or in per cent: a factor
- * of 100 is not to be guessed. */
-static gonio_status refuse_factors(const gonio_i_csv_source *s)
-{
-    return gonio_i_fail(s->context, GONIO_ERROR_FORMAT,
-                        "%s: reflectance factors or per cent? A line '# unit: reflectance factor' "
-                        "or '# unit: %%' says it, or --as values=factor or --as values=percent",
-                        s->reader.path);
-}
-
 static gonio_status take_geometry(gonio_i_csv_source *s, size_t column)
 {
     const char *cell = s->reader.cell[column];
@@ -74,7 +64,7 @@ static gonio_status take_geometry(gonio_i_csv_source *s, size_t column)
                       : named.angle[2];
     return aspecular && s->columns->stated.values == 0 && options->as.values == GONIO_AS_STATED &&
                    !options->directions_only
-               ? refuse_factors(s)
+               ? gonio_i_refuse_aspecular(s->context, s->reader.path)
                : GONIO_OK;
 }
 
