@@ -1,27 +1,7 @@
 /* Tables with angles, geometries or wavelengths along both sides. */
 #include "../support.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "made_readings.h"
-
-static gonio_readings *read_text(gonio_context *context, const char *text)
-{
-    gonio_readings_options options;
-    gonio_readings *readings = NULL;
-    print_message("%s", text);
-    gonio_readings_options_default(&options);
-    gonio_readings_read_text(context, "r.csv", text, strlen(text), &options, &readings);
-    return readings;
-}
-
-static void assert_near(double value, double expected)
-{
-    if (!(fabs(value - expected) <= 1e-8)) {
-        fail_msg("%.17g where %.17g is expected", value, expected);
-    }
-}
+#include "csv_tables.h"
 
 /* A table: how many readings and channels it has, and the last of them. */
 typedef struct table {
@@ -112,7 +92,7 @@ static void test_tables(void **state)
     for (size_t k = 0; k < sizeof tables / sizeof *tables; k++) {
         const table *t = &tables[k];
         gonio_context *context = support_context();
-        gonio_readings *readings = read_text(context, t->text);
+        gonio_readings *readings = read_table(context, t->text, true);
         assert_non_null(readings);
         const gonio_readings_view *view = gonio_readings_describe(readings);
         assert_int_equal(view->count, t->count);
@@ -135,10 +115,7 @@ static void test_tables(void **state)
 /* What is not told is not guessed: the message says what to add. */
 static void test_what_is_refused(void **state)
 {
-    static const struct {
-        const char *text;
-        const char *message;
-    } cases[] = {
+    static const refused_text cases[] = {
         {"theta_o\\phi_o,0,90,180\n" CELLS, "r.csv:2: no angle of incidence: give it in a line"},
         {AOI ",0,90,180\n" CELLS, "r.csv:3: a table of values with numbers along both sides"},
         {AOI "theta_o,0,30,60\n" CELLS, "name rows and columns in its corner cell"},
@@ -156,14 +133,7 @@ static void test_what_is_refused(void **state)
         {"geometry,brdf\n45as15az90,0.1\n", "'45as15az90' is not a geometry"},
     };
     (void)state;
-    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        gonio_context *context = support_context();
-        assert_null(read_text(context, cases[k].text));
-        if (strstr(support_message(), cases[k].message) == NULL) {
-            fail_msg("%s", support_message());
-        }
-        gonio_context_free(&context);
-    }
+    assert_refused(cases, sizeof cases / sizeof *cases);
 }
 
 int main(void)

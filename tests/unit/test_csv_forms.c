@@ -1,27 +1,7 @@
 /* Cells of tables with more in them than a number: units, per cent signs, uncertainties. */
 #include "../support.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "made_readings.h"
-
-static gonio_readings *read_text(gonio_context *context, const char *text)
-{
-    gonio_readings_options options;
-    gonio_readings *readings = NULL;
-    print_message("%s", text);
-    gonio_readings_options_default(&options);
-    gonio_readings_read_text(context, "r.csv", text, strlen(text), &options, &readings);
-    return readings;
-}
-
-static void assert_near(double value, double expected)
-{
-    if (!(fabs(value - expected) <= 1e-9)) {
-        fail_msg("%.17g where %.17g is expected", value, expected);
-    }
-}
+#include "csv_tables.h"
 
 /* A table of which the last reading has a value and a deviation. */
 typedef struct table {
@@ -47,7 +27,7 @@ static void test_cells(void **state)
     (void)state;
     for (size_t k = 0; k < sizeof tables / sizeof *tables; k++) {
         gonio_context *context = support_context();
-        gonio_readings *readings = read_text(context, tables[k].text);
+        gonio_readings *readings = read_table(context, tables[k].text, true);
         assert_non_null(readings);
         const gonio_readings_view *view = gonio_readings_describe(readings);
         const size_t last = view->count - 1;
@@ -65,10 +45,7 @@ static void test_cells(void **state)
 /* Cells unlike the first of their column, or that say two things, are refused by their place. */
 static void test_refused(void **state)
 {
-    static const struct {
-        const char *text;
-        const char *message;
-    } tables[] = {
+    static const refused_text tables[] = {
         {"theta_i,theta_o,brf\n30,20,98.5%\n30,30,97\n", "r.csv:3: brf (%) '97' has no unit"},
         {"theta_i,theta_o,brdf\n30,20,0.3\n30,40,0.4 1/sr\n",
          "r.csv:3: brdf '0.4 1/sr' is not a finite number as the column's"},
@@ -82,14 +59,7 @@ static void test_refused(void **state)
         {"theta_i,theta_o,brdf,sigma\n30,20,0.3 ± 0.01,0.3\n", "delete one"},
     };
     (void)state;
-    for (size_t k = 0; k < sizeof tables / sizeof *tables; k++) {
-        gonio_context *context = support_context();
-        assert_null(read_text(context, tables[k].text));
-        if (strstr(support_message(), tables[k].message) == NULL) {
-            fail_msg("%s", support_message());
-        }
-        gonio_context_free(&context);
-    }
+    assert_refused(tables, sizeof tables / sizeof *tables);
 }
 
 int main(void)

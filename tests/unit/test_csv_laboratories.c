@@ -2,40 +2,10 @@
  * languages. */
 #include "../support.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 #include <time.h>
 
-#include "made_readings.h"
-
-static gonio_readings *read_as(gonio_context *context, const char *text, bool values)
-{
-    gonio_readings_options options;
-    gonio_readings *readings = NULL;
-    print_message("%s", text);
-    gonio_readings_options_default(&options);
-    options.values_needed = values;
-    gonio_readings_read_text(context, "r.csv", text, strlen(text), &options, &readings);
-    return readings;
-}
-
-static gonio_readings *read_text(gonio_context *context, const char *text)
-{
-    return read_as(context, text, false);
-}
-
-static gonio_readings *read_measured(gonio_context *context, const char *text)
-{
-    return read_as(context, text, true);
-}
-
-static void assert_near(double value, double expected)
-{
-    if (!(fabs(value - expected) <= 1e-8)) {
-        fail_msg("%.17g where %.17g is expected", value, expected);
-    }
-}
+#include "csv_tables.h"
 
 /* A table: how many readings it has, and the last of them. */
 typedef struct table {
@@ -111,7 +81,7 @@ static void test_tables(void **state)
     for (size_t k = 0; k < sizeof tables / sizeof *tables; k++) {
         const table *t = &tables[k];
         gonio_context *context = support_context();
-        gonio_readings *readings = read_text(context, t->text);
+        gonio_readings *readings = read_table(context, t->text, false);
         assert_non_null(readings);
         const gonio_readings_view *view = gonio_readings_describe(readings);
         assert_int_equal(view->count, t->count);
@@ -132,10 +102,7 @@ static void test_tables(void **state)
 /* Whether a factor was applied or is to be applied is not guessed. */
 static void test_what_is_refused(void **state)
 {
-    static const struct {
-        const char *text;
-        const char *message;
-    } cases[] = {
+    static const refused_text cases[] = {
         {"theta_i,theta_o,BRDF x1e-3 [1/sr]\n30,20,350\n", "put the factor into the unit"},
         {"theta_i,theta_o,BRDF x 1000\n30,20,350\n", "put the factor into the unit"},
         {"theta_i,theta_o,BRDF*1000\n30,20,350\n", "put the factor into the unit"},
@@ -163,14 +130,7 @@ static void test_what_is_refused(void **state)
         {"theta_i,theta_o,pol,brdf\n30,20,45,1\n", "r.csv:2: pol '45' is not a polarisation"},
     };
     (void)state;
-    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        gonio_context *context = support_context();
-        assert_null(read_measured(context, cases[k].text));
-        if (strstr(support_message(), cases[k].message) == NULL) {
-            fail_msg("%s", support_message());
-        }
-        gonio_context_free(&context);
-    }
+    assert_refused(cases, sizeof cases / sizeof *cases);
 }
 
 /* A name of a million blanks takes as long as its length, not its square: some minutes. */
